@@ -1,0 +1,55 @@
+# `make read` and `make test` do everything on a fresh Debian with Python 3.11:
+# both install what they need, and are quick when it is there.
+
+PYTHON := /usr/bin/python3
+BIN    := .venv/bin
+SUDO   := $(if $(filter 0,$(shell id -u)),,sudo)
+# python3-louis is liblouis's own binding; python3-venv makes .venv.
+DEBS   := python3-louis python3-venv
+NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q '^Status: install ok installed' || echo $(d))))
+
+.DELETE_ON_ERROR:
+.PHONY: read test bench format setup clean
+
+read: .venv/runs
+	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 --lines 1-5 --echo both
+
+test: .venv/tests
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/pyright --warnings
+	$(BIN)/pytest -n 2 --cov --cov-branch --cov-report=term
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render
+
+bench: .venv/tests
+	$(BIN)/python -m tests.benchmarks
+
+format: .venv/tests
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+setup: .venv/runs
+
+.venv/pip: Makefile
+	@[ -x $(PYTHON) ] && $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo 'vbraille needs $(PYTHON) to be Python 3.11 or later' >&2; exit 1; }
+	@[ -z '$(NEED)' ] || { set -e; \
+	  echo 'Installing from Debian: $(NEED) (liblouis with its Python binding; the tool that makes .venv)'; \
+	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq $(NEED); }
+	$(PYTHON) -m venv --clear .venv
+	@# Only this one folder: all of --system-site-packages would bring Debian's versions of other things.
+	ln -s "$$($(PYTHON) -c 'import louis, os; print(os.path.dirname(louis.__file__))')" \
+	  "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/louis"
+	@touch $@
+
+.venv/runs: .venv/pip pyproject.toml
+	$(BIN)/pip install -q --disable-pip-version-check -e .
+	@touch $@
+
+.venv/tests: .venv/runs
+	$(BIN)/pip install -q --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+clean:
+	rm -rf .venv .coverage* .pytest_cache .ruff_cache .hypothesis .import_linter_cache

@@ -1,0 +1,5 @@
+"""``python -m vbraille``."""
+
+from vbraille.cli import main
+
+raise SystemExit(main())

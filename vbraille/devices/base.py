@@ -1,0 +1,168 @@
+"""What every device is: a place read, a frame written, rest on close."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+from vbraille.errors import DeviceError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceInfo:
+    """What a device says of itself.
+
+    Parameters
+    ----------
+    name
+        For people.
+    rows, columns
+        Of its actuators.
+    column_pitch_mm, row_pitch_mm
+        Between neighbouring columns and rows.
+    levels
+        Deflections it can tell apart, at least 2: 1024 for 10 bits.
+    rest_side
+        "left" or "right": where an actuator at deflection 0 stands.
+    travel_mm
+        How far its carriage goes.
+    counts_per_mm
+        Resolution of its encoder.
+    rate_hz
+        Frames a second that it is made for.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    name: str
+    rows: int
+    columns: int
+    column_pitch_mm: float
+    row_pitch_mm: float
+    levels: int
+    rest_side: str
+    travel_mm: float
+    counts_per_mm: float
+    rate_hz: float
+
+    def __post_init__(self) -> None:
+        if self.levels < 2:
+            raise ValueError(f"a device of {self.levels} levels is not possible; it has 2 or more")
+        if self.rest_side not in ("left", "right"):
+            raise ValueError(f"rest side is {self.rest_side!r}; it must be left or right")
+        for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
+        for name in ("travel_mm", "counts_per_mm", "rate_hz"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
+
+    @property
+    def span_mm(self) -> float:
+        """From its left column to its right one."""
+        return (self.columns - 1) * self.column_pitch_mm
+
+
+class Sample(NamedTuple):
+    """Where the carriage is.
+
+    Parameters
+    ----------
+    time_ns
+        When it was there, by the device's clock.
+    x_mm
+        The array's left column on the surface. At the left stop the whole array
+        stands before the line: x = -(columns - 1) · pitch.
+    """
+
+    time_ns: int
+    x_mm: float
+
+
+class Device(ABC):
+    """A device: `read`, `write`, `close`, and `info`. A context manager.
+
+    A driver gives `info`, `read`, `_send` and `_release`; what it inherits
+    keeps a bad frame from the actuators and brings them to rest before the
+    device is let go.
+    """
+
+    _closed = False
+
+    @property
+    @abstractmethod
+    def info(self) -> DeviceInfo:
+        """What the device says of itself; the same at every call."""
+
+    @abstractmethod
+    def read(self) -> Sample | None:
+        """Newest sample since the last call, or None; never waits.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone.
+        """
+
+    @abstractmethod
+    def _send(self, frame: NDArray[np.float64]) -> None:
+        """Send a checked frame; never waits. The array is the caller's: copy what is kept."""
+
+    @abstractmethod
+    def _release(self) -> None:
+        """Let the device go; called once, after rest was sent."""
+
+    def write(self, frame: NDArray[np.float64]) -> None:
+        """Send a frame.
+
+        Parameters
+        ----------
+        frame : float64[rows, columns]
+            Deflections, each in [0, 1]; 0 is rest.
+
+        Raises
+        ------
+        DeviceError
+            If a deflection is not in [0, 1] or not a number, the frame is of
+            another shape, or the device is closed or gone. Nothing is sent then.
+        """
+        if self._closed:
+            raise DeviceError(f"{self.info.name} is closed")
+        if frame.shape != (self.info.rows, self.info.columns):
+            raise DeviceError(
+                f"{self.info.name} has {self.info.rows} × {self.info.columns} actuators; "
+                f"the frame has shape {frame.shape}"
+            )
+        if not (frame.min() >= 0.0 and frame.max() <= 1.0):  # a NaN fails both
+            raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
+        self._send(frame)
+
+    def rest(self) -> None:
+        """Send every actuator to rest at once."""
+        import numpy as np  # noqa: PLC0415 - builders may import this module without it
+
+        self.write(np.zeros((self.info.rows, self.info.columns)))
+
+    def close(self) -> None:
+        """Bring every actuator to rest, then let the device go. Further calls do nothing."""
+        if self._closed:
+            return
+        try:
+            self.rest()
+        finally:
+            self._closed = True
+            self._release()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

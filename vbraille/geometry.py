@@ -1,0 +1,124 @@
+"""Where the dots of a line stand on the virtual surface.
+
+Lengths are millimetres, x grows to the reader's right, and x = 0 is the left
+edge of the line's first cell, which is the left edge of its left dot column.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+BOUNDS_MM = {
+    "dot_width_mm": (0.1, 20.0),
+    "dot_spacing_mm": (0.1, 50.0),
+    "cell_gap_mm": (0.1, 50.0),
+    "row_spacing_mm": (0.1, 50.0),
+    "line_pitch_mm": (1.0, 500.0),
+    "travel_mm": (1.0, 10_000.0),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """Distances of a line of virtual braille, in mm.
+
+    Parameters
+    ----------
+    dot_width_mm
+        Width of a dot along x, twice its radius.
+    dot_spacing_mm
+        From the centre of a cell's left dot column to that of its right one.
+    cell_gap_mm
+        From the right dot column of a cell to the left one of the next.
+    row_spacing_mm
+        Between the centres of neighbouring dot rows.
+    line_pitch_mm
+        Between the first dot rows of neighbouring lines.
+    travel_mm
+        How far the carriage goes. The source gives none for the two sliders:
+        the 300 mm of the presets are ours.
+
+    Raises
+    ------
+    ValueError
+        If a length is out of `BOUNDS_MM`, or a dot is wider than a cell.
+    """
+
+    dot_width_mm: float
+    dot_spacing_mm: float
+    cell_gap_mm: float
+    row_spacing_mm: float
+    line_pitch_mm: float
+    travel_mm: float = 300.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            low, high = BOUNDS_MM[field.name]
+            length = getattr(self, field.name)
+            if not low <= length <= high:
+                name = field.name.removesuffix("_mm").replace("_", " ")
+                raise ValueError(f"{name} is {length:g} mm; it must be {low:g} to {high:g} mm")
+        if self.dot_width_mm > self.cell_pitch_mm:
+            raise ValueError(
+                f"dot width is {self.dot_width_mm:g} mm; it must be at most the cell pitch, "
+                f"here {self.cell_pitch_mm:g} mm"
+            )
+
+    @property
+    def cell_pitch_mm(self) -> float:
+        """From a dot column of one cell to the same column of the next."""
+        return self.dot_spacing_mm + self.cell_gap_mm
+
+    def extent_mm(self, cells: int) -> float:
+        """Right edge of the last dot column of a line of so many cells; 0 for none."""
+        if cells == 0:
+            return 0.0
+        return (cells - 1) * self.cell_pitch_mm + self.dot_spacing_mm + self.dot_width_mm
+
+    def cells_per_line(self, span_mm: float) -> int:
+        """Cells that an array of the given span can cross whole within the travel.
+
+        Raises
+        ------
+        ValueError
+            If there is not even room for one.
+        """
+        room = self.travel_mm - span_mm - self.dot_width_mm - self.dot_spacing_mm
+        if room < 0:
+            least = span_mm + self.dot_width_mm + self.dot_spacing_mm
+            raise ValueError(
+                f"a travel of {self.travel_mm:g} mm is too short for one cell; "
+                f"it must be at least {least:g} mm"
+            )
+        # 1e-9: a travel given for exactly n cells must not lose one to rounding.
+        return 1 + math.floor(room / self.cell_pitch_mm + 1e-9)
+
+
+# Lévesque 2009, 3.3: tuned width and spacing; the character pitch is 6 mm scaled by 4.0 / 2.29,
+# and so is the line pitch (10 mm embossed), which is ours: the device shows one row of dots.
+VBD = Geometry(
+    dot_width_mm=2.0,
+    dot_spacing_mm=4.0,
+    cell_gap_mm=6.48,
+    row_spacing_mm=4.0,
+    line_pitch_mm=17.5,
+)
+# Lévesque 2009, 4.2; the line pitch, 1.4 × the embossed as its dot rows are, is ours.
+STRESS2 = Geometry(
+    dot_width_mm=2.6,
+    dot_spacing_mm=3.7,
+    cell_gap_mm=7.4,
+    row_spacing_mm=3.6,
+    line_pitch_mm=14.0,
+)
+# Embossed paper: distances as in Lévesque 2009 (2.29 and 3.71 mm); the rest are common values.
+STANDARD = Geometry(
+    dot_width_mm=1.5,
+    dot_spacing_mm=2.29,
+    cell_gap_mm=3.71,
+    row_spacing_mm=2.29,
+    line_pitch_mm=10.0,
+)
+
+PRESETS = {"vbd": VBD, "stress2": STRESS2, "standard": STANDARD}

@@ -1,0 +1,129 @@
+"""Which dots each actuator row shows, and with which phase: a table per method.
+
+Lévesque 2009, fig. 4.5. Rows count from 0, the row far from the reader, and dot
+row r owns actuator rows 2r and 2r + 1. Where the source's scan cannot be read
+(which rows are "odd", which rows of a pair serve which dot column) the tables
+follow its author's later published code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+NONE = -1
+DOT_ROWS = 4  # dots 7 and 8 make a fourth row
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """What each actuator row shows.
+
+    Parameters
+    ----------
+    name
+        Of the method.
+    left, right
+        The dot row (0, 1, 2; 3 for dots 7 and 8) that each actuator row shows
+        of a cell's left and right dot column; `NONE` for none.
+    inverted
+        Whether the row's phase is inverted: its idle end is then 1, and a dot
+        swings it towards 0.
+
+    Raises
+    ------
+    ValueError
+        If the tables differ in length or name no dot row.
+    """
+
+    name: str
+    left: tuple[int, ...]
+    right: tuple[int, ...]
+    inverted: tuple[bool, ...]
+
+    def __post_init__(self) -> None:
+        if not len(self.left) == len(self.right) == len(self.inverted) > 0:
+            raise ValueError(f"the tables of mapping {self.name} differ in length")
+        for row in (*self.left, *self.right):
+            if not NONE <= row < DOT_ROWS:
+                raise ValueError(f"mapping {self.name} shows dot row {row}; there are 0 to 3")
+
+    @property
+    def rows(self) -> int:
+        """Actuator rows that the method needs."""
+        return len(self.left)
+
+    def idle(self) -> NDArray[np.float64]:
+        """Deflection of each row off the dots while a line is shown; float64[rows]."""
+        return np.array(self.inverted, np.float64)
+
+    def shown_dots(self) -> int:
+        """Mask of the dots that some row shows; bit 0 is dot 1."""
+        mask = 0
+        for dot in range(8):
+            column, row = _PLACE[dot]
+            if row in (self.right if column else self.left):
+                mask |= 1 << dot
+        return mask
+
+    def row_bits(self) -> NDArray[np.uint16]:
+        """Actuator rows that a cell raises; uint16[256, 2].
+
+        Of each dot mask and dot column (0 = left), bit r is set if actuator row
+        r shows a dot.
+        """
+        bits = np.zeros((256, 2), np.uint16)
+        masks = np.arange(256)
+        for dot, (column, dot_row) in _PLACE.items():
+            table = self.right if column else self.left
+            rows = sum(1 << r for r, shown in enumerate(table) if shown == dot_row)
+            bits[:, column] |= np.where(masks >> dot & 1, rows, 0).astype(np.uint16)
+        return bits
+
+
+# Dot column and dot row of each dot, by its bit.
+_PLACE = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2), 6: (0, 3), 7: (1, 3)}
+
+_NO = (False,) * 6
+_PAIRS = (0, 0, 1, 1, 2, 2)
+_EVEN = (0, NONE, 1, NONE, 2, NONE)
+_ODD = (NONE, 0, NONE, 1, NONE, 2)
+_TOP = (0, 1, 2, NONE, NONE, NONE)
+
+MAPPINGS = {
+    mapping.name: mapping
+    for mapping in (
+        # Preferred, and used in the source's experiments: dot rows stand two actuator rows apart.
+        Mapping("alternate", _EVEN, _EVEN, _NO),
+        # Each dot row drives a pair of actuator rows.
+        Mapping("paired", _PAIRS, _PAIRS, _NO),
+        # As paired, opposite within the pair: the most shearing of the skin.
+        Mapping("sheared", _PAIRS, _PAIRS, (True, False) * 3),
+        # The two dot columns of a cell on different actuator rows.
+        Mapping("split-columns", _EVEN, _ODD, _NO),
+        # The middle dot row opposite to its neighbours (later code, not in fig. 4.5).
+        Mapping("row-sheared", _PAIRS, _PAIRS, (False, False, True, True, False, False)),
+        # Dot rows one actuator row apart (later code, not in fig. 4.5).
+        Mapping("compact", _TOP, _TOP, _NO),
+    )
+}
+
+
+def single_row(dot_row: int) -> Mapping:
+    """Show one dot row on a one-row array.
+
+    Parameters
+    ----------
+    dot_row
+        1 (dots 1 and 4), 2 or 3, as readers count them.
+
+    Raises
+    ------
+    ValueError
+        If it is another number.
+    """
+    if dot_row not in (1, 2, 3):
+        raise ValueError(f"dot row is {dot_row}; it must be 1, 2 or 3")
+    return Mapping(f"dot-row-{dot_row}", (dot_row - 1,), (dot_row - 1,), (False,))

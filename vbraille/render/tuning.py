@@ -1,0 +1,46 @@
+"""What a reader may turn while reading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+# The kernels' polynomial of T_k has six coefficients; finer texture than this is below what the
+# source's encoders resolve.
+MOST_TEXTURE_CYCLES = 11
+
+
+@dataclass(frozen=True, slots=True)
+class Tuning:
+    """Texture and contrast.
+
+    Parameters
+    ----------
+    texture
+        Level T in [0, 1]: none to the source's "textured" (VBD) or to the
+        texture alone (STReSS², eq. 4.3).
+    contrast
+        Share of the full swing, in [0, 1].
+    cycles
+        k of eq. 4.2, half-cycles of texture a radius; odd, so that the
+        waveform meets rest at both edges. The VBD's texture has a fixed one.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    texture: float = 0.0
+    contrast: float = 1.0
+    cycles: int = 7
+
+    def __post_init__(self) -> None:
+        for name in ("texture", "contrast"):
+            value = getattr(self, name)
+            if not 0 <= value <= 1:
+                raise ValueError(f"{name} is {value:g}; it must be 0 to 1")
+        if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:
+            raise ValueError(
+                f"texture cycles are {self.cycles}; "
+                f"they must be an odd number, 1 to {MOST_TEXTURE_CYCLES}"
+            )

@@ -1,0 +1,170 @@
+"""Braille cells, with the way back to the text they stand for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+UNICODE_BLANK = 0x2800
+
+# North American ASCII braille: the character of each six-dot cell, in the order of U+2800-283F.
+_BRF = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
+_BRF_CODES = np.frombuffer(_BRF.encode("ascii"), np.uint8)
+_BRF_MASKS = np.full(128, 0xFF, np.uint8)
+_BRF_MASKS[_BRF_CODES] = np.arange(64, dtype=np.uint8)
+# Files in the wild use 0x60-0x7E for 0x40-0x5E, letters in lower case among them.
+_BRF_MASKS[0x60:0x7F] = _BRF_MASKS[0x40:0x5F]
+
+_DOTS = ["-".join(str(d + 1) for d in range(8) if mask >> d & 1) or "0" for mask in range(256)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """A run of braille cells.
+
+    Parameters
+    ----------
+    masks : uint8[n]
+        The raised dots of each cell; bit 0 is dot 1, bit 7 is dot 8.
+    starts : int64[n]
+        The first source character that each cell stands for, counted from the
+        document's first; never decreasing. Several cells may stand for one
+        character, and one cell for several.
+    end : int
+        One past the last source character of the run.
+
+    Raises
+    ------
+    ValueError
+        If the two arrays differ in length.
+    """
+
+    masks: NDArray[np.uint8]
+    starts: NDArray[np.int64]
+    end: int
+
+    def __post_init__(self) -> None:
+        if self.masks.shape != self.starts.shape or self.masks.ndim != 1:
+            raise ValueError(
+                f"masks {self.masks.shape} and starts {self.starts.shape} must be of one length"
+            )
+
+    @classmethod
+    def bare(cls, masks: NDArray[np.uint8]) -> Cells:
+        """Cells that stand for themselves: the source of cell i is character i."""
+        masks = np.asarray(masks, np.uint8)
+        return cls(masks, np.arange(masks.size, dtype=np.int64), masks.size)
+
+    def __len__(self) -> int:
+        return self.masks.size
+
+    def __getitem__(self, part: slice) -> Cells:
+        start, stop, step = part.indices(self.masks.size)
+        if step != 1:
+            raise ValueError("cells are cut in runs: the step of a slice must be 1")
+        end = int(self.starts[stop]) if stop < self.masks.size else self.end
+        return Cells(self.masks[start:stop], self.starts[start:stop], end)
+
+    def __add__(self, other: Cells) -> Cells:
+        return Cells(
+            np.concatenate((self.masks, other.masks)),
+            np.concatenate((self.starts, other.starts)),
+            other.end,
+        )
+
+    def source(self, cell: int) -> tuple[int, int]:
+        """Source characters that a cell stands for, as [first, one past the last)."""
+        start = int(self.starts[cell])
+        after = int(np.searchsorted(self.starts, start, side="right"))
+        return start, int(self.starts[after]) if after < self.masks.size else self.end
+
+    def of_source(self, character: int) -> tuple[int, int]:
+        """Cells that stand for a source character, as [first, one past the last).
+
+        Raises
+        ------
+        IndexError
+            If the character is not in the run.
+        """
+        after = int(np.searchsorted(self.starts, character, side="right"))
+        if after == 0 or character >= self.end:
+            raise IndexError(f"source character {character} is not in these cells")
+        first = int(np.searchsorted(self.starts, self.starts[after - 1], side="left"))
+        return first, after
+
+    def to_unicode(self) -> str:
+        """Unicode braille patterns, U+2800-28FF."""
+        return (self.masks.astype("<u4") + UNICODE_BLANK).tobytes().decode("utf-32-le")
+
+    @classmethod
+    def from_unicode(cls, text: str) -> Cells:
+        """Cells of Unicode braille patterns.
+
+        Raises
+        ------
+        ValueError
+            If a character is not in U+2800-28FF.
+        """
+        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
+        wrong = np.flatnonzero((codes < UNICODE_BLANK) | (codes > UNICODE_BLANK + 0xFF))
+        if wrong.size:
+            raise ValueError(f"{text[wrong[0]]!r} is not a braille pattern (U+2800 to U+28FF)")
+        return cls.bare((codes - UNICODE_BLANK).astype(np.uint8))
+
+    def to_brf(self) -> str:
+        """North American ASCII braille, one upper-case character a cell.
+
+        Raises
+        ------
+        ValueError
+            If a cell has dot 7 or 8, which BRF cannot write.
+        """
+        wrong = np.flatnonzero(self.masks > 0x3F)
+        if wrong.size:
+            dots = _DOTS[self.masks[wrong[0]]]
+            raise ValueError(f"BRF has six dots and cannot write the cell with dots {dots}")
+        return _BRF_CODES[self.masks].tobytes().decode("ascii")
+
+    @classmethod
+    def from_brf(cls, text: str) -> Cells:
+        """Cells of ASCII braille, in upper or lower case.
+
+        Raises
+        ------
+        ValueError
+            If a character is no ASCII braille.
+        """
+        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
+        masks = _BRF_MASKS[np.minimum(codes, 127)]
+        wrong = np.flatnonzero(masks == 0xFF)
+        if wrong.size:
+            raise ValueError(f"{text[wrong[0]]!r} is not an ASCII braille character")
+        return cls.bare(masks)
+
+    def to_dots(self) -> str:
+        """Dot numbers, ``1-2-4`` a cell and ``0`` for a blank one, with a space between cells."""
+        return " ".join(map(_DOTS.__getitem__, self.masks.tolist()))
+
+    @classmethod
+    def from_dots(cls, text: str) -> Cells:
+        """Cells of dot numbers, ``1-2-4`` or ``124``, with white space between cells.
+
+        Raises
+        ------
+        ValueError
+            If a word is not the dots of a cell.
+        """
+        masks = []
+        for word in text.split():
+            if not re.fullmatch(r"0|[1-8](-?[1-8])*", word):
+                raise ValueError(
+                    f"{word!r} is not the dots of a cell, such as 1-2-4, or 0 for none"
+                )
+            masks.append(sum({1 << int(dot) - 1 for dot in word if dot not in "-0"}))
+        return cls.bare(np.array(masks, np.uint8))

@@ -1,0 +1,270 @@
+"""A file as paragraphs, each knowing its place in the source.
+
+The file is read a block at a time and only as far as somebody asks; a paragraph
+already passed is found again by seeking, so that a book need not fit in memory.
+"""
+
+from __future__ import annotations
+
+import io
+from bisect import bisect_right
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.translate.encodings import (
+    SAMPLE_BYTES,
+    Decoder,
+    Encoding,
+    binary_kind,
+    find_encoding,
+    first_not_utf8,
+    named_encoding,
+)
+from vbraille.translate.paragraphs import Paragraph, split_paragraphs, to_codes
+
+BLOCK_BYTES = 65_536
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """Where reading can go on: before a paragraph's first character.
+
+    Parameters
+    ----------
+    paragraph
+        Number of the next paragraph, from 0.
+    character
+        Its place in the document.
+    offset, state
+        A place in the file at or before it, and the decoder's state there.
+    skip
+        Characters between that place and the paragraph.
+    continues
+        Whether the paragraph is a further piece of the one before.
+    """
+
+    paragraph: int
+    character: int
+    offset: int
+    state: tuple[bytes, int]
+    skip: int
+    continues: bool
+
+
+class Document:
+    """A text as paragraphs, read lazily.
+
+    Parameters
+    ----------
+    stream
+        The bytes; must be able to seek.
+    name
+        What to call it in messages.
+    encoding
+        Overrides what the bytes say.
+    keep_lines
+        Keep the line breaks of the source (verse, code): each line is a
+        paragraph, its blanks kept; a run of empty lines is an empty paragraph.
+
+    Attributes
+    ----------
+    encoding : Encoding
+        How the bytes are read.
+    size : int
+        Bytes in all.
+
+    Raises
+    ------
+    InputError
+        If the text is empty, binary, or of an unknown encoding.
+    """
+
+    def __init__(
+        self,
+        stream: BinaryIO,
+        name: str = "text",
+        encoding: str | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> None:
+        self.name = name
+        self.keep_lines = keep_lines
+        self._stream = stream
+        sample = self._read(0, SAMPLE_BYTES)
+        self.size = stream.seek(0, io.SEEK_END)
+        if not sample:
+            raise InputError(f"{name} is empty; give a text file")
+        if encoding is None:
+            kind = binary_kind(sample)
+            if kind:
+                raise InputError(f"{name} is {kind}, not text; give a text file")
+            self.encoding = find_encoding(sample)
+        else:
+            self.encoding = _named_encoding(encoding, sample)
+        self._decoder = Decoder(self.encoding.name)
+        self._noted = False
+        start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
+        self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
+        self._complete = False
+        self._recent: dict[int, list[Paragraph]] = {}
+
+    @classmethod
+    def open(
+        cls, path: Path | str, encoding: str | None = None, *, keep_lines: bool = False
+    ) -> Document:
+        """Open a text file.
+
+        Raises
+        ------
+        InputError
+            If it is missing, unreadable, a directory, empty, binary, or of an unknown encoding.
+        """
+        path = Path(path)
+        try:
+            stream = path.open("rb")
+            if not stream.seekable():  # a pipe: what cannot be read twice is kept
+                stream = io.BytesIO(stream.read())
+        except FileNotFoundError:
+            raise InputError(f"there is no file {path}; check the name") from None
+        except IsADirectoryError:
+            raise InputError(f"{path} is a directory; give a text file in it") from None
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise InputError(f"{path} cannot be read: {reason}") from None
+        return cls(stream, str(path), encoding, keep_lines=keep_lines)
+
+    @classmethod
+    def from_text(cls, text: str, *, keep_lines: bool = False) -> Document:
+        """Make a document of a string."""
+        stream = io.BytesIO(text.encode("utf-32-le", "surrogatepass"))
+        return cls(stream, "text", "utf-32-le", keep_lines=keep_lines)
+
+    def note(self) -> str | None:
+        """Say once, after it is found, that the text is not UTF-8, and where; None otherwise."""
+        if self._noted:
+            return None
+        if self.encoding.guessed:
+            self._noted = True
+            bad = first_not_utf8(self._read(0, SAMPLE_BYTES))
+            return (
+                f"{self.name} is not UTF-8 (byte {bad}); it is read as {self.encoding.name}, "
+                f"--encoding NAME says otherwise"
+            )
+        if self._decoder.first_bad is not None:
+            self._noted = True
+            return (
+                f"{self.name} is not {self.encoding.name} at byte {self._decoder.first_bad}; such "
+                f"bytes are read as windows-1252, --encoding NAME says otherwise"
+            )
+        return None
+
+    def paragraph(self, number: int) -> Paragraph | None:
+        """Paragraph of a number, from 0, or None past the end.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        """
+        while number >= self._marks[-1].paragraph and not self._complete:
+            self._read_block(len(self._marks) - 1)
+        if number >= self._marks[-1].paragraph or number < 0:
+            return None
+        block = bisect_right(self._marks, number, key=lambda mark: mark.paragraph) - 1
+        paragraphs = self._recent.get(block)
+        if paragraphs is None:
+            paragraphs = self._read_block(block)
+        return paragraphs[number - self._marks[block].paragraph]
+
+    def paragraph_at(self, character: int) -> int | None:
+        """Number of the paragraph that holds a character of the source, or None past the end."""
+        while character >= self._marks[-1].character and not self._complete:
+            self._read_block(len(self._marks) - 1)
+        block = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
+        block = min(max(block, 0), len(self._marks) - 2)
+        number = self._marks[block].paragraph
+        while (paragraph := self.paragraph(number)) is not None:
+            if character < paragraph.end:
+                return number
+            number += 1
+        return None
+
+    def progress(self, paragraph: int) -> float:
+        """About how much of the file stands before a paragraph that was read, 0 to 1."""
+        block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
+        return min(1.0, self._marks[block].offset / self.size)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+    def _read(self, offset: int, size: int) -> bytes:
+        try:
+            self._stream.seek(offset)
+            return self._stream.read(size)
+        except OSError as error:
+            raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
+
+    def _read_block(self, block: int) -> list[Paragraph]:
+        """Read the paragraphs of a block; mark where the next begins if that is not known yet."""
+        mark = self._marks[block]
+        paragraphs, after = self._parse(mark)
+        if block == len(self._marks) - 1:
+            if after is None:
+                self._complete = True
+                after = _Mark(
+                    mark.paragraph + len(paragraphs),
+                    paragraphs[-1].end if paragraphs else mark.character,
+                    self.size,
+                    (b"", 0),
+                    0,
+                    continues=False,
+                )
+            self._marks.append(after)
+        if len(self._recent) >= 3:
+            self._recent.pop(next(iter(self._recent)))
+        self._recent[block] = paragraphs
+        return paragraphs
+
+    def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
+        """Paragraphs from a mark on, at least one unless the text ends; and the mark after them."""
+        self._decoder.restore(mark.state)
+        codes = np.empty(0, np.uint32)
+        pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
+        offset, first = mark.offset, mark.character - mark.skip
+        while True:
+            state = self._decoder.state()
+            read = self._read(offset, BLOCK_BYTES)
+            final = offset + len(read) >= self.size or not read
+            pieces.append((codes.size, offset, state))
+            codes = np.concatenate(
+                (codes, to_codes(self._decoder.decode(read, offset, final=final)))
+            )
+            offset += len(read)
+            split = split_paragraphs(
+                codes[mark.skip :],
+                mark.character,
+                continues=mark.continues,
+                final=final,
+                keep_lines=self.keep_lines,
+            )
+            if final:
+                return split.paragraphs, None
+            if split.paragraphs:
+                break
+        used = mark.skip + split.used
+        before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
+        number = mark.paragraph + len(split.paragraphs)
+        after = _Mark(number, first + used, offset, state, used - before, split.continues)
+        return split.paragraphs, after
+
+
+def _named_encoding(name: str, sample: bytes) -> Encoding:
+    encoding = named_encoding(name, sample)
+    if encoding is None:
+        raise InputError(f"there is no text encoding {name!r}; try windows-1252, latin-1 or utf-16")
+    return encoding

@@ -1,0 +1,337 @@
+"""Translation by liblouis; the only module that imports its binding.
+
+liblouis is not thread-safe and the binding lets go of the interpreter's lock,
+so that two threads at once would crash the process: one lock guards every call.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import itertools
+import threading
+import unicodedata
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.cells import UNICODE_BLANK, Cells
+from vbraille.translate.paragraphs import SPACE, to_codes, to_text
+
+try:
+    import louis
+except ImportError as error:
+    raise VbrailleError(
+        "liblouis's Python binding is missing; install it (Debian: apt-get install python3-louis) "
+        "and run make setup"
+    ) from error
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.translate.paragraphs import Paragraph
+
+# Without metadata's help: what readers of the language expect. A bare query for French, say,
+# finds eight-dot computer braille.
+_DEFAULTS = {
+    ("en", 1): "en-ueb-g1.ctb",
+    ("en", 2): "en-ueb-g2.ctb",
+    ("fr", 1): "fr-bfu-comp6.utb",
+    ("fr", 2): "fr-bfu-g2.ctb",
+    ("de", 0): "de-g0.utb",
+    ("de", 1): "de-g1.ctb",
+    ("de", 2): "de-g2.ctb",
+}
+_USUAL_GRADE = {"en": 2, "fr": 1, "de": 2}
+
+_MODE = louis.dotsIO | louis.ucBrl
+# Invisible characters that carry no text unless a table knows them (joiners, variation selectors,
+# directions); and the byte-order mark, which liblouis 3.24 turns into a wrong "zero".
+_IGNORABLE = (
+    {0x034F, 0x061C, 0xFEFF, *range(0x200B, 0x2010), *range(0x202A, 0x202F)}
+    | {*range(0x2060, 0x2070), *range(0xFE00, 0xFE10)}
+    | {*range(0x180B, 0x1810), *range(0xE0000, 0xE0200)}
+)
+
+_lock = threading.RLock()
+# Calls of our own: the binding's would copy every number of the maps through Python lists.
+# Indexing a ctypes library makes a function object that the binding's own does not share.
+_translate = louis.liblouis["lou_translate"]
+_translate.argtypes = [ctypes.c_char_p, *[ctypes.c_void_p] * 9, ctypes.c_int]
+_list_tables = louis.liblouis["lou_listTables"]
+_list_tables.restype = ctypes.POINTER(ctypes.c_char_p)
+_get_info = louis.liblouis["lou_getTableInfo"]
+_get_info.argtypes = [ctypes.c_char_p, ctypes.c_char_p]
+_get_info.restype = ctypes.c_char_p
+
+
+@louis.LogCallback
+def _say_nothing(_level: int, _message: bytes) -> None:
+    """Keep liblouis off stderr; what goes wrong is said by an exception."""
+
+
+louis.liblouis.lou_registerLogCallback(_say_nothing)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class TableInfo:
+    """What a table's metadata say.
+
+    Parameters
+    ----------
+    name
+        File name, which is what `Table` takes.
+    title
+        Display name.
+    language
+        BCP 47 tag, such as ``fr`` or ``en-GB``; empty if unsaid.
+    grade
+        "0", "1", "2" …; empty if unsaid.
+    dots
+        6 or 8; 0 if unsaid.
+    kind
+        "literary" or "computer"; empty if unsaid.
+    """
+
+    name: str
+    title: str
+    language: str
+    grade: str
+    dots: int
+    kind: str
+
+
+@cache
+def list_tables() -> tuple[TableInfo, ...]:
+    """All tables that have metadata, by name."""
+    with _lock:  # asked once: liblouis 3.24 has nothing to free the answers with
+        paths = itertools.takewhile(bool, _list_tables())
+        return tuple(sorted(map(_table_info, paths)))
+
+
+def _table_info(path: bytes) -> TableInfo:
+    def value(key: str) -> str:
+        return (_get_info(path, key.encode()) or b"").decode("utf-8", "replace")
+
+    return TableInfo(
+        name=Path(path.decode()).name,
+        title=value("display-name") or value("index-name"),
+        language=value("language"),
+        grade=value("grade"),
+        dots=int(value("dots") or 0),
+        kind=value("type"),
+    )
+
+
+def find_table(language: str = "en", grade: int | None = None) -> str:
+    """Name of the table for a language and grade.
+
+    Parameters
+    ----------
+    language
+        BCP 47 tag; a region may follow ("en-GB").
+    grade
+        0 or 1 uncontracted, 2 and up contracted; None for the usual one.
+
+    Raises
+    ------
+    InputError
+        If there is none; it names the nearest.
+    """
+    wanted = language.lower().replace("_", "-")
+    usual = _USUAL_GRADE.get(wanted)
+    if usual is not None:
+        name = _DEFAULTS.get((wanted, usual if grade is None else grade))
+        if name is not None:
+            return name
+    tables = [t for t in list_tables() if _speaks(t, wanted)]
+    if not tables and "-" in wanted:
+        return find_table(wanted.rpartition("-")[0], grade)
+    if not tables:
+        tags = sorted({t.language for t in list_tables() if t.language})
+        raise InputError(f"there is no table for language {language!r}{_nearest(wanted, tags)}")
+    graded = [t for t in tables if grade is None or t.grade == str(grade)]
+    if not graded:
+        grades = ", ".join(sorted({t.grade for t in tables if t.grade})) or "none that is named"
+        raise InputError(
+            f"there is no grade {grade} for language {language!r}; there is {grades} "
+            f"(vbraille tables --language {language})"
+        )
+
+    def preference(t: TableInfo) -> tuple[bool, bool, bool, str]:
+        return t.kind == "computer", t.dots != 6, t.language.lower() != wanted, t.name
+
+    return min(graded, key=preference).name
+
+
+def _speaks(table: TableInfo, language: str) -> bool:
+    tag = table.language.lower()
+    return tag == language or tag.startswith(f"{language}-")
+
+
+def _nearest(name: str, names: list[str]) -> str:
+    close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
+    return f"; the nearest are {', '.join(close)}" if close else "; see vbraille tables"
+
+
+class Table:
+    """A compiled braille table.
+
+    Parameters
+    ----------
+    name
+        A file name of liblouis's (``en-ueb-g2.ctb``), a path, or several with
+        commas between, as liblouis has it.
+
+    Raises
+    ------
+    InputError
+        If there is no such table or liblouis cannot compile it; it names the nearest.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._list = name.encode("utf-8", "surrogateescape")
+        with _lock:
+            known = bool(name.strip()) and "\0" not in name
+            if not known or not louis.liblouis.lou_checkTable(self._list):
+                names = _table_files()
+                if name in names or Path(name).is_file():
+                    raise InputError(f"liblouis cannot use {name} as a braille table")
+                raise InputError(f"there is no braille table {name!r}{_nearest(name, names)}")
+        # Characters this table was seen to know; what stands for those it does not.
+        self._known = {SPACE}
+        self._instead: dict[int, NDArray[np.uint32]] = {}
+        self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
+        self._grow(1024)
+
+    @property
+    def info(self) -> TableInfo | None:
+        """The table's metadata, if it has some."""
+        return next((t for t in list_tables() if t.name == Path(self.name).name), None)
+
+    def translate(self, paragraph: Paragraph) -> Cells:
+        """Cells of a paragraph, none of its characters left out.
+
+        A character that the table does not know appears as liblouis spells it,
+        ``'\\xhhhh'``, even where the table would put a blank instead.
+        """
+        codes, source = paragraph.codes, paragraph.source
+        if not paragraph.alphabet <= self._known:
+            codes, source = self._substitute(codes, source)
+        masks, inputs = self._call(codes, _MODE)
+        if not masks.size:
+            return Cells(masks, np.empty(0, np.int64), paragraph.end)
+        return Cells(masks, source[inputs], paragraph.end)
+
+    def _grow(self, characters: int) -> None:
+        cells = characters * louis.outlenMultiplier
+        self._room = characters
+        self._out = np.empty(cells, np.uint32 if louis.wideCharBytes == 4 else np.uint16)
+        self._inputs = np.empty(cells, np.int32)
+        self._outputs = np.empty(cells, np.int32)
+
+    def _call(
+        self, codes: NDArray[np.uint32], mode: int
+    ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        """Translate code points; dot masks, and of each the index of its character."""
+        if louis.wideCharBytes == 2:  # liblouis built with UTF-16: the places are of its units
+            return self._call_utf16(codes, mode)
+        return self._call_units(np.ascontiguousarray(codes), mode)
+
+    def _call_utf16(
+        self, codes: NDArray[np.uint32], mode: int
+    ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        units = np.frombuffer(to_text(codes).encode("utf-16-le", "surrogatepass"), np.uint16)
+        character = np.repeat(np.arange(codes.size, dtype=np.int32), 1 + (codes > 0xFFFF))
+        masks, inputs = self._call_units(units, mode)
+        return masks, character[inputs]
+
+    def _call_units(
+        self, units: NDArray[np.unsignedinteger], mode: int
+    ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        if units.size == 0:
+            return np.empty(0, np.uint8), np.empty(0, np.int32)
+        with _lock:
+            if units.size > self._room:
+                self._grow(2 * units.size)
+            self._in_length.value = units.size
+            # No more than this text can need: liblouis clears and copies all that it is offered.
+            self._out_length.value = units.size * louis.outlenMultiplier
+            done = _translate(
+                self._list,
+                units.ctypes.data,
+                ctypes.addressof(self._in_length),
+                self._out.ctypes.data,
+                ctypes.addressof(self._out_length),
+                None,
+                None,
+                self._outputs.ctypes.data,
+                self._inputs.ctypes.data,
+                None,
+                mode,
+            )
+            if not done or self._in_length.value != units.size:
+                raise VbrailleError(f"liblouis could not translate a text with {self.name}")
+            cells = self._out_length.value
+            masks = self._out[:cells].astype(np.uint8)  # the low byte of U+2800-28FF
+            # Never decreasing, and none below 0, whatever liblouis says of dropped characters.
+            inputs = np.maximum(np.maximum.accumulate(self._inputs[:cells]), 0)
+        return masks, inputs
+
+    def _substitute(
+        self, codes: NDArray[np.uint32], source: NDArray[np.int64]
+    ) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
+        """Put what the table can write for what it cannot."""
+        pieces: list[NDArray[np.uint32]] = []
+        places: list[NDArray[np.int64]] = []
+        done = 0
+        for at, code in enumerate(codes.tolist()):
+            if code in self._known:
+                continue
+            instead = self._instead.get(code)
+            if instead is None:
+                instead = self._probe(code)
+                if instead is None:
+                    self._known.add(code)
+                    continue
+                self._instead[code] = instead
+            pieces += (codes[done:at], instead)
+            places += (source[done:at], np.repeat(source[at], instead.size))
+            done = at + 1
+        return (
+            np.concatenate((*pieces, codes[done:])),
+            np.concatenate((*places, source[done:])),
+        )
+
+    def _probe(self, code: int) -> NDArray[np.uint32] | None:
+        """What to hand liblouis for a character; None for the character itself."""
+        if code == 0xFEFF:
+            return np.empty(0, np.uint32)
+        if code and self._writes(code):
+            return None
+        if code in _IGNORABLE:
+            return np.empty(0, np.uint32)
+        character = to_text(np.array([code], np.uint32))
+        if character.isspace():
+            return np.array([SPACE], np.uint32)
+        plain = to_codes(unicodedata.normalize("NFKC", character))
+        if code not in plain and all(c and self._writes(c) for c in plain.tolist()):
+            return plain
+        spelled, _ = self._call(np.array([code], np.uint32), _MODE) if code else (None, None)
+        if spelled is not None and spelled.any():
+            return None
+        return to_codes(f"'\\x{code:04x}'")
+
+    def _writes(self, code: int) -> bool:
+        """Whether the table has dots of its own for a character."""
+        masks, _ = self._call(np.array([code], np.uint32), _MODE | louis.noUndefined)
+        return bool(masks.any()) or (masks.size > 0 and code == UNICODE_BLANK)
+
+
+def _table_files() -> list[str]:
+    return [table.name for table in list_tables()]

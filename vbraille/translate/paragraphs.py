@@ -1,0 +1,277 @@
+"""Characters into paragraphs: lines joined, white space folded, every place remembered."""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+# A longer paragraph is handed on in pieces: no text may grow with the file.
+PIECE_CHARACTERS = 8_192
+
+SPACE = 0x20
+NO_BREAK_SPACE = 0xA0
+
+_TEXT, _BLANK, _NEWLINE, _BREAK, _DROPPED = range(5)
+_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all above
+_KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = (
+    _BLANK
+)
+_KINDS[[0x0A, 0x0B, 0x0D, 0x85, 0x2028]] = _NEWLINE
+_KINDS[[0x0C, 0x2029]] = _BREAK
+_KINDS[0xAD] = _DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
+_NO_BREAK_SPACES = (0x2007, 0x202F)
+_BYTE_ORDER_MARK = 0xFEFF
+_COMBINING = frozenset((*range(0x300, 0x370), 0x3099, 0x309A))
+# Words before which a hyphen stands for the rest of the word before it.
+_SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Paragraph:
+    """A paragraph of text, or a piece of a very long one.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Its characters as code points: hard-wrapped lines joined, white space folded.
+    source : int64[n]
+        Where each stands in the document, counted in characters from its first.
+    end : int
+        One past the document's last character that belongs to it.
+    continues : bool
+        Whether this piece goes on where the one before it broke off.
+    alphabet : frozenset of int
+        Code points among which all of its own are. They are gathered once for
+        many paragraphs: array scans between calls of liblouis slow it by a
+        fifth on processors that lower their clock for wide vectors.
+    """
+
+    codes: NDArray[np.uint32]
+    source: NDArray[np.int64]
+    end: int
+    continues: bool
+    alphabet: frozenset[int]
+
+    @property
+    def text(self) -> str:
+        """The paragraph as a string."""
+        return to_text(self.codes)
+
+    def __add__(self, piece: Paragraph) -> Paragraph:
+        return Paragraph(
+            np.concatenate((self.codes, piece.codes)),
+            np.concatenate((self.source, piece.source)),
+            piece.end,
+            self.continues,
+            self.alphabet | piece.alphabet,
+        )
+
+    def since(self, character: int) -> Paragraph:
+        """The part from a source character on."""
+        at = int(np.searchsorted(self.source, character))
+        return Paragraph(self.codes[at:], self.source[at:], self.end, True, self.alphabet)
+
+
+def to_codes(text: str) -> NDArray[np.uint32]:
+    """Code points of a string, lone surrogates included."""
+    return np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
+
+
+def to_text(codes: NDArray[np.uint32]) -> str:
+    """String of code points, lone surrogates included."""
+    return codes.astype("<u4").tobytes().decode("utf-32-le", "surrogatepass")
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """What `split_paragraphs` made of a stretch of characters.
+
+    Parameters
+    ----------
+    paragraphs
+        The paragraphs that are complete.
+    used
+        Characters up to the first that belongs to none of them.
+    continues
+        Whether that one goes on with the last paragraph.
+    """
+
+    paragraphs: list[Paragraph]
+    used: int
+    continues: bool
+
+
+def split_paragraphs(
+    codes: NDArray[np.uint32],
+    first: int,
+    *,
+    continues: bool = False,
+    final: bool = True,
+    keep_lines: bool = False,
+) -> Split:
+    """Cut a stretch of characters into paragraphs.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Code points.
+    first
+        Place of the first of them in the document.
+    continues
+        Whether it goes on with an earlier piece of a paragraph.
+    final
+        Whether the text ends here; else the last paragraph is left for later.
+    keep_lines
+        Make a paragraph of every line instead.
+    """
+    kinds = _KINDS[np.minimum(codes, _KINDS.size - 1)]
+    kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
+    text = np.flatnonzero(kinds == _TEXT)
+    if text.size == 0:
+        return Split([], codes.size, continues)
+    newline = (kinds == _NEWLINE) | (kinds == _BREAK)
+    newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
+    newlines = _between(newline, text)
+    codes = codes.copy()
+    for space in _NO_BREAK_SPACES:
+        codes[codes == space] = NO_BREAK_SPACE
+    if keep_lines:
+        keep = _keep_blanks(kinds)
+        codes[keep & (kinds == _BLANK)] = SPACE
+        ends = newlines > 0
+        line_starts = np.maximum.accumulate(
+            np.where(newline | (codes == 0x0A), np.arange(codes.size), -1)
+        )
+        starts = line_starts[text] + 1
+        empty = newlines > 1
+    else:
+        ends = (newlines > 1) | (_between(kinds == _BREAK, text) > 0)
+        gaps = np.flatnonzero((_between((kinds != _TEXT) & (kinds != _DROPPED), text) > 0) & ~ends)
+        spaces = text[gaps] + 1
+        spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
+        codes[spaces] = SPACE
+        keep = kinds == _TEXT
+        keep[spaces] = True
+        starts = text
+        empty = np.zeros(text.size - 1, bool)
+    kept = np.flatnonzero(keep)
+    alphabet = frozenset(np.unique(codes[kept]).tolist())
+
+    def paragraph(start: int, end: int, continues: bool) -> Paragraph:
+        return _paragraph(codes[kept[start:end]], kept[start:end] + first, continues, alphabet)
+
+    last = np.flatnonzero(ends)
+    begin = np.concatenate((starts[:1], starts[last + 1]))
+    stop = np.concatenate((text[last] + 1, text[-1:] + 1))
+    bounds = np.searchsorted(kept, [begin, stop]).T.tolist()
+    is_empty = [*empty[last].tolist(), False]
+    paragraphs: list[Paragraph] = []
+    for n, (start, end) in enumerate(bounds):
+        complete = final or n < len(bounds) - 1
+        rest = start
+        for cut in _cuts(codes, kept, start, end):
+            paragraphs.append(paragraph(rest, cut, continues))
+            rest, continues = cut, True
+        if not complete:
+            return Split(
+                paragraphs, int(begin[-1]) if rest == start else int(kept[rest]), continues
+            )
+        paragraphs.append(paragraph(rest, end, continues))
+        continues = False
+        if is_empty[n]:
+            nothing = np.empty(0, np.int64)
+            at = first + int(stop[n])
+            paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
+    return Split(paragraphs, codes.size, continues=False)
+
+
+def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
+    """How many marked characters stand between each two neighbouring text characters."""
+    return np.diff(np.cumsum(marked)[text])
+
+
+def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Text, and the blanks that have text after them on their line."""
+    places = np.arange(kinds.size)
+    text = np.where(kinds == _TEXT, places, kinds.size)
+    newline = np.where((kinds == _NEWLINE) | (kinds == _BREAK), places, kinds.size)
+    next_text = np.minimum.accumulate(text[::-1])[::-1]
+    next_newline = np.minimum.accumulate(newline[::-1])[::-1]
+    return (kinds == _TEXT) | ((kinds == _BLANK) & (next_text < next_newline))
+
+
+def _joins_words(
+    codes: NDArray[np.uint32],
+    text: NDArray[np.intp],
+    gaps: NDArray[np.intp],
+    newlines: NDArray[np.intp],
+) -> NDArray[np.bool_]:
+    """Whether a line break stands within a word, after its hyphen, so that no space belongs there.
+
+    After a soft hyphen always; after a hyphen between letters, but for a
+    hyphen that stands for the rest of a word ("pre- and post-war").
+    """
+    joins = (codes[text[gaps] + 1] == 0xAD) & (newlines[gaps] == 1)
+    hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
+    for n in np.flatnonzero(hyphens):
+        at, after = text[gaps[n]], text[gaps[n] + 1]
+        word = to_text(codes[after : after + 5])
+        suspended = word.split(maxsplit=1)[0] in _SUSPENDED
+        joins[n] = at > 0 and chr(codes[at - 1]).isalpha() and word[0].isalpha() and not suspended
+    return joins
+
+
+def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: int) -> Iterator[int]:
+    """Where to cut a paragraph that is too long: after a sentence, else a space, else anywhere."""
+    while end - start > PIECE_CHARACTERS:
+        window = to_text(codes[kept[start : start + PIECE_CHARACTERS + 1]])
+        sentence = max(window.rfind(mark) for mark in (". ", "! ", "? ", "\u2026 "))
+        if sentence > PIECE_CHARACTERS // 2:
+            start += sentence + 2
+        elif (space := window.rfind(" ")) > 0:
+            start += space + 1
+        else:
+            start += PIECE_CHARACTERS
+        if start >= end:
+            return
+        yield start
+
+
+def _paragraph(
+    codes: NDArray[np.uint32],
+    source: NDArray[np.int64],
+    continues: bool,
+    alphabet: frozenset[int],
+) -> Paragraph:
+    end = int(source[-1]) + 1
+    if not alphabet.isdisjoint(_COMBINING):
+        codes, source = _compose(codes, source)
+        alphabet = frozenset(codes.tolist())
+    return Paragraph(codes, source, end, continues, alphabet)
+
+
+def _compose(
+    codes: NDArray[np.uint32], source: NDArray[np.int64]
+) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
+    """Letters with their combining accents as one character where Unicode has one.
+
+    Many tables know é and not e followed by U+0301.
+    """
+    composed: list[str] = []
+    places: list[int] = []
+    for character, place in zip(to_text(codes), source.tolist(), strict=True):
+        together = unicodedata.normalize("NFC", composed[-1] + character) if composed else ""
+        if unicodedata.combining(character) and len(together) == 1:
+            composed[-1] = together
+        else:
+            composed.append(character)
+            places.append(place)
+    return to_codes("".join(composed)), np.array(places, np.int64)
