@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from vbraille.translate.cells import Cells
 from vbraille.translate.paragraphs import NO_BREAK_SPACE, to_text
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
     from vbraille.geometry import Geometry
     from vbraille.translate.book import Book
-    from vbraille.translate.cells import Cells
     from vbraille.translate.paragraphs import Paragraph
 
 INDENT = 2
@@ -57,6 +57,11 @@ class Line:
 
     def __len__(self) -> int:
         return self.indent + len(self.cells)
+
+    @property
+    def printed(self) -> Cells:
+        """The line as it would be embossed: its indent and its cells, without the way back."""
+        return Cells.bare(self.masks)
 
     @property
     def text(self) -> str:

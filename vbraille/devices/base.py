@@ -147,7 +147,7 @@ class Device(ABC):
 
     def rest(self) -> None:
         """Send every actuator to rest at once."""
-        import numpy as np  # noqa: PLC0415 - builders may import this module without it
+        import numpy as np
 
         self.write(np.zeros((self.info.rows, self.info.columns)))
 

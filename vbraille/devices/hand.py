@@ -1,34 +1,300 @@
-"""How a finger moves along a line: made-up hands, and recorded ones."""
+"""How a finger moves along a line: sweeping, reading as people do, or as recorded.
+
+A made-up hand says by where it goes that it is done with a line: it touches
+the end once, as the last thing before it returns to the start. Reading again,
+it turns round short of both.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+import numpy as np
 
+from vbraille.devices.motion import Motion, Way
+from vbraille.devices.recorded import MOST_MM, Recorded, load_recorded
+from vbraille.errors import InputError
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Motion:
-    """A way along the surface, straight between its knots.
-
-    Parameters
-    ----------
-    t_s : float64[n]
-        Time of each knot, from 0, increasing.
-    x_mm : float64[n]
-        Where the array's left column is then.
-    """
-
-    t_s: NDArray[np.float64]
-    x_mm: NDArray[np.float64]
+SPEED_BOUNDS_MM_S = (0.1, 1000.0)
+# Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
+RETURN_MM_S = 250.0
+EMPTY_LINE_S = 0.25
+# A hand that is not done comes no nearer to the start, once away from it, and turns no nearer to
+# the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
+# start" for the end of a line: this is what tells reading again from being done.
+CLEAR_MM = 1.25
+TURN_SHORT = (0.01, 0.10)  # passes but the last turn round at 90 to 99 % of the way
+SLOW_BACK_CHANCE = 0.3  # of feeling the line on the way back too, before reading it again
+LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # a shorter line has no room for that: one pass
+LEAST_MOVE_MM = 0.05  # what is left of a way when it is shorter is gone in the same movement
 
 
 class Hand(Protocol):
     """A hand that reads line after line."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """The next line: from where the hand is, at start, to its end and back to the start."""
+        """The next line: from where the hand is, at start, to its end and back to the start.
+
+        Between the two it never leaves them. For an empty line, start = end,
+        it waits a little.
+
+        Raises
+        ------
+        ValueError
+            If a place is beyond `MOST_MM`, or the end is left of the start.
+        """
         ...
+
+
+def _along(start_mm: float, end_mm: float) -> Way:
+    """A way that begins at the start of a line, once that is seen to be one."""
+    if not -MOST_MM <= start_mm <= end_mm <= MOST_MM:
+        raise ValueError(
+            f"a line is from {start_mm:g} to {end_mm:g} mm; "
+            f"it must go right, within {-MOST_MM:g} to {MOST_MM:g} mm"
+        )
+    return Way(start_mm)
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A hand at constant speed; back at `RETURN_MM_S`.
+
+    Parameters
+    ----------
+    speed_mm_s
+        To the right.
+
+    Raises
+    ------
+    ValueError
+        If the speed is out of `SPEED_BOUNDS_MM_S`.
+    """
+
+    speed_mm_s: float
+
+    def __post_init__(self) -> None:
+        low, high = SPEED_BOUNDS_MM_S
+        if not low <= self.speed_mm_s <= high:
+            raise ValueError(
+                f"sweep speed is {self.speed_mm_s:g} mm/s; it must be {low:g} to {high:g} mm/s"
+            )
+
+    def read_line(self, start_mm: float, end_mm: float) -> Motion:
+        """The next line; see `Hand`."""
+        way = _along(start_mm, end_mm)
+        if start_mm == end_mm:
+            way.wait(EMPTY_LINE_S)
+        way.move(end_mm, self.speed_mm_s)
+        way.move(start_mm, RETURN_MM_S)
+        return way.motion()
+
+
+@dataclass(frozen=True, slots=True)
+class Habits:
+    """How somebody reads: in movements of constant speed, one after the other.
+
+    Pairs bound what is drawn evenly. Chances are after each movement to the right.
+
+    Parameters
+    ----------
+    speed_mm_s
+        Median over time of the speed to the right.
+    spread
+        Standard deviation of the speed's natural logarithm.
+    speed_bounds_mm_s
+        No movement is slower or faster, quick returns apart.
+    movement_s
+        How long a movement lasts.
+    pause_chance, pause_s
+        Of standing still, and how long.
+    regression_chance, regression_mm
+        Of a step back, and how far.
+    rescan_chance, rescan_mm
+        Of going back to feel one cell or two again, and how far for each.
+    passes
+        How often a line is read.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or steps back take up half of the way.
+    """
+
+    speed_mm_s: float
+    spread: float
+    speed_bounds_mm_s: tuple[float, float]
+    movement_s: tuple[float, float]
+    pause_chance: float
+    pause_s: tuple[float, float]
+    regression_chance: float
+    regression_mm: tuple[float, float]
+    rescan_chance: float = 0.0
+    rescan_mm: tuple[float, float] = (11.0, 22.0)
+    passes: tuple[int, int] = (1, 1)
+
+    def __post_init__(self) -> None:
+        pairs = ("movement_s", "pause_s", "regression_mm", "rescan_mm", "passes")
+        for name in ("speed_bounds_mm_s", *pairs):
+            low, high = getattr(self, name)
+            if not 0 < low <= high < math.inf:
+                raise ValueError(f"{name} is {low:g} to {high:g}; it must be above 0, and in order")
+        low, high = self.speed_bounds_mm_s
+        if not low <= self.speed_mm_s <= high:
+            raise ValueError(f"speed_mm_s is {self.speed_mm_s:g}; it must be {low:g} to {high:g}")
+        for name in ("spread", "pause_chance", "regression_chance", "rescan_chance"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 to 1")
+        forth_mm = self.speed_mm_s * sum(self.movement_s) / 2
+        back_mm = self.regression_chance * sum(self.regression_mm) / 2
+        back_mm += self.rescan_chance * sum(self.rescan_mm) / 2
+        if back_mm > forth_mm / 2:
+            raise ValueError(
+                f"steps back are {back_mm:g} mm a movement; "
+                f"they must be at most {forth_mm / 2:g} mm, half of the movement"
+            )
+
+
+# All numbers are ours. 8 mm/s is chosen after Lévesque 2009, ch. 4 (12 s for a string of 55.5 mm:
+# some 5 mm/s net, the string read again and again), 24 to 69 mm/s after common measurements of
+# fluent reading on paper; 11 mm is about a cell of both devices (10.48 and 11.1 mm).
+DEVICE = Habits(
+    speed_mm_s=8.0,
+    spread=0.3,
+    speed_bounds_mm_s=(3.0, 21.0),
+    movement_s=(0.15, 0.5),
+    pause_chance=0.02,
+    pause_s=(0.2, 0.8),
+    regression_chance=0.02,
+    regression_mm=(2.0, 10.0),
+    rescan_chance=0.01,
+    passes=(2, 3),
+)
+FLUENT = Habits(
+    speed_mm_s=41.0,
+    spread=0.25,
+    speed_bounds_mm_s=(24.0, 69.0),
+    movement_s=(0.1, 0.3),
+    pause_chance=0.03,
+    pause_s=(0.1, 0.3),
+    regression_chance=0.03,
+    regression_mm=(2.0, 10.0),
+)
+
+
+class HumanHand:
+    """A hand that reads by habits; the same seed reads the same lines in the same way.
+
+    Parameters
+    ----------
+    habits
+        `DEVICE`, `FLUENT`, or others.
+    seed
+        0 or more; ValueError if it is negative.
+    """
+
+    def __init__(self, habits: Habits, seed: int = 1) -> None:
+        if seed < 0:
+            raise ValueError(f"seed is {seed}; it must be 0 or more")
+        self.habits = habits
+        self._random = np.random.default_rng(seed)
+
+    def read_line(self, start_mm: float, end_mm: float) -> Motion:
+        """The next line; see `Hand`. Each call draws further."""
+        way = _along(start_mm, end_mm)
+        length_mm, passes = end_mm - start_mm, 1
+        if length_mm >= LEAST_REREAD_MM:
+            passes = int(self._random.integers(*self.habits.passes, endpoint=True))
+        for _ in range(passes - 1):
+            short_mm = length_mm * self._random.uniform(*TURN_SHORT)
+            self._read(way, start_mm, end_mm - max(short_mm, CLEAR_MM))
+            self._pause(way)
+            back_mm = start_mm + CLEAR_MM * self._random.uniform(1, 2)
+            if self._random.random() < SLOW_BACK_CHANCE:
+                self._go(way, back_mm)
+            else:
+                way.move(back_mm, RETURN_MM_S)
+        self._read(way, start_mm, end_mm)
+        self._pause(way)
+        way.move(start_mm, RETURN_MM_S)
+        return way.motion()
+
+    def _read(self, way: Way, start_mm: float, to_mm: float) -> None:
+        """One pass to the right, with what holds it up."""
+        habits = self.habits
+        self._step(way, to_mm)
+        while way.x_mm < to_mm:
+            drawn = self._random.random(3)
+            if drawn[0] < habits.pause_chance:
+                self._pause(way)
+            back_mm = 0.0
+            if drawn[1] < habits.regression_chance:
+                back_mm = self._random.uniform(*habits.regression_mm)
+            elif drawn[2] < habits.rescan_chance:
+                back_mm = float(self._random.choice(habits.rescan_mm))
+            if way.x_mm - back_mm >= start_mm + CLEAR_MM:
+                self._go(way, way.x_mm - back_mm)
+            self._step(way, to_mm)
+
+    def _go(self, way: Way, to_mm: float) -> None:
+        while way.x_mm != to_mm:
+            self._step(way, to_mm)
+
+    def _step(self, way: Way, to_mm: float) -> None:
+        """One movement at a speed of its own."""
+        habits = self.habits
+        low, high = habits.speed_bounds_mm_s
+        drawn = habits.speed_mm_s * math.exp(habits.spread * self._random.standard_normal())
+        speed_mm_s = min(max(drawn, low), high)
+        step_mm = speed_mm_s * self._random.uniform(*habits.movement_s)
+        ahead_mm = to_mm - way.x_mm
+        if abs(ahead_mm) - step_mm >= LEAST_MOVE_MM:
+            way.move(way.x_mm + math.copysign(step_mm, ahead_mm), speed_mm_s)
+        else:
+            way.move(to_mm, speed_mm_s)
+
+    def _pause(self, way: Way) -> None:
+        way.wait(self._random.uniform(*self.habits.pause_s))
+
+
+def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
+    """Hand of a spec.
+
+    Parameters
+    ----------
+    spec
+        ``sweep:SPEED`` in mm/s, ``device``, ``fluent`` or ``recorded:FILE``.
+    seed
+        Of the two that are drawn.
+
+    Raises
+    ------
+    InputError
+        If there is no such hand, a number is out of range, or the file cannot be used.
+    """
+    kind, _, rest = spec.partition(":")
+    try:
+        if spec == "device":
+            return HumanHand(DEVICE, seed)
+        if spec == "fluent":
+            return HumanHand(FLUENT, seed)
+        if kind == "recorded" and rest:
+            return load_recorded(rest)
+        if kind == "sweep":
+            return Sweep(_speed(rest))
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    raise InputError(
+        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, device, fluent or recorded:FILE"
+    )
+
+
+def _speed(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        least, most = SPEED_BOUNDS_MM_S
+        wanted = f"it must be a number, {least:g} to {most:g} mm/s"
+        raise ValueError(f"sweep speed is {text!r}; {wanted}") from None

@@ -55,11 +55,11 @@ class ActuatorArray:
 
     def column_offsets_mm(self) -> NDArray[np.float64]:
         """Where each column is, right of the left one; float64[columns]."""
-        return np.arange(self.columns) * self.column_pitch_mm
+        return np.arange(self.columns, dtype=np.float64) * self.column_pitch_mm
 
     def row_offsets_mm(self) -> NDArray[np.float64]:
         """Where each row is, towards the reader from row 0; float64[rows]."""
-        return np.arange(self.rows) * self.row_pitch_mm
+        return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
 
 
 # Lévesque 2009, ch. 3: one row, pitch ε = 0.7 mm; the row pitch has no meaning.

@@ -180,9 +180,16 @@ def path(work, gains, x_mm, out):
 
 @_compiled
 def blend(before, after, share, out):
-    """Fill ``out`` with (1 - share) · before + share · after, frames of one shape."""
+    """Fill ``out`` with (1 - share) · before + share · after, frames of one shape.
+
+    Reckoned from the nearer end, so that both ends are exact and rounding never
+    goes beyond them.
+    """
     rows, columns = out.shape
     for row in range(rows):
         for column in range(columns):
-            held = before[row, column]
-            out[row, column] = held + share * (after[row, column] - held)
+            change = after[row, column] - before[row, column]
+            if share < 0.5:
+                out[row, column] = before[row, column] + share * change
+            else:
+                out[row, column] = after[row, column] - (1.0 - share) * change

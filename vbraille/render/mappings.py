@@ -9,9 +9,12 @@ follow its author's later published code.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 NONE = -1
 DOT_ROWS = 4  # dots 7 and 8 make a fourth row

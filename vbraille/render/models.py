@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 from vbraille import geometry
-from vbraille.geometry import Geometry
 from vbraille.render.arrays import STRESS2_ARRAY, VBD_ARRAY, ActuatorArray
 from vbraille.render.mappings import MAPPINGS, Mapping, single_row
 from vbraille.render.tuning import Tuning
+
+if TYPE_CHECKING:
+    from vbraille.geometry import Geometry
 
 
 class Profile(IntEnum):
@@ -37,6 +40,8 @@ class Model:
         What options call it, and what people do.
     array
         Its actuators.
+    rest_side
+        Where they stand at deflection 0, "left" or "right".
     profile
         Its dots.
     mapping, geometry, tuning
@@ -46,6 +51,7 @@ class Model:
     name: str
     title: str
     array: ActuatorArray
+    rest_side: str
     profile: Profile
     mapping: Mapping
     geometry: Geometry
@@ -53,12 +59,20 @@ class Model:
 
 
 VBD = Model(
-    "vbd", "VBD", VBD_ARRAY, Profile.HALF_SINE, single_row(1), geometry.VBD, Tuning(texture=0.0)
+    "vbd",
+    "VBD",
+    VBD_ARRAY,
+    "left",
+    Profile.HALF_SINE,
+    single_row(1),
+    geometry.VBD,
+    Tuning(texture=0.0),
 )
 STRESS2 = Model(
     "stress2",
     "STReSS²",
     STRESS2_ARRAY,
+    "right",
     Profile.RAISED_COSINE,
     MAPPINGS["alternate"],
     geometry.STRESS2,

@@ -113,9 +113,18 @@ class Renderer:
         -------
         float32[n, rows, columns]
             Deflections, 0 … 1.
+
+        Raises
+        ------
+        ValueError
+            If ``out`` has not that shape.
         """
+        x_mm = np.ascontiguousarray(x_mm, np.float64)
+        shape = (x_mm.size, *self.array.shape)
         if out is None:
-            out = np.empty((len(x_mm), *self.array.shape), np.float32)
+            out = np.empty(shape, np.float32)
+        elif out.shape != shape:
+            raise ValueError(f"the frames have shape {out.shape}; it must be {shape}")
         kernels.path(self._work, self._gains, x_mm, out)
         return out
 

@@ -6,6 +6,7 @@ already passed is found again by seeking, so that a book need not fit in memory.
 
 from __future__ import annotations
 
+import hashlib
 import io
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -198,6 +199,11 @@ class Document:
         block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
         return min(1.0, self._marks[block].offset / self.size)
 
+    def sha256(self) -> str:
+        """SHA-256 of the bytes, in hexadecimal."""
+        self._stream.seek(0)
+        return hashlib.file_digest(self._stream, "sha256").hexdigest()  # pyright: ignore
+
     def close(self) -> None:
         """Close the file."""
         self._stream.close()
@@ -231,14 +237,15 @@ class Document:
         return paragraphs
 
     def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
-        """Paragraphs from a mark on, at least one unless the text ends; and the mark after them."""
+        """Paragraphs from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
         codes = np.empty(0, np.uint32)
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
         offset, first = mark.offset, mark.character - mark.skip
         while True:
             state = self._decoder.state()
-            read = self._read(offset, BLOCK_BYTES)
+            # Twice as much every time: what is not done with is gone over again.
+            read = self._read(offset, max(BLOCK_BYTES, offset - mark.offset))
             final = offset + len(read) >= self.size or not read
             pieces.append((codes.size, offset, state))
             codes = np.concatenate(
@@ -254,7 +261,7 @@ class Document:
             )
             if final:
                 return split.paragraphs, None
-            if split.paragraphs:
+            if split.paragraphs or split.used:
                 break
         used = mark.skip + split.used
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]

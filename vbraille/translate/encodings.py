@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 SAMPLE_BYTES = 65_536
 
+_WIDE = ("utf-16", "utf-32")
+
 _MARKS = (  # UTF-32 before UTF-16: its little-endian mark begins with the other's
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -19,27 +21,33 @@ _MARKS = (  # UTF-32 before UTF-16: its little-endian mark begins with the other
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-# The beginnings of files that people mistake for text.
+# The beginnings of files that people mistake for text; none is one that a text may have.
 _MAGIC = {
     b"\x89PNG": "a PNG image",
     b"\xff\xd8\xff": "a JPEG image",
-    b"GIF8": "a GIF image",
+    b"GIF87a": "a GIF image",
+    b"GIF89a": "a GIF image",
     b"PK\x03\x04": "a zip archive (a .docx, .odt or .epub is one too)",
     b"PK\x05\x06": "a zip archive",
     b"%PDF-": "a PDF document",
     b"\x1f\x8b": "a gzip archive",
-    b"BZh": "a bzip2 archive",
+    **{b"BZh%d1AY&SY" % level: "a bzip2 archive" for level in range(1, 10)},
     b"\xfd7zXZ": "an xz archive",
     b"7z\xbc\xaf": "a 7-zip archive",
     b"\x7fELF": "a program",
     b"\xd0\xcf\x11\xe0": "an old Office document",
-    b"RIFF": "a RIFF media file",
-    b"OggS": "an Ogg media file",
-    b"ID3": "an MP3 file",
+    b"OggS\0": "an Ogg media file",
+    b"ID3\2": "an MP3 file",
+    b"ID3\3": "an MP3 file",
+    b"ID3\4": "an MP3 file",
     b"\x89HDF": "an HDF5 file",
-    b"SQLite format 3": "a database",
+    b"SQLite format 3\0": "a database",
 }
-_TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\x1a\x1b\x85")
+_TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\x1a\x1b")
+# Text encodings to Python, and yet not what a text file is written in.
+_NO_FILE_ENCODINGS = {"idna", "punycode", "unicode-escape", "raw-unicode-escape"}
+# A shorter text says too little to tell DOS and Mac code pages from windows-1252.
+_TELLING_BYTES = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +78,8 @@ def binary_kind(sample: bytes) -> str | None:
         return None
     controls = sum(sample.count(c) for c in range(32) if c not in _TEXT_CONTROLS)
     zeros = sample.count(0)
-    # In UTF-16 or UTF-32 of a Western text every second byte or more is 0, and hardly one another
-    # control; a few stray ones are no reason to refuse a text.
-    if controls - zeros > len(sample) / 20 or (zeros > len(sample) / 20 and not _is_wide(sample)):
+    few = 1 + len(sample) / 20  # stray ones are no reason to refuse a text
+    if controls - zeros > few or (zeros > few and _wide(sample) is None):
         return "binary data"
     return None
 
@@ -88,8 +95,9 @@ def find_encoding(sample: bytes) -> Encoding:
     for mark, name in _MARKS:
         if sample.startswith(mark):
             return Encoding(name, skip=len(mark))
-    if _is_wide(sample):
-        return Encoding(_detect(sample), guessed=True)
+    wide = _wide(sample)
+    if wide is not None:
+        return Encoding(wide, guessed=True)
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         decoder.decode(sample, final=len(sample) < SAMPLE_BYTES)
@@ -100,10 +108,26 @@ def find_encoding(sample: bytes) -> Encoding:
     return Encoding("utf-8")
 
 
-def _is_wide(sample: bytes) -> bool:
-    """Whether zeros stand where UTF-16 or UTF-32 of a mostly Western text has them."""
-    even, odd = sample[0::2].count(0), sample[1::2].count(0)
-    return bool(sample) and max(even, odd) > len(sample) / 2 * 0.4
+def _wide(sample: bytes) -> str | None:
+    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; None otherwise.
+
+    chardet takes such a text for another, or in the wrong order, if it is short.
+    """
+    if sample.count(0) < 2:  # one may be a stray
+        return None
+    zeros = [
+        quarter.count(0) / max(len(quarter), 1) for quarter in (sample[n::4] for n in range(4))
+    ]
+    if zeros[0] < 0.1 and min(zeros[2:]) > 0.9:
+        return "utf-32-le"
+    if zeros[3] < 0.1 and min(zeros[:2]) > 0.9:
+        return "utf-32-be"
+    even, odd = (half.count(0) / max(len(half), 1) for half in (sample[0::2], sample[1::2]))
+    if odd > 0.4 and even < odd / 4:
+        return "utf-16-le"
+    if even > 0.4 and odd < even / 4:
+        return "utf-16-be"
+    return None
 
 
 def _mostly_utf8(sample: bytes) -> bool:
@@ -117,17 +141,16 @@ def _mostly_utf8(sample: bytes) -> bool:
 def _detect(sample: bytes) -> str:
     import chardet
 
-    found = chardet.detect(sample)["encoding"] or "windows-1252"
+    eras = chardet.EncodingEra
+    short = len(sample) < _TELLING_BYTES
+    likely = eras.MODERN_WEB | eras.LEGACY_ISO if short else eras.ALL
+    found = chardet.detect(sample, encoding_era=likely)["encoding"] or "windows-1252"
     try:
         name = codecs.lookup(found).name
     except LookupError:
         return "cp1252"
     # A detector that says ASCII or UTF-8 of what is not is no help.
-    if name in {"ascii", "utf-8", "iso8859-1"}:
-        return "cp1252"
-    if name in {"utf-16", "utf-32"}:  # without a mark these would be read in this machine's order
-        return f"{name}-{'be' if sample[0::2].count(0) > sample[1::2].count(0) else 'le'}"
-    return name
+    return "cp1252" if name in {"ascii", "utf-8", "iso8859-1"} else name
 
 
 def named_encoding(name: str, sample: bytes) -> Encoding | None:
@@ -137,9 +160,10 @@ def named_encoding(name: str, sample: bytes) -> Encoding | None:
     """
     try:
         codec = codecs.lookup(name)
-        codecs.getincrementaldecoder(codec.name)(errors="strict").decode(b"", False)
-        b"".decode(codec.name)
-    except (LookupError, UnicodeError, ValueError, TypeError):
+        nothing = codecs.getincrementaldecoder(codec.name)("strict").decode(b"", False)
+    except (LookupError, ValueError, TypeError, AssertionError):
+        return None
+    if not isinstance(nothing, str) or codec.name in _NO_FILE_ENCODINGS:  # base64, zlib and such
         return None
     for mark, marked in _MARKS:
         if sample.startswith(mark) and marked.startswith(codec.name.removesuffix("-sig")):
@@ -168,27 +192,32 @@ class Decoder:
     Attributes
     ----------
     first_bad : int or None
-        Offset in the file of the first byte that the encoding cannot read.
+        Offset in the file of the first byte that the encoding cannot read. A lone
+        surrogate of UTF-16 or UTF-32 is none: it stays what it is.
     """
 
     def __init__(self, encoding: str) -> None:
         self.first_bad: int | None = None
-        self._decoder = codecs.getincrementaldecoder(encoding)(errors="strict")
+        self._strict = "surrogatepass" if encoding.startswith(_WIDE) else "strict"
+        self._decoder = codecs.getincrementaldecoder(encoding)(self._strict)
 
     def decode(self, piece: bytes, offset: int, *, final: bool) -> str:
         """Text of the next bytes, which stand at this offset of the file."""
         state = self.state()
-        try:
-            return self._decoder.decode(piece, final)
-        except UnicodeDecodeError as error:
-            if self.first_bad is None:
-                self.first_bad = offset - len(state[0]) + error.start
-        self.restore(state)
-        self._decoder.errors = "vbraille-keep"
-        try:
-            return self._decoder.decode(piece, final)
-        finally:
-            self._decoder.errors = "strict"
+        # The third is for ISO 2022, which cannot keep an escape that never ends for the next piece.
+        for errors, last in (
+            (self._strict, final),
+            ("vbraille-keep", final),
+            ("vbraille-keep", True),
+        ):
+            self._decoder.errors = errors
+            try:
+                return self._decoder.decode(piece, last)
+            except UnicodeError as error:
+                if isinstance(error, UnicodeDecodeError) and self.first_bad is None:
+                    self.first_bad = offset - len(state[0]) + error.start
+            self.restore(state)
+        raise AssertionError("what keeps every byte fails at none")
 
     def state(self) -> tuple[bytes, int]:
         """What `restore` takes to go on from here."""
@@ -205,7 +234,7 @@ def _keep(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeDecodeError):
         raise error
     bad = error.object[error.start : error.end]
-    if error.encoding.startswith(("utf-16", "utf-32", "utf16", "utf32")):
+    if error.encoding.startswith(_WIDE):
         try:
             return bad.decode(error.encoding, "surrogatepass"), error.end
         except UnicodeDecodeError:

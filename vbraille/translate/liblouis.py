@@ -104,12 +104,17 @@ class TableInfo:
     dots: int
     kind: str
 
+    def speaks(self, language: str) -> bool:
+        """Whether it is for a language; the tag is in lower case, with hyphens."""
+        tag = self.language.lower()
+        return tag == language or tag.startswith(f"{language}-")
+
 
 @cache
 def list_tables() -> tuple[TableInfo, ...]:
     """All tables that have metadata, by name."""
     with _lock:  # asked once: liblouis 3.24 has nothing to free the answers with
-        paths = itertools.takewhile(bool, _list_tables())
+        paths: list[bytes] = list(itertools.takewhile(bool, _list_tables()))
         return tuple(sorted(map(_table_info, paths)))
 
 
@@ -148,12 +153,12 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
         name = _DEFAULTS.get((wanted, usual if grade is None else grade))
         if name is not None:
             return name
-    tables = [t for t in list_tables() if _speaks(t, wanted)]
+    tables = [t for t in list_tables() if t.speaks(wanted)]
     if not tables and "-" in wanted:
         return find_table(wanted.rpartition("-")[0], grade)
     if not tables:
         tags = sorted({t.language for t in list_tables() if t.language})
-        raise InputError(f"there is no table for language {language!r}{_nearest(wanted, tags)}")
+        raise InputError(f"there is no table for language {language!r}{nearest(wanted, tags)}")
     graded = [t for t in tables if grade is None or t.grade == str(grade)]
     if not graded:
         grades = ", ".join(sorted({t.grade for t in tables if t.grade})) or "none that is named"
@@ -168,14 +173,10 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
     return min(graded, key=preference).name
 
 
-def _speaks(table: TableInfo, language: str) -> bool:
-    tag = table.language.lower()
-    return tag == language or tag.startswith(f"{language}-")
-
-
-def _nearest(name: str, names: list[str]) -> str:
-    close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
-    return f"; the nearest are {', '.join(close)}" if close else "; see vbraille tables"
+def nearest(name: str, names: list[str]) -> str:
+    """End of a sentence that says what comes nearest to a name."""
+    close = difflib.get_close_matches(name, names, n=3, cutoff=0.0)
+    return f"; the nearest are {', '.join(close)} (vbraille tables lists all)"
 
 
 class Table:
@@ -202,7 +203,7 @@ class Table:
                 names = _table_files()
                 if name in names or Path(name).is_file():
                     raise InputError(f"liblouis cannot use {name} as a braille table")
-                raise InputError(f"there is no braille table {name!r}{_nearest(name, names)}")
+                raise InputError(f"there is no braille table {name!r}{nearest(name, names)}")
         # Characters this table was seen to know; what stands for those it does not.
         self._known = {SPACE}
         self._instead: dict[int, NDArray[np.uint32]] = {}
@@ -215,10 +216,10 @@ class Table:
         return next((t for t in list_tables() if t.name == Path(self.name).name), None)
 
     def translate(self, paragraph: Paragraph) -> Cells:
-        """Cells of a paragraph, none of its characters left out.
+        r"""Cells of a paragraph, none of its characters left out.
 
         A character that the table does not know appears as liblouis spells it,
-        ``'\\xhhhh'``, even where the table would put a blank instead.
+        ``'\xhhhh'``, even where the table would put a blank instead.
         """
         codes, source = paragraph.codes, paragraph.source
         if not paragraph.alphabet <= self._known:

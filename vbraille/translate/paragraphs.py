@@ -32,6 +32,8 @@ _BYTE_ORDER_MARK = 0xFEFF
 _COMBINING = frozenset((*range(0x300, 0x370), 0x3099, 0x309A))
 # Words before which a hyphen stands for the rest of the word before it.
 _SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
+# Characters after a line break that say whether a space belongs there: such a word and one more.
+_LOOK_AHEAD = 5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +101,7 @@ class Split:
     paragraphs
         The paragraphs that are complete.
     used
-        Characters up to the first that belongs to none of them.
+        Characters up to the first that belongs to none of them, or may begin another.
     continues
         Whether that one goes on with the last paragraph.
     """
@@ -135,11 +137,13 @@ def split_paragraphs(
     kinds = _KINDS[np.minimum(codes, _KINDS.size - 1)]
     kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
     text = np.flatnonzero(kinds == _TEXT)
-    if text.size == 0:
-        return Split([], codes.size, continues)
     newline = (kinds == _NEWLINE) | (kinds == _BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
+    if text.size == 0:
+        line_ends = np.flatnonzero(newline)[-1:] + 1
+        return Split([], int(line_ends.sum()) if keep_lines else codes.size, continues)
     newlines = _between(newline, text)
+    ended = final
     codes = codes.copy()
     for space in _NO_BREAK_SPACES:
         codes[codes == space] = NO_BREAK_SPACE
@@ -154,6 +158,8 @@ def split_paragraphs(
         empty = newlines > 1
     else:
         ends = (newlines > 1) | (_between(kinds == _BREAK, text) > 0)
+        after = slice(text[-1], None)
+        ended = final or newline[after].sum() > 1 or (kinds[after] == _BREAK).any()
         gaps = np.flatnonzero((_between((kinds != _TEXT) & (kinds != _DROPPED), text) > 0) & ~ends)
         spaces = text[gaps] + 1
         spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
@@ -175,9 +181,9 @@ def split_paragraphs(
     is_empty = [*empty[last].tolist(), False]
     paragraphs: list[Paragraph] = []
     for n, (start, end) in enumerate(bounds):
-        complete = final or n < len(bounds) - 1
+        complete = ended or n < len(bounds) - 1
         rest = start
-        for cut in _cuts(codes, kept, start, end):
+        for cut in _cuts(codes, kept, start, end if complete else end - _LOOK_AHEAD):
             paragraphs.append(paragraph(rest, cut, continues))
             rest, continues = cut, True
         if not complete:
@@ -223,9 +229,9 @@ def _joins_words(
     hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
     for n in np.flatnonzero(hyphens):
         at, after = text[gaps[n]], text[gaps[n] + 1]
-        word = to_text(codes[after : after + 5])
-        suspended = word.split(maxsplit=1)[0] in _SUSPENDED
-        joins[n] = at > 0 and chr(codes[at - 1]).isalpha() and word[0].isalpha() and not suspended
+        word = to_text(codes[after : after + _LOOK_AHEAD])
+        letters = at > 0 and chr(codes[at - 1]).isalpha() and word[0].isalpha()
+        joins[n] = letters and word.split(maxsplit=1)[0] not in _SUSPENDED
     return joins
 
 
@@ -239,7 +245,10 @@ def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: in
         elif (space := window.rfind(" ")) > 0:
             start += space + 1
         else:
-            start += PIECE_CHARACTERS
+            length = PIECE_CHARACTERS
+            while length > 1 and unicodedata.combining(window[length]):
+                length -= 1  # an accent stays with its letter
+            start += length
         if start >= end:
             return
         yield start

@@ -1,0 +1,102 @@
+"""Rendering, against filling the same memory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tests.benchmarks.timing import Result, ratio
+from tests.conftest import SEED, TEXTS
+from vbraille.page import Layout
+from vbraille.render import STRESS2
+from vbraille.render.renderer import Renderer
+from vbraille.translate import Book, Document, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.page import Line
+
+LINES, CELLS = 25, 40
+LONG_BOOK = 10_000  # lines
+PATH = 20_000
+
+
+def renderer(masks: np.ndarray) -> Renderer:
+    return Renderer(
+        masks,
+        array=STRESS2.array,
+        profile=STRESS2.profile,
+        mapping=STRESS2.mapping,
+        geometry=STRESS2.geometry,
+        tuning=STRESS2.tuning,
+    )
+
+
+def run() -> Iterator[Result]:
+    random = np.random.default_rng(SEED)
+    page = [renderer(random.integers(1, 64, CELLS).astype(np.uint8)) for _ in range(LINES)]
+    places = random.uniform(0, STRESS2.geometry.extent_mm(CELLS), 1000).tolist()
+    out = np.zeros(STRESS2.array.shape)
+
+    def frames() -> None:
+        for line in page:
+            frame = line.frame
+            for x_mm in places:
+                frame(x_mm, out)
+
+    def fills() -> None:
+        for _ in page:
+            fill = out.fill
+            for _ in places:
+                fill(0)
+
+    share, least = ratio(frames, fills)
+    least /= LINES * len(places)
+    yield Result(
+        "one frame from Python, STReSS², page of 25 × 40 cells, against `out.fill(0)`",
+        "≤ 5 ×, ≤ 1 µs",
+        f"{share:.1f} ×, {least * 1e6:.2f} µs",
+        share <= 5 and least <= 1e-6,
+    )
+
+    path_mm = np.linspace(-STRESS2.array.span_mm, STRESS2.geometry.extent_mm(CELLS), PATH)
+    result = np.zeros((PATH, *STRESS2.array.shape), np.float32)
+    share, least = ratio(
+        lambda: page[0].path(path_mm, result), lambda: result.fill(0), times=5, pairs=31
+    )
+    yield Result(
+        "a path of 20,000 positions, against filling its float32 result",
+        "≤ 20 ×, ≤ 0.15 µs a frame",
+        f"{share:.1f} ×, {least / PATH * 1e6:.2f} µs",
+        share <= 20 and least / PATH <= 0.15e-6,
+    )
+
+    book, single = lines_of(LONG_BOOK), lines_of(1)
+    assert book.count() > LONG_BOOK
+    spread = [book.line(1 + n * LONG_BOOK // LINES) for n in range(LINES)]
+    share, _ = ratio(
+        lambda: read(spread, places, out), lambda: read([single.line(1)] * LINES, places, out)
+    )
+    yield Result(
+        "lines all over a book of 10,000, against the one line of another, a frame",
+        "≤ 1.1 ×",
+        f"{share:.2f} ×",
+        share <= 1.1,
+    )
+
+
+def lines_of(count: int) -> Layout:
+    """A book of so many lines, or a few more."""
+    text = (TEXTS / "english.txt").read_text().strip().split("\n\n")
+    paragraphs = text[1:] * (count // 200 + 1) if count > 1 else text[:1]
+    return Layout(Book(Document.from_text("\n\n".join(paragraphs)), Table("en-ueb-g2.ctb")), 26)
+
+
+def read(lines: list[Line], places: list[float], out: np.ndarray) -> None:
+    """Have each line under the hand at all those places."""
+    for line in lines:
+        frame = renderer(line.masks).frame
+        for x_mm in places:
+            frame(x_mm, out)

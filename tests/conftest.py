@@ -1,0 +1,29 @@
+"""What all tests share: one seed, and hypothesis without chance or clocks."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+SEED = 20090618
+TEXTS = Path(__file__).parent.parent / "texts"
+
+settings.register_profile("vbraille", derandomize=True, deadline=None, database=None)
+settings.load_profile("vbraille")
+
+
+def pytest_report_header() -> str:
+    return f"seed of the tests: {SEED}; hypothesis derives its own from each test"
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Random numbers that are the same in every run."""
+    return np.random.default_rng(SEED)
+
+
+@pytest.fixture(scope="session")
+def texts() -> Path:
+    """The folder of the project's own passages."""
+    return TEXTS

@@ -1,0 +1,217 @@
+"""Motions: their samples, how they are made, and hands recorded in files."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vbraille.devices.motion import Motion, Way
+from vbraille.devices.recorded import MAX_GAP_S, Recorded, load_recorded
+from vbraille.errors import InputError
+
+HEADER = "t_s,x_mm\n"
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Load a recording of the given text or bytes."""
+
+    def load_text(text):
+        path = tmp_path / "hand.csv"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return load_recorded(path)
+
+    return load_text
+
+
+def motion(t_s, x_mm):
+    return Motion(np.array(t_s, float), np.array(x_mm, float))
+
+
+@pytest.mark.parametrize(
+    ("t_s", "x_mm", "said"),
+    [
+        ([0, 1, 1], [0, 1, 2], "does not increase"),
+        ([0, 2, 1], [0, 1, 2], "does not increase"),
+        ([0, 1], [0, 1, 2], "as many"),
+        ([0], [0], "2 or more"),
+        ([[0, 1]], [[0, 1]], "shapes"),
+        ([1, 2], [0, 1], "begin at 0"),
+        ([0, np.nan], [0, 1], "not finite"),
+        ([0, np.inf], [0, 1], "not finite"),
+        ([0, 1], [0, np.nan], "not finite"),
+    ],
+)
+def test_a_motion_checks_itself(t_s, x_mm, said):
+    with pytest.raises(ValueError, match=said):
+        motion(t_s, x_mm)
+
+
+def test_samples_stand_at_multiples_of_a_tick():
+    way = motion([0, 1, 1.5, 2.25], [0, 10, 10, -5])
+    assert way.duration_s == 2.25
+    np.testing.assert_allclose(way.sample(2), [0, 5, 10, 10, 0])
+    np.testing.assert_allclose(way.sample(4), [0, 2.5, 5, 7.5, 10, 10, 10, 5, 0, -5])
+    assert way.sample(4).dtype == np.float64
+
+
+def test_a_tick_on_the_end_is_not_lost_to_rounding():
+    assert 0.29 * 100 < 29
+    assert motion([0, 0.29], [0, 29]).sample(100).size == 30
+
+
+@given(rate=st.floats(0.5, 500), size=st.integers(1, 50), duration=st.floats(0.01, 10))
+def test_samples_in_parts_are_the_samples_in_one(rate, size, duration):
+    way = motion([0, duration / 3, duration], [0, 7, -2])
+    whole = way.sample(rate)
+    parts = [way.sample(rate, first, size) for first in range(0, whole.size, size)]
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
+    assert way.sample(rate, whole.size).size == 0
+
+
+@pytest.mark.parametrize(
+    ("rate", "first", "count"),
+    [(0, 0, 1), (-1, 0, 1), (np.inf, 0, 1), (np.nan, 0, 1), (1, -1, 1), (1, 0, -1)],
+)
+def test_samples_out_of_range_are_refused(rate, first, count):
+    with pytest.raises(ValueError, match=r"it must be|they must be"):
+        motion([0, 1], [0, 1]).sample(rate, first, count)
+
+
+def test_a_way_keeps_its_speeds_and_waits():
+    way = Way(1.0)
+    way.move(6.0, 10.0)
+    way.move(6.0, 10.0)
+    way.wait(0.25)
+    way.move(5.0, 2.0)
+    assert way.x_mm == 5.0
+    np.testing.assert_allclose(way.motion().t_s, [0, 0.5, 0.75, 1.25])
+    np.testing.assert_allclose(way.motion().x_mm, [1, 6, 6, 5])
+
+
+def test_time_increases_however_short_a_movement():
+    way = Way(0.0)
+    way.wait(1000.0)
+    way.move(5e-324, 1000.0)
+    assert way.motion().x_mm[-1] == 5e-324
+
+
+def test_a_recording_is_one_motion_from_time_0():
+    t_s = np.array([5.0, 5.5, 6.0])
+    hand = Recorded(t_s, np.array([1.0, 2.0, 0.0]))
+    assert list(hand.motion().t_s) == [0, 0.5, 1.0]
+    assert list(hand.motion().x_mm) == [1, 2, 0]
+    assert not hasattr(hand, "read_line")
+    assert list(t_s) == [5.0, 5.5, 6.0]
+
+
+def test_a_recording_checks_itself():
+    with pytest.raises(ValueError, match=r"gap of 0\.6 s; it must be at most 0\.5 s"):
+        Recorded(np.array([0, 0.1, 0.7]), np.zeros(3))
+    with pytest.raises(ValueError, match="does not increase"):
+        Recorded(np.array([0.1, 0.0]), np.zeros(2))
+    with pytest.raises(ValueError, match="2 or more"):
+        Recorded(np.empty(0), np.empty(0))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        HEADER + "3,1\n3.1,2.5\n3.5,-4\n",
+        "3,1\n3.1,2.5\n3.5,-4\n",
+        "\ufeff" + HEADER + "3,1\r\n3.1,2.5\r\n3.5,-4",
+        'force,x_mm,note,t_s\n,1,"a, b",3\nhard,2.5,,3.1\nnan,-4,,3.5\n',
+        "\n t_s , x_mm \n3 , 1\n\n3.1,2.5\n  \n3.5,-4\n",
+    ],
+)
+def test_columns_are_found_by_name_or_are_two(load, text):
+    hand = load(text)
+    np.testing.assert_allclose(hand.motion().t_s, [0, 0.1, 0.5])
+    assert list(hand.motion().x_mm) == [1, 2.5, -4]
+
+
+@given(
+    steps=st.lists(
+        st.tuples(st.floats(0.001, MAX_GAP_S), st.floats(-300, 300)), min_size=2, max_size=20
+    )
+)
+def test_what_was_written_is_read(tmp_path_factory, steps):
+    t_s = np.cumsum([step for step, _ in steps])
+    x_mm = np.array([place for _, place in steps])
+    path = tmp_path_factory.mktemp("hand") / "hand.csv"
+    rows = np.column_stack((t_s, x_mm)).tolist()
+    path.write_text(HEADER + "".join(f"{t!r},{x!r}\n" for t, x in rows))
+    read = load_recorded(path).motion()
+    np.testing.assert_array_equal(read.t_s, t_s - t_s[0])
+    np.testing.assert_array_equal(read.x_mm, x_mm)
+
+
+def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
+    assert MAX_GAP_S < 1.1 - 0.6
+    assert load(HEADER + "0.6,0\n1.1,1\n").motion().duration_s == pytest.approx(MAX_GAP_S)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        ("\n\n", "is empty"),
+        (HEADER, "fewer than 2 samples"),
+        (HEADER + "0,1\n", "fewer than 2 samples"),
+        ("0,1\n", "fewer than 2 samples"),
+        ("time,x_mm\n0,1\n", "line 1 does not name one column t_s"),
+        ("t_s;x_mm\n0;1\n", "line 1 does not name one column t_s"),
+        ("t_s,pos\n0,1\n", "line 1 does not name one column x_mm"),
+        ("t_s,x_mm,t_s\n0,1,0\n", "line 1 does not name one column t_s"),
+        ("0,1,2\n0.1,1,2\n", "line 1 has neither names nor two numbers"),
+        ("0\n0.1\n", "line 1 has neither names nor two numbers"),
+        ("0,one\n", "line 1: x_mm is 'one'"),
+        (HEADER + "0,1\n0.1\n", "line 3 has more or fewer fields than the first line; give it 2"),
+        (
+            HEADER + "0,1\n0,1,2,5\n",
+            "line 3 has more or fewer fields than the first line; give it 2",
+        ),
+        (HEADER + "0,1\n0.1,\n", "line 3: x_mm is empty"),
+        (HEADER + "0,1\n,\n0.1,1\n", "line 3: t_s is empty"),
+        (HEADER + "0,1\n ,2\n", "line 3: t_s is empty"),
+        (HEADER + "0,1\n0.1,left\n", "line 3: x_mm is 'left'"),
+        (HEADER + "0,1\n\n0.1,nan\n", "line 4: x_mm is 'nan'"),
+        (HEADER + "0,1\n0.1,-inf\n", "line 3: x_mm is '-inf'"),
+        (HEADER + "nan,1\n0.1,1\n", "line 2: t_s is 'nan'"),
+        ("nan,1\n0.1,1\n", "line 1: t_s is 'nan'"),
+        (HEADER + "0,1\n0.1,1e5\n", "line 3: x_mm is 100000; it must be -10000 to 10000"),
+        (HEADER + "0,1\n0,1\n", "line 3: t_s is not later"),
+        (HEADER + "1,1\n0.9,1\n", "line 3: t_s is not later"),
+        (HEADER + "-1e10,1\n-1e10,1\n", "line 3: t_s is not later"),
+        (HEADER + "0,1\n0.1,1\n0.9,1\n", "line 4: nothing was recorded for 0.8 s"),
+        (HEADER + "-1e308,1\n1e308,1\n", "line 3: nothing was recorded for inf s"),
+        (HEADER.encode() + b"0,1\n0.1,\xff\n", "line 3 is not UTF-8"),
+        ("t_s,x_mm\n0,1\n".encode("utf-16"), "line 1 is not UTF-8"),
+        (HEADER + '0,"' + "1" * 200_000, "line 2 is not CSV"),
+        (HEADER + "0," + "x" * 10_000, "line 2: x_mm is"),
+        (HEADER + '0,"1\n\n2"\n', "line 4: x_mm is '1 2'"),
+    ],
+)
+def test_a_bad_recording_is_told_in_one_sentence(load, text, said):
+    with pytest.raises(InputError) as caught:
+        load(text)
+    message = str(caught.value)
+    assert said in message
+    assert "hand.csv" in message
+    assert "; " in message  # what is wrong; what to do
+    assert "\n" not in message
+    assert len(message) < 1000
+    assert caught.value.exit_code == 2
+
+
+def test_a_file_that_cannot_be_read_is_told(tmp_path):
+    with pytest.raises(InputError, match=r"there is no file .*; check the name"):
+        load_recorded(tmp_path / "none.csv")
+    with pytest.raises(InputError, match="is a directory"):
+        load_recorded(tmp_path)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_recorded("bad\0name")
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_recorded(loop)

@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+
+from tests.engine.test_loop import info, straight
+from vbraille.devices.simulated import APPROACH_MM_S, SimulatedDevice
+from vbraille.engine import ManualClock
+
+SPAN_MM = 10.8
+
+
+@pytest.fixture
+def clock():
+    return ManualClock()
+
+
+@pytest.fixture
+def device(clock):
+    return SimulatedDevice(info(), clock.now_ns)
+
+
+def test_it_begins_at_the_left_stop(device):
+    assert device.read().x_mm == pytest.approx(-SPAN_MM)
+    assert not device.moving
+
+
+def test_the_hand_moves_in_the_clock_s_time_to_the_encoder_s_count(clock, device):
+    device.move(straight((0, -SPAN_MM), (1, -SPAN_MM + 0.1)))
+    seen = set()
+    for _ in range(1000):
+        clock.advance_ns(1_000_000)
+        sample = device.read()
+        assert sample.time_ns == clock.now_ns()
+        seen.add(round((sample.x_mm + SPAN_MM) * 200, 6))
+    assert seen == set(range(21))  # 0.1 mm at 200 counts a mm
+    assert not device.moving
+
+
+def test_a_hand_elsewhere_goes_to_where_its_motion_begins(clock, device):
+    device.move(straight((0, 50.0), (1, 60.0)))
+    places = []
+    for _ in range(2000):
+        places.append(device.read().x_mm)
+        clock.advance_ns(1_000_000)
+    assert np.abs(np.diff(places)).max() <= APPROACH_MM_S / 1000 + 1 / 200
+    assert max(places) == pytest.approx(60, abs=1 / 200)
+
+
+def test_the_carriage_stops_at_its_ends(clock, device):
+    device.move(straight((0, -SPAN_MM), (1, 1000.0), (2, -1000.0)))
+    places = []
+    for _ in range(3000):
+        places.append(device.read().x_mm)
+        clock.advance_ns(1_000_000)
+    assert max(places) == pytest.approx(300 - SPAN_MM)
+    assert min(places) == pytest.approx(-SPAN_MM)
+
+
+def test_levels_are_as_coarse_as_it_says():
+    device = SimulatedDevice(info(levels=5))
+    device.write(np.linspace(0, 1, 60).reshape(6, 10))
+    assert sorted(set(device.levels.ravel().tolist())) == [0, 1, 2, 3, 4]
+    assert device.levels[-1, -1] == 4
+    assert device.frames == 1
+
+
+def test_it_rests_on_close(device):
+    device.write(np.ones((6, 10)))
+    assert device.levels.all()
+    device.close()
+    assert not device.levels.any()

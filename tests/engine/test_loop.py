@@ -1,0 +1,233 @@
+"""The loop on the manual clock: order, deadlines, and that nothing jumps."""
+
+import numpy as np
+import pytest
+
+from vbraille.devices import DeviceInfo, Sample
+from vbraille.devices.motion import Motion
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.engine import Loop, ManualClock
+from vbraille.errors import DeviceError
+from vbraille.render import MAPPINGS, STRESS2, Tuning
+from vbraille.render.renderer import Renderer
+
+MS = 1_000_000
+SPAN_MM = 10.8
+
+
+def info(**changes) -> DeviceInfo:
+    fields = {
+        "name": "test",
+        "rows": 6,
+        "columns": 10,
+        "column_pitch_mm": 1.2,
+        "row_pitch_mm": 1.8,
+        "levels": 1024,
+        "rest_side": "right",
+        "travel_mm": 300.0,
+        "counts_per_mm": 200.0,
+        "rate_hz": 1000.0,
+    }
+    return DeviceInfo(**fields | changes)
+
+
+class Recording(SimulatedDevice):
+    """A simulated device that keeps what it was sent."""
+
+    def __init__(self, clock: ManualClock) -> None:
+        super().__init__(info(), clock.now_ns)
+        self.sent: list[np.ndarray] = []
+        self.silent = False
+        self.shift_mm = 0.0
+
+    def read(self) -> Sample | None:
+        sample = super().read()
+        assert sample is not None
+        return None if self.silent else Sample(sample.time_ns, sample.x_mm + self.shift_mm)
+
+    def _send(self, frame):
+        super()._send(frame)
+        self.sent.append(frame.copy())
+
+
+def picture(masks=(63,) * 20, mapping="alternate", **tuning) -> Renderer:
+    return Renderer(
+        np.array(masks, np.uint8),
+        array=STRESS2.array,
+        profile=STRESS2.profile,
+        mapping=MAPPINGS[mapping],
+        geometry=STRESS2.geometry,
+        tuning=Tuning(**tuning),
+    )
+
+
+def straight(*knots: tuple[float, float]) -> Motion:
+    t_s, x_mm = np.array(knots, float).T
+    return Motion(t_s, x_mm)
+
+
+@pytest.fixture
+def clock():
+    return ManualClock()
+
+
+@pytest.fixture
+def device(clock):
+    return Recording(clock)
+
+
+def run(loop: Loop, seconds: float) -> None:
+    for _ in range(round(seconds * loop.rate_hz)):
+        loop.tick()
+
+
+def biggest_step(frames: list[np.ndarray]) -> float:
+    return float(np.abs(np.diff(np.array(frames), axis=0)).max())
+
+
+def test_ticks_stand_on_absolute_deadlines(clock, device):
+    loop = Loop(device, clock)
+    run(loop, 0.5)
+    assert clock.now_ns() == 499 * MS
+    assert (loop.tally.ticks, loop.tally.late) == (500, 0)
+
+
+def test_a_late_tick_is_counted_and_never_chased(clock, device):
+    loop = Loop(device, clock)
+    run(loop, 0.01)
+    assert clock.now_ns() == 9 * MS
+    device.read = lambda: clock.advance_ns(int(3.5 * MS))  # a tick that takes 3.5 periods
+    loop.tick()
+    del device.read
+    assert loop.tally.late == 2  # its own end overran the next two deadlines
+    loop.tick()
+    assert clock.now_ns() == int(13.5 * MS)  # at once, half a period behind
+    loop.tick()
+    assert clock.now_ns() == 14 * MS  # and on the grid again
+    assert loop.tally.late == 2
+
+
+def test_frames_follow_the_hand(clock, device):
+    line = picture()
+    loop = Loop(device, clock)
+    loop.show(line)
+    device.move(straight((0, -SPAN_MM), (2, 60)))
+    run(loop, 1.0)
+    want = np.zeros((6, 10))
+    line.frame(device.read().x_mm, want)
+    assert np.abs(loop.output).max() > 0.5
+    np.testing.assert_array_equal(loop.output, want)
+
+
+def test_position_is_to_the_encoder_s_count(clock, device):
+    device.move(straight((0, 0), (1, 10)))
+    loop = Loop(device, clock)
+    run(loop, 0.3)
+    assert loop.x_mm is not None
+    counts = (loop.x_mm + SPAN_MM) * 200
+    assert abs(counts - round(counts)) < 1e-6
+
+
+@pytest.mark.parametrize("mapping", sorted(MAPPINGS))
+@pytest.mark.parametrize("change", ["start", "line", "tuning", "pause", "jump", "leave"])
+def test_nothing_jumps(clock, device, mapping, change):
+    device.move(straight((0, 3.0), (20, 3.0)))  # the hand holds still, on a dot
+    loop = Loop(device, clock)
+    run(loop, 0.1)  # so long it takes to get there
+    loop.show(picture(mapping=mapping))
+    if change != "start":
+        run(loop, 0.3)
+        device.sent.clear()
+    if change == "line":
+        loop.show(picture((1, 2, 4), mapping=mapping))
+    elif change == "tuning":
+        loop.show(picture(mapping=mapping, texture=1.0, contrast=0.4))
+    elif change == "pause":
+        loop.paused = True
+    elif change == "jump":
+        device.shift_mm = 37.3  # the carriage is elsewhere from one tick to the next
+    if change == "leave":
+        loop.fade_to_rest()
+        assert loop.resting
+    else:
+        run(loop, 0.3)
+    step = 1 / 20 if change == "pause" else 1 / 100
+    assert len(device.sent) > 20
+    assert biggest_step([np.zeros((6, 10)), *device.sent] if change == "start" else device.sent) > 0
+    assert biggest_step(device.sent) <= step + 1e-9
+
+
+def test_a_change_in_the_middle_of_a_fade_does_not_jump(clock, device):
+    device.move(straight((0, 3.0), (20, 3.0)))
+    loop = Loop(device, clock)
+    run(loop, 0.1)
+    for n in range(20):
+        loop.show(picture((n + 1,) * 5, mapping="sheared", contrast=(n % 5) / 4))
+        run(loop, 0.03)
+    assert biggest_step(device.sent) <= 1 / 100 + 1e-9
+
+
+def test_rest_after_stillness_and_back_with_motion(clock, device):
+    device.move(straight((0, 3.0), (6, 3.0), (7, 8.0), (20, 8.0)))
+    loop = Loop(device, clock)
+    loop.show(picture(mapping="sheared"))
+    run(loop, 4.9)
+    assert not loop.resting
+    run(loop, 0.3)
+    assert loop.resting
+    run(loop, 1.0)
+    assert not loop.resting
+    run(loop, 6.0)
+    assert loop.resting
+    assert biggest_step(device.sent) < 0.2
+
+
+def test_a_pause_rests_whatever_the_hand_does(clock, device):
+    device.move(straight((0, 0.0), (5, 100.0)))
+    loop = Loop(device, clock)
+    loop.show(picture(mapping="sheared"))
+    run(loop, 0.5)
+    loop.paused = True
+    run(loop, 0.022)
+    assert loop.resting
+    run(loop, 0.5)
+    assert loop.resting
+    loop.paused = False
+    run(loop, 0.2)
+    assert not loop.resting
+
+
+def test_silence_of_the_device_rests_the_array(clock, device):
+    device.move(straight((0, 3.0), (20, 3.0)))
+    loop = Loop(device, clock)
+    loop.show(picture())
+    run(loop, 0.5)
+    assert not loop.resting
+    device.silent = True
+    run(loop, 0.25)
+    assert loop.resting
+    device.silent = False
+    run(loop, 0.25)
+    assert not loop.resting
+
+
+def test_speed_and_scanning_speed(clock, device):
+    device.move(straight((0, -10.0), (2, 90.0), (3, 90.0), (4, -10.0)))
+    loop = Loop(device, clock)
+    run(loop, 1.0)
+    assert loop.speed_mm_s == pytest.approx(50, rel=0.01)
+    run(loop, 2.5)
+    assert loop.speed_mm_s == pytest.approx(-100, rel=0.01)
+    assert loop.tally.scanning_mm_s == pytest.approx(50, rel=0.02)
+
+
+def test_a_place_that_is_no_number_is_a_fault(clock, device):
+    device.read = lambda: Sample(0, float("nan"))
+    with pytest.raises(DeviceError, match="nan"):
+        Loop(device, clock).tick()
+
+
+@pytest.mark.parametrize("rate", [0, -1, 20_000, float("nan")])
+def test_rate_has_bounds(clock, device, rate):
+    with pytest.raises(ValueError, match="1 to 10000"):
+        Loop(device, clock, rate_hz=rate)

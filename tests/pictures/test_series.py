@@ -1,0 +1,223 @@
+import csv
+import io
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.pictures.tables import TABLES, make_line, make_page
+from vbraille.pictures import Table, mapping, profile, strain, wave, write_csv
+from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
+
+
+def peaks(values):
+    return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])) + 1
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_profile_rises_at_the_left_edge_and_is_back_at_the_right_one(model):
+    table = profile(model, model.geometry, model.tuning)
+    u, width = table["u_mm"], model.geometry.dot_width_mm
+    for name in table.columns:
+        if name != "u_mm":
+            off = (u <= 0) | (u >= width)
+            assert np.allclose(table[name][off], 0, atol=1e-12)
+            assert table[name].max() == pytest.approx(1, abs=1e-3)
+            assert table[name].min() >= -1e-12
+    assert u[np.argmax(table["deflection_T0"])] == pytest.approx(width / 2)
+
+
+@pytest.mark.parametrize("cycles", [3, 7])
+def test_profile_of_texture_alone_has_k_ripples(cycles):
+    table = profile(STRESS2, STRESS2.geometry, Tuning(texture=1, cycles=cycles))
+    ripples = table["deflection_T100"]
+    radius = STRESS2.geometry.dot_width_mm / 2
+    at = table["u_mm"][peaks(ripples)]
+    # cos(kπp) is 1 at p = 0, ±2/k, … (eq. 4.2)
+    expected = radius + radius * np.arange(-cycles + 1, cycles, 2) / cycles
+    assert at == pytest.approx(expected, abs=radius / 150)
+
+
+@pytest.mark.parametrize(
+    ("model", "levels"), [(STRESS2, ["0", "25", "100"]), (VBD, ["0", "100"])], ids=["s", "v"]
+)
+def test_profile_shows_the_levels_of_the_source_and_the_readers_own(model, levels):
+    table = profile(model, model.geometry, model.tuning)
+    assert list(table.columns) == ["u_mm", *(f"deflection_T{level}" for level in levels)]
+    own = profile(model, model.geometry, Tuning(texture=0.4))
+    assert "deflection_T40" in own.columns
+
+
+def test_contrast_scales_the_profile():
+    full = profile(VBD, VBD.geometry, Tuning())
+    half = profile(VBD, VBD.geometry, Tuning(contrast=0.5))
+    assert half["deflection_T100"] == pytest.approx(full["deflection_T100"] / 2)
+    assert "contrast 50 %" in half.title
+    assert "contrast" not in full.title
+
+
+def test_mapping_compares_all_methods_on_six_rows():
+    table = mapping(STRESS2.geometry, Tuning())
+    assert set(table["method"]) == set(MAPPINGS)
+    assert [n for n in table.columns if n.startswith("deflection")] == [
+        f"deflection_row_{row}" for row in range(6)
+    ]
+
+
+@pytest.mark.parametrize("method", MAPPINGS.values(), ids=MAPPINGS)
+def test_mapping_idles_at_one_where_a_row_is_inverted(method):
+    full_cell = np.array([0x3F], np.uint8)
+    chosen = mapping(STRESS2.geometry, Tuning(), full_cell, [method])
+    for row, inverted in enumerate(method.inverted):
+        values = chosen[f"deflection_row_{row}"]
+        assert values[0] == values[-1] == inverted
+        shows_dots = {method.left[row], method.right[row]} != {-1}
+        assert (np.ptp(values) > 0.9) == shows_dots
+
+
+def test_mapping_swings_at_the_dots_of_the_letter():
+    # z: dots 1 and 3 left, 5 and 6 right
+    chosen = mapping(STRESS2.geometry, Tuning()).where("method", "alternate")
+    at = np.searchsorted(chosen["x_mm"], [1.295, 4.995])  # centres: one radius right of the edge
+    raised = [chosen[f"deflection_row_{row}"][at] > 0.99 for row in range(6)]
+    none = [False, False]
+    assert np.array_equal(raised, [[True, False], none, [False, True], none, [True, True], none])
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
+    table = wave(model, model.geometry, Tuning(texture=0.25))
+    x, pitch = table["x_mm"], model.array.column_pitch_mm
+    shift = round(pitch / (x[1] - x[0]))
+    assert len(table.columns) == 1 + model.array.columns
+    for column in range(1, model.array.columns):
+        left = table[f"deflection_column_{column - 1}"]
+        right = table[f"deflection_column_{column}"]
+        assert right[:-shift] == pytest.approx(left[shift:], abs=1e-9)
+
+
+def test_wave_begins_and_ends_at_rest_and_is_at_the_dot_between():
+    table = wave(VBD, VBD.geometry, Tuning())
+    for column in range(12):
+        values = table[f"deflection_column_{column}"]
+        assert values[0] == values[-1] == 0
+        # the column is above the dot's middle when the left one is that much left of it
+        assert table["x_mm"][np.argmax(values)] == pytest.approx(1 - 0.7 * column)
+
+
+def strain_of(width):
+    return strain(VBD.geometry, Tuning()).where("dot_width_mm", width)
+
+
+def test_strain_of_a_dot_narrower_than_the_pitch_has_no_overlap():
+    table = strain_of(0.5)
+    both = (table["deflection_left"] > 1e-9) & (table["deflection_right"] > 1e-9)
+    assert not both.any()
+    assert np.abs(table["strain_per_mm"]).max() == pytest.approx(1 / 0.7)
+
+
+@pytest.mark.parametrize("width", [1.0, 2.0])
+def test_strain_of_a_wider_dot_goes_straight_from_expansion_to_compression(width):
+    table = strain_of(width)
+    values = table["strain_per_mm"]
+    between = slice(np.argmax(values), np.argmin(values) + 1)
+    assert (np.diff(values[between]) < 0).all()
+    assert values[between][0] > 0 > values[between][-1]
+    # W < ε rests in between
+    narrow = strain_of(0.5)["strain_per_mm"]
+    assert (np.abs(narrow[np.argmax(narrow) : np.argmin(narrow)]) < 1e-9).sum() > 10
+
+
+def test_strain_reaches_its_maximum_only_up_to_twice_the_pitch():
+    most = 1 / 0.7
+    assert np.abs(strain_of(1.0)["strain_per_mm"]).max() == pytest.approx(most)
+    widest = np.abs(strain_of(2.0)["strain_per_mm"]).max()
+    assert widest == pytest.approx(most * math.sin(math.pi * 0.7 / 2), rel=1e-3)
+    assert widest < 0.9 * most
+
+
+def test_strain_adds_the_readers_width():
+    table = strain(replace(VBD.geometry, dot_width_mm=1.7), Tuning())
+    assert sorted(set(table["dot_width_mm"])) == [0.5, 1.0, 1.7, 2.0]
+
+
+def test_page_has_the_dots_where_geometry_puts_them():
+    lines = [make_line("⠁"), make_line("⠵", number=2, indent=1)]
+    table = make_page(lines)
+    second = table.where("what", "dot").where("line", 2)
+    assert len(second) == 12
+    raised = second.where("raised", 1)
+    assert raised["dot"].tolist() == [1, 3, 5, 6]
+    assert raised["cell"].tolist() == [1, 1, 1, 1]
+    assert raised["x_mm"] == pytest.approx([12.4, 12.4, 16.1, 16.1])  # 11.1 + 1.3 (+ 3.7)
+    assert raised["y_mm"] == pytest.approx([14, 21.2, 17.6, 21.2])  # 14 + 3.6 a row
+
+
+def test_page_shows_eight_dots_only_where_there_are_some():
+    assert set(make_page([make_line("⠿")]).where("what", "dot")["dot"]) == set(range(1, 7))
+    eight = make_page([make_line("⡀⢀")]).where("raised", 1)
+    assert eight["dot"].tolist() == [7, 8]
+    assert eight["y_mm"] == pytest.approx([10.8, 10.8])
+
+
+def test_page_deflects_the_actuators_that_are_on_a_dot():
+    lines = [make_line("⠿⠿"), make_line("⠁", number=2)]
+    table = make_page(lines, x_mm=1.3, line_index=1).where("what", "actuator")
+    assert len(table) == 60
+    assert set(table["line"]) == {2}
+    on = table.where("row", 0)
+    assert on["deflection"][0] == pytest.approx(1)  # the left column is on the centre of dot 1
+    assert on["deflection"][2:].max() == 0
+    assert table["deflection"].sum() == on["deflection"].sum()
+    assert on["y_mm"] == pytest.approx(np.full(10, 14.0))
+    assert on["x_mm"] == pytest.approx(1.3 + 1.2 * np.arange(10))
+    assert set(np.round(table["y_mm"] - 14, 9)) == {0, 1.8, 3.6, 5.4, 7.2, 9.0}
+
+
+def test_page_lays_a_one_row_array_on_the_row_that_it_shows():
+    table = make_page([make_line("⠿")], model=VBD, mapping=single_row(3)).where("what", "actuator")
+    assert table["y_mm"] == pytest.approx(np.full(12, 8.0))
+
+
+def test_page_of_an_empty_line_has_the_array_alone():
+    assert set(make_page([make_line("")])["what"]) == {"actuator"}
+
+
+@pytest.mark.parametrize("index", [-1, 1])
+def test_page_refuses_a_line_that_is_not_there(index):
+    with pytest.raises(ValueError, match=f"line index is {index}; there are 1 lines"):
+        make_page([make_line("⠁")], line_index=index)
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.kind)
+def test_csv_gives_the_same_numbers_back(table):
+    stream = io.StringIO()
+    write_csv(table, stream)
+    names, *rows = csv.reader(io.StringIO(stream.getvalue()))
+    assert names == list(table.columns)
+    assert len(rows) == len(table)
+    for name, spelled in zip(names, zip(*rows, strict=True), strict=True):
+        if table[name].dtype.kind == "U":
+            assert list(spelled) == table[name].tolist()
+        else:
+            values = [float(value) if value else math.nan for value in spelled]
+            assert values == pytest.approx(table[name], abs=6e-7, nan_ok=True)
+            assert "-0" not in spelled
+
+
+def test_a_table_refuses_columns_of_different_lengths():
+    with pytest.raises(ValueError, match="differ in length"):
+        Table("wave", "", {"a": np.zeros(2), "b": np.zeros(3)})
+
+
+def test_the_numbers_need_neither_matplotlib_nor_the_kernels():
+    code = (
+        "import sys, vbraille.pictures as p; from vbraille.render import VBD;"
+        "p.wave(VBD, VBD.geometry, VBD.tuning);"
+        "sys.exit(str({'matplotlib', 'numba', 'louis'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.strip() == "set()"

@@ -1,0 +1,43 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vbraille.devices.hand import DEVICE, FLUENT, HumanHand, Sweep
+from vbraille.reading import EndOfLine
+
+SPAN_MM, END_MM = 10.8, 100.0
+
+
+def test_a_line_is_done_when_the_hand_was_at_the_end_and_is_back():
+    end = EndOfLine(SPAN_MM, END_MM)
+    assert not end.step(-SPAN_MM)
+    assert not end.step(90)
+    assert not end.step(-SPAN_MM)  # back, but never at the end
+    assert not end.step(END_MM - SPAN_MM / 2)
+    assert end.reached
+    assert not end.step(-SPAN_MM + 1.1)
+    assert end.step(-SPAN_MM + 0.9)
+
+
+@given(st.lists(st.floats(-SPAN_MM, END_MM), max_size=60), st.integers(1, 9))
+def test_find_is_step_for_many(places, part):
+    one, many = EndOfLine(SPAN_MM, END_MM), EndOfLine(SPAN_MM, END_MM)
+    stepped = next((n for n, x_mm in enumerate(places) if one.step(x_mm)), None)
+    found = None
+    for start in range(0, len(places), part):
+        at = many.find(np.array(places[start : start + part]))
+        if at is not None:
+            found = start + at
+            break
+    assert found == stepped
+
+
+@pytest.mark.parametrize("hand", [Sweep(60), HumanHand(DEVICE, 3), HumanHand(FLUENT, 4)])
+@pytest.mark.parametrize("end_mm", [6.3, 17.4, 285.0])
+def test_made_up_hands_are_done_once_and_at_the_last(hand, end_mm):
+    for _ in range(5):
+        places = hand.read_line(-SPAN_MM, end_mm).sample(1000)
+        done = EndOfLine(SPAN_MM, end_mm).find(places)
+        assert done is not None
+        assert done >= places.size - 10  # nothing but the last millimetre is left

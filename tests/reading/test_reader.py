@@ -1,0 +1,178 @@
+"""A reader on the manual clock: lines, commands, and what is said."""
+
+import numpy as np
+import pytest
+
+from tests.engine.test_loop import Recording, biggest_step, run, straight
+from vbraille.devices.hand import Sweep
+from vbraille.engine import Loop, ManualClock
+from vbraille.page import Layout
+from vbraille.reading import COMMANDS, Echo, Reader
+from vbraille.reading.commands import BY_KEY
+from vbraille.render import STRESS2, Tuning
+from vbraille.translate import Book, Document, Table
+
+SPAN_MM = 10.8
+TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
+
+
+class Bench:
+    """A reader with its device, and all that it says."""
+
+    def __init__(self, text=TEXT, hand=None, tuning=STRESS2.tuning, width=20, **options):
+        self.clock = ManualClock()
+        self.device = Recording(self.clock)
+        self.loop = Loop(self.device, self.clock)
+        self.said: list[str] = []
+        self.layout = Layout(Book(Document.from_text(text), Table("en-ueb-g2.ctb")), width)
+
+        def move(_line, end_mm):
+            if hand is not None:
+                self.device.move(hand.read_line(-SPAN_MM, end_mm))
+
+        self.reader = Reader(
+            self.layout,
+            self.loop,
+            model=STRESS2,
+            geometry=STRESS2.geometry,
+            mapping=STRESS2.mapping,
+            tuning=tuning,
+            say=self.said.append,
+            on_line=move,
+            **options,
+        )
+        self.reader.start()
+
+    def run(self, seconds=60.0):
+        for _ in range(int(seconds * 1000)):
+            if self.reader.done:
+                return
+            self.loop.tick()
+            self.reader.step()
+
+    def press(self, keys):
+        before = len(self.said)
+        for key in keys:
+            self.reader.press(key)
+        return self.said[before:]
+
+
+def test_the_hand_s_return_brings_the_next_line_until_the_end():
+    bench = Bench(hand=Sweep(100), echo=Echo.BOTH)
+    bench.run()
+    assert bench.reader.done
+    assert bench.reader.lines == 3
+    lines = list(bench.layout.lines())
+    assert [s for s in bench.said if not s.startswith("speed")] == [
+        said
+        for line in lines
+        for said in (
+            f"line: {line.number}",
+            f"cells: {line.printed.to_unicode()}",
+            f"text: {line.text}",
+        )
+    ]
+    assert biggest_step(bench.device.sent) < 1  # a frame a tick, and the hand's own motion only
+
+
+@pytest.mark.parametrize(
+    ("echo", "labels"), [("none", []), ("text", ["line", "text"]), ("cells", ["line", "cells"])]
+)
+def test_echo(echo, labels):
+    bench = Bench(echo=Echo(echo))
+    assert [said.split(":")[0] for said in bench.said] == labels
+
+
+def test_a_range_of_lines():
+    bench = Bench(hand=Sweep(200), echo=Echo.TEXT, first=2, last=2)
+    bench.run()
+    assert bench.said[:2] == ["line: 2", "text: four five six"]
+    assert bench.reader.lines == 1
+
+
+def test_a_range_past_the_end_is_done_at_once():
+    assert Bench(first=9).reader.done
+
+
+def test_with_keys_only_a_key_brings_the_next_line():
+    bench = Bench(hand=Sweep(300), advance=False, echo=Echo.TEXT)
+    bench.run(10)
+    assert not bench.reader.done
+    assert bench.press("n") == ["line: 2", "text: four five six"]
+
+
+def test_next_and_previous_line_and_their_ends():
+    bench = Bench(echo=Echo.TEXT)
+    assert bench.press("p") == ["first line"]
+    assert bench.press("n")[0] == "line: 2"
+    assert bench.press(["down"])[0] == "line: 3"
+    assert bench.press("n") == ["last line"]
+    assert bench.press(["up"])[0] == "line: 2"
+
+
+def test_the_word_is_the_one_under_the_middle_of_the_array():
+    bench = Bench()
+    assert bench.press("w") == ["word: none here"]  # nobody knows yet where the hand is
+    pitch = STRESS2.geometry.cell_pitch_mm
+    cells = {}
+    line = bench.layout.line(1)
+    for cell in range(len(line)):
+        bench.device.move(
+            straight((0, cell * pitch + 3 - SPAN_MM / 2), (1, cell * pitch + 3 - SPAN_MM / 2))
+        )
+        run(bench.loop, 1)
+        cells[cell] = bench.press("w")[0]
+    assert cells[0] == cells[1] == "word: none here"  # the indent
+    words = [cells[cell].removeprefix("word: ") for cell in range(len(line))]
+    assert [w for n, w in enumerate(words) if w != "none here" and w != words[n - 1]] == [
+        "one",
+        "two",
+        "three",
+    ]
+
+
+def test_pause_and_go_on():
+    bench = Bench(hand=Sweep(40))
+    bench.run(1)
+    assert not bench.loop.resting
+    assert bench.press(" ") == ["paused"]
+    bench.run(0.03)
+    assert bench.loop.resting
+    assert bench.press(" ") == ["reading"]
+    bench.run(0.5)
+    assert not bench.loop.resting
+
+
+def test_each_turn_is_said_in_one_line_shown_and_kept_in_bounds():
+    bench = Bench(tuning=Tuning(texture=0.8, contrast=0.15))
+    bench.device.move(straight((0, 25.0), (60, 25.0)))
+    run(bench.loop, 0.5)
+    before = bench.loop.output.copy()
+    assert bench.press("ttt") == ["texture: 0.9", "texture: 1", "texture: 1, the most"]
+    assert bench.press("CCC") == ["contrast: 0.05", "contrast: 0", "contrast: 0, the least"]
+    assert bench.press("Tcc") == ["texture: 0.9", "contrast: 0.1", "contrast: 0.2"]
+    assert bench.reader.tuning == Tuning(texture=0.9, contrast=0.2)
+    run(bench.loop, 0.5)
+    assert np.abs(bench.loop.output - before).max() > 0.01
+
+
+def test_help_says_every_key_and_every_key_does_something():
+    bench = Bench()
+    assert len(bench.press("h")) == len(COMMANDS)
+    for key in BY_KEY:
+        Bench().reader.press(key)
+    assert bench.press("x") == ["no command: 'x'; h says the keys"]
+    bench.press("q")
+    assert bench.reader.done
+
+
+def test_a_hand_too_fast_for_texture_is_told_once():
+    def told(speed, tuning=STRESS2.tuning):
+        bench = Bench(hand=Sweep(speed), tuning=tuning)
+        bench.run()
+        return [said for said in bench.said if said.startswith("speed")]
+
+    assert told(70) == []
+    assert len(told(80)) == 1
+    assert "below 74 mm/s" in told(80)[0]
+    assert told(80, Tuning(texture=0)) == []

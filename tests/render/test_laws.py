@@ -1,0 +1,304 @@
+"""What holds for every line, every way to show it, and every place."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.render.scenes import (
+    JIT,
+    Scene,
+    cell,
+    examples,
+    frame_at,
+    line,
+    many_places,
+    models,
+    scenes,
+    scenes_with_places,
+)
+from vbraille import geometry
+from vbraille.geometry import Geometry
+from vbraille.render import MAPPINGS, STRESS2, VBD, ActuatorArray, Profile, Tuning, single_row
+
+FLOAT32 = 1e-7  # deflections of at most 1, rounded once
+
+
+def frames_at(scene, x_mm):
+    renderer = scene.renderer()
+    return np.array([frame_at(renderer, x) for x in x_mm])
+
+
+# Kernel equals twin
+
+
+@examples(200)
+@given(scenes_with_places())
+def test_the_frame_kernel_equals_its_twin(drawn):
+    scene, x_mm = drawn
+    frames = frames_at(scene, x_mm)
+    np.testing.assert_allclose(frames, scene.twin(x_mm), rtol=0, atol=1e-12 + scene.rounding(x_mm))
+
+
+@examples(120)
+@given(scenes_with_places())
+def test_the_path_kernel_equals_its_twin(drawn):
+    scene, x_mm = drawn
+    frames = scene.renderer().path(x_mm)
+    assert frames.dtype == np.float32
+    np.testing.assert_allclose(frames, scene.twin(x_mm), rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("texture", [0.0, 0.25, 1.0])
+@pytest.mark.parametrize(
+    ("model", "mapping"),
+    [(VBD, single_row(dot_row)) for dot_row in (1, 2, 3)]
+    + [(STRESS2, mapping) for mapping in MAPPINGS.values()],
+    ids=lambda part: part.name,
+)
+def test_kernels_equal_their_twin_on_the_displays_as_they_are(model, mapping, texture, rng):
+    masks = rng.integers(0, 256, 6).astype(np.uint8)
+    scene = models(masks, mapping=mapping, tuning=Tuning(texture=texture))[model.name]
+    start, end = -scene.array.span_mm - 1, scene.geometry.extent_mm(masks.size) + 1
+    x_mm = np.sort(rng.uniform(start, end, 300 if JIT else 60))
+    twin = scene.twin(x_mm)
+    np.testing.assert_allclose(frames_at(scene, x_mm), twin, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(scene.renderer().path(x_mm), twin, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("profile", Profile)
+@pytest.mark.parametrize(
+    "crowded",
+    [
+        pytest.param(Geometry(3.0, 2.0, 4.0, 3.6, 14.0), id="within the cell"),
+        pytest.param(Geometry(3.0, 4.0, 2.0, 3.6, 14.0), id="between cells"),
+        pytest.param(Geometry(4.0, 2.0, 2.0, 3.6, 14.0), id="three at one place"),
+    ],
+)
+def test_kernels_equal_their_twin_where_dots_overlap(profile, crowded, rng):
+    masks = np.full(4, 63, np.uint8)
+    scene = models(
+        masks,
+        profile=profile,
+        geometry=crowded,
+        mapping=MAPPINGS["sheared"],
+        tuning=Tuning(texture=0.5, contrast=0.9),
+    )["stress2"]
+    x_mm = rng.uniform(-12, 26, 1000 if JIT else 50)
+    twin = scene.twin(x_mm)
+    np.testing.assert_allclose(frames_at(scene, x_mm), twin, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(scene.renderer().path(x_mm), twin, rtol=0, atol=1e-6)
+
+
+# The same place, the same deflections
+
+
+@examples(60)
+@given(scenes_with_places(many_places), st.randoms(use_true_random=False))
+def test_a_place_gives_the_same_whichever_way_the_hand_came(drawn, random):
+    scene, x_mm = drawn
+    renderer = scene.renderer()
+    frames = renderer.path(x_mm)
+    order = list(range(x_mm.size))
+    random.shuffle(order)
+    for way in (slice(None, None, -1), slice(None, None, 3), order):
+        np.testing.assert_allclose(renderer.path(x_mm[way]), frames[way], rtol=0, atol=FLOAT32)
+
+
+@pytest.mark.parametrize("count", [1, 63, 64, 65, 127, 128, 129, 200])
+def test_a_path_of_any_length_is_its_frames(count, rng):
+    for scene in models(line(cell(1, 5), 63, cell(4))).values():
+        x_mm = rng.uniform(-8, 30, count)
+        frames = scene.renderer().path(x_mm)
+        assert frames.shape == (count, *scene.array.shape)
+        np.testing.assert_allclose(frames, frames_at(scene, x_mm), rtol=0, atol=FLOAT32)
+
+
+@examples(60)
+@given(scenes_with_places())
+def test_a_frame_and_a_path_say_the_same(drawn):
+    scene, x_mm = drawn
+    frames = scene.renderer().path(x_mm)
+    np.testing.assert_allclose(frames, frames_at(scene, x_mm), rtol=0, atol=FLOAT32)
+
+
+@examples(60)
+@given(scenes_with_places(), scenes_with_places())
+def test_nothing_stays_from_earlier_calls(drawn, other):
+    scene, x_mm = drawn
+    renderer = scene.renderer()
+    first = [frame_at(renderer, x) for x in x_mm]
+    renderer.path(x_mm[::-1])
+    frames_at(*other)
+    with np.errstate(over="ignore"):
+        frame_at(renderer, 1e308)
+    frame_at(renderer, np.nan)
+    for x, frame in zip(x_mm[::-1], first[::-1], strict=True):
+        np.testing.assert_array_equal(frame_at(renderer, x), frame)
+        np.testing.assert_array_equal(frame_at(scene.renderer(), x), frame)
+
+
+@examples(120)
+@given(scenes_with_places())
+def test_one_pitch_shifts_the_frame_by_one_column(drawn):
+    scene, x_mm = drawn
+    frames = frames_at(scene, x_mm)
+    shifted = frames_at(scene, x_mm + scene.array.column_pitch_mm)
+    atol = 1e-12 + scene.rounding(x_mm)
+    np.testing.assert_allclose(shifted[:, :, :-1], frames[:, :, 1:], rtol=0, atol=atol)
+
+
+# Where it is at rest, and how far it goes
+
+
+@examples(120)
+@given(scenes_with_places())
+def test_rest_exactly_outside_every_dot(drawn):
+    scene, x_mm = drawn
+    width = scene.geometry.dot_width_mm
+    idle = scene.idle()
+    surface = x_mm[:, None] + scene.array.column_offsets_mm()
+    outside = np.ones((x_mm.size, *scene.array.shape), bool)
+    well_inside = ~outside
+    for row, left_edge in scene.dots():
+        aside = np.abs(surface - left_edge - width / 2)
+        outside[:, row] &= aside > width / 2 + 1e-9
+        well_inside[:, row] |= aside < width / 4
+    frames = frames_at(scene, x_mm)
+    idles = np.broadcast_to(idle, frames.shape)
+    np.testing.assert_array_equal(frames[outside], idles[outside])
+    np.testing.assert_array_equal(scene.renderer().path(x_mm)[outside], idles[outside])
+    nominal = replace(scene, tuning=replace(scene.tuning, texture=0.0))
+    swings = np.abs(frames_at(nominal, x_mm) - idle)
+    # Half a swing or more in the middle half of a dot, or this law would hold of nothing at all.
+    assert np.all(swings[well_inside] >= scene.tuning.contrast / 2 - 1e-9)
+
+
+@examples(200)
+@given(scenes(), st.floats())
+def test_all_deflections_are_finite_and_from_0_to_1(scene, x_mm):
+    renderer = scene.renderer()
+    # Not compiled, the kernels are python, and numpy warns of what is too large to square.
+    with np.errstate(over="ignore"):
+        frames = (frame_at(renderer, x_mm), renderer.path(np.array([x_mm]))[0])
+    for frame in frames:
+        assert np.all((frame >= 0) & (frame <= 1))
+        if not abs(x_mm) < 1e6:
+            np.testing.assert_array_equal(frame, np.broadcast_to(scene.idle(), frame.shape))
+
+
+@examples(120)
+@given(scenes_with_places())
+def test_deflections_on_the_line_are_from_0_to_1(drawn):
+    scene, x_mm = drawn
+    renderer = scene.renderer()
+    for frames in (frames_at(scene, x_mm), renderer.path(x_mm), scene.twin(x_mm)):
+        assert np.all((frames >= 0) & (frames <= 1))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("x_mm", [np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19])
+def test_no_place_at_all_gives_the_idle_frame(x_mm, dtype):
+    for profile in Profile:
+        for distances in (geometry.STRESS2, Geometry(6.0, 2.0, 4.5, 3.6, 14.0)):
+            scene = models(
+                np.full(3, 63, np.uint8),
+                profile=profile,
+                mapping=MAPPINGS["row-sheared"],
+                geometry=distances,
+            )["stress2"]
+            with np.errstate(over="ignore"):
+                frame = frame_at(scene.renderer(), x_mm, dtype)
+            expected = np.repeat([[0.0], [0.0], [1.0], [1.0], [0.0], [0.0]], 10, axis=1)
+            np.testing.assert_array_equal(frame, expected)
+
+
+@examples(200)
+@given(scenes_with_places(), st.floats(-9, -1))
+def test_no_slope_is_steeper_than_the_equations_allow(drawn, exponent):
+    scene, x_mm = drawn
+    half_step_mm = 10**exponent
+    change = frames_at(scene, x_mm + half_step_mm) - frames_at(scene, x_mm - half_step_mm)
+    most = scene.steepest_per_mm() * 2 * half_step_mm
+    assert np.abs(change).max() <= most + 1e-12 + 2 * scene.rounding(x_mm)
+
+
+@pytest.mark.parametrize("texture", [0.0, 1.0])
+def test_the_bound_on_slopes_is_a_close_one(texture):
+    for scene in models(line(cell(1)), tuning=Tuning(texture=texture)).values():
+        x_mm = np.linspace(0, scene.geometry.dot_width_mm, 2001)
+        one = replace(scene, array=ActuatorArray(scene.array.rows, 1, 1.0, 1.0))
+        slopes = np.abs(np.diff(frames_at(one, x_mm)[:, 0, 0]) / np.diff(x_mm))
+        assert 0.9 * scene.steepest_per_mm() < slopes.max() <= scene.steepest_per_mm()
+
+
+# Contrast
+
+
+@examples(120)
+@given(scenes_with_places())
+def test_contrast_scales_the_swing_about_the_idle_end(drawn):
+    scene, x_mm = drawn
+    full = replace(scene, tuning=replace(scene.tuning, contrast=1.0))
+    swings = frames_at(full, x_mm) - scene.idle()
+    expected = scene.idle() + scene.tuning.contrast * swings
+    np.testing.assert_allclose(frames_at(scene, x_mm), expected, rtol=0, atol=1e-12)
+
+
+# Strain between neighbours, Lévesque 2009, fig. 3.10
+
+PITCH_MM = 0.7
+PAIR = ActuatorArray(rows=1, columns=2, column_pitch_mm=PITCH_MM, row_pitch_mm=1.0)
+STEP_MM = 0.001 if JIT else 0.005
+
+
+def neighbours_over_a_dot(width_mm):
+    """Deflections of two neighbours, and the strain between them, as the hand goes over a dot."""
+    scene = Scene(
+        line(cell(1)),
+        array=PAIR,
+        profile=VBD.profile,
+        mapping=VBD.mapping,
+        geometry=replace(geometry.VBD, dot_width_mm=width_mm),
+        tuning=Tuning(),
+    )
+    left, right = frames_at(scene, np.arange(-PITCH_MM - 0.1, width_mm + 0.1, STEP_MM))[:, 0].T
+    return left, right, (right - left) / PITCH_MM
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.5, 0.65])
+def test_dots_narrower_than_the_pitch_move_one_neighbour_at_a_time(width_mm):
+    left, right, strain = neighbours_over_a_dot(width_mm)
+    assert not np.any((left > 0) & (right > 0))
+    # One way, then nothing at all while the dot is between the two, then the other way.
+    between = slice(np.flatnonzero(strain > 0)[-1] + 1, np.flatnonzero(strain < 0)[0])
+    assert not np.any(left[between])
+    assert not np.any(right[between])
+    stretch_mm = STEP_MM * (between.stop - between.start)
+    assert stretch_mm == pytest.approx(PITCH_MM - width_mm, abs=2 * STEP_MM)
+    assert strain.max() == pytest.approx(1 / PITCH_MM, rel=1e-3)
+    assert strain.min() == pytest.approx(-1 / PITCH_MM, rel=1e-3)
+
+
+@pytest.mark.parametrize("width_mm", [0.75, 1.0, 1.3, 1.5, 2.0, 3.0])
+def test_dots_wider_than_the_pitch_turn_expansion_into_compression(width_mm):
+    left, right, strain = neighbours_over_a_dot(width_mm)
+    both = (left > 0) & (right > 0)
+    assert STEP_MM * both.sum() == pytest.approx(width_mm - PITCH_MM, abs=2 * STEP_MM)
+    # While both are off rest strain falls all the time, from one sign to the other.
+    falling = strain[both]
+    assert np.all(np.diff(falling) < 0)
+    assert falling[0] > 0 > falling[-1]
+    assert not np.any(strain[: np.argmax(both)] < 0)
+    assert not np.any(strain[both.size - np.argmax(both[::-1]) :] > 0)
+
+
+@pytest.mark.parametrize("width_mm", [0.3, 0.75, 1.0, 1.35, 1.5, 2.0, 2.5, 3.0])
+def test_beyond_twice_the_pitch_strain_stays_below_its_maximum(width_mm):
+    _, _, strain = neighbours_over_a_dot(width_mm)
+    peak = 1.0 if width_mm <= 2 * PITCH_MM else np.sin(np.pi * PITCH_MM / width_mm)
+    assert (peak < 0.999) == (width_mm > 2 * PITCH_MM)
+    assert strain.max() == pytest.approx(peak / PITCH_MM, rel=1e-3)
+    assert strain.min() == pytest.approx(-peak / PITCH_MM, rel=1e-3)

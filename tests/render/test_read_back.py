@@ -1,0 +1,105 @@
+"""Every cell of a line can be told again from frames and positions alone."""
+
+import numpy as np
+import pytest
+
+from tests.render.reader import read_back
+from tests.render.scenes import DOT_PLACES, JIT, cell
+from vbraille import geometry
+from vbraille.render import LATERO, MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
+from vbraille.render.renderer import Renderer
+
+TEXTURES = [0.0, 0.25, 1.0]
+STEP_MM = 0.7 if JIT else 1.5
+
+
+def every_cell(rng):
+    """A line of all 64 cells, each at least once, in a random order."""
+    cells = np.concatenate([np.arange(64), rng.integers(0, 64, 4)])
+    return rng.permutation(cells).astype(np.uint8)
+
+
+def hand(rng, array, geometry, cells):
+    """Positions of a hand that goes over the line and back, at no even speed."""
+    start, end = -array.span_mm - 3, geometry.extent_mm(cells) + 1
+    even = np.arange(start, end, STEP_MM)
+    there, back = even + rng.uniform(0, STEP_MM, (2, even.size))
+    return np.concatenate([there, back[::-1]])
+
+
+def told(rng, masks, *, array, profile, mapping, geometry, tuning):
+    renderer = Renderer(
+        masks, array=array, profile=profile, mapping=mapping, geometry=geometry, tuning=tuning
+    )
+    x_mm = hand(rng, array, geometry, len(masks))
+    frames = renderer.path(x_mm)
+    read = read_back(frames, x_mm, array=array, mapping=mapping, geometry=geometry)
+    assert read.size >= len(masks)
+    assert not read[len(masks) :].any()
+    return read[: len(masks)]
+
+
+@pytest.mark.parametrize("texture", TEXTURES)
+@pytest.mark.parametrize("name", MAPPINGS)
+def test_every_cell_of_a_line_on_the_stress2(name, texture, rng):
+    masks = every_cell(rng)
+    read = told(
+        rng,
+        masks,
+        array=STRESS2.array,
+        profile=STRESS2.profile,
+        mapping=MAPPINGS[name],
+        geometry=STRESS2.geometry,
+        tuning=Tuning(texture=texture),
+    )
+    np.testing.assert_array_equal(read, masks)
+
+
+@pytest.mark.parametrize("texture", TEXTURES)
+@pytest.mark.parametrize("dot_row", [1, 2, 3])
+def test_none_left_right_or_both_on_the_vbd(dot_row, texture, rng):
+    masks = every_cell(rng)
+    read = told(
+        rng,
+        masks,
+        array=VBD.array,
+        profile=VBD.profile,
+        mapping=single_row(dot_row),
+        geometry=VBD.geometry,
+        tuning=Tuning(texture=texture),
+    )
+    left, right = cell(dot_row), cell(dot_row + 3)
+    names = {0: "none", left: "left", right: "right", left | right: "both"}
+    shown = [names[mask & (left | right)] for mask in masks]
+    assert {*shown} == {*names.values()}
+    assert [names[mask] for mask in read] == shown
+
+
+@pytest.mark.parametrize("profile", Profile)
+@pytest.mark.parametrize("name", MAPPINGS)
+def test_another_array_other_distances_and_little_contrast(name, profile, rng):
+    masks = every_cell(rng)
+    read = told(
+        rng,
+        masks,
+        array=LATERO,
+        profile=profile,
+        mapping=MAPPINGS[name],
+        geometry=geometry.STANDARD,
+        tuning=Tuning(texture=0.5, contrast=0.2, cycles=3),
+    )
+    np.testing.assert_array_equal(read, masks)
+
+
+def test_dots_7_and_8_have_no_row_of_their_own(rng):
+    masks = rng.integers(0, 256, 40).astype(np.uint8)
+    read = told(
+        rng,
+        masks,
+        array=STRESS2.array,
+        profile=STRESS2.profile,
+        mapping=STRESS2.mapping,
+        geometry=STRESS2.geometry,
+        tuning=STRESS2.tuning,
+    )
+    np.testing.assert_array_equal(read, masks & cell(*(dot for dot in DOT_PLACES if dot < 7)))

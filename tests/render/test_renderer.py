@@ -1,0 +1,283 @@
+"""The kernels, through the renderer, against the equations written out."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.render.scenes import cell, examples, frame_at, line, models
+from vbraille import geometry
+from vbraille.geometry import Geometry
+from vbraille.render import (
+    LATERO,
+    MAPPINGS,
+    STRESS2,
+    STRESS2_ARRAY,
+    VBD,
+    VBD_ARRAY,
+    ActuatorArray,
+    Profile,
+    Tuning,
+    single_row,
+)
+from vbraille.render.kernels import blend
+from vbraille.render.renderer import Renderer
+
+ONE = ActuatorArray(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
+PEAK = {0.0: 1.0, 1.0: 1.107908722138734}  # M(a) of thesis-like textures, a = T / 8
+
+
+def half_sine(u_mm, width_mm, level):
+    if not 0 < u_mm < width_mm:
+        return 0.0
+    theta = math.pi * u_mm / width_mm
+    return (math.sin(theta) + level / 8 * math.sin(8 * theta)) / PEAK[level]
+
+
+def raised_cosine(u_mm, width_mm, level, cycles=7):
+    p = u_mm / (width_mm / 2) - 1
+    if not -1 <= p <= 1:
+        return 0.0
+    delta = (1 - level) * math.cos(math.pi * p) + level * math.cos(cycles * math.pi * p)
+    return (delta + 1) / 2
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0])
+def test_the_vbd_samples_one_function_at_twelve_places(level):
+    scene = models(line(cell(1), 0, cell(1, 4)), tuning=Tuning(texture=level))["vbd"]
+    renderer = scene.renderer()
+    for x_mm in np.linspace(-9, 30, 200):
+        frame = frame_at(renderer, x_mm)
+        assert frame.shape == (1, 12)
+        expected = [
+            sum(half_sine(x_mm + i * 0.7 - edge, 2.0, level) for edge in (0, 20.96, 24.96))
+            for i in range(12)
+        ]
+        np.testing.assert_allclose(frame[0], expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("level", [0.0, 0.25, 1.0])
+def test_the_stress2_samples_its_dots_at_ten_places_of_each_row(level):
+    scene = models(line(0, cell(1, 5)), tuning=Tuning(texture=level))["stress2"]
+    renderer = scene.renderer()
+    for x_mm in np.linspace(-2, 20, 200):
+        expected = np.zeros((6, 10))
+        for i in range(10):
+            expected[0, i] = raised_cosine(x_mm + i * 1.2 - 11.1, 2.6, level)
+            expected[2, i] = raised_cosine(x_mm + i * 1.2 - 14.8, 2.6, level)
+        np.testing.assert_allclose(frame_at(renderer, x_mm), expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("level", [0.3, 1.0])
+@pytest.mark.parametrize("cycles", [1, 3, 5, 7, 9, 11])
+def test_the_polynomial_of_every_k_is_the_cosine(cycles, level):
+    renderer = Renderer(
+        line(cell(1)),
+        array=ONE,
+        profile=Profile.RAISED_COSINE,
+        mapping=single_row(1),
+        geometry=geometry.STRESS2,
+        tuning=Tuning(texture=level, cycles=cycles),
+    )
+    u_mm = np.linspace(-0.2, 2.8, 601)
+    frames = [frame_at(renderer, u)[0, 0] for u in u_mm]
+    expected = [raised_cosine(u, 2.6, level, cycles) for u in u_mm]
+    np.testing.assert_allclose(frames, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("level", [0.0, 0.25, 1.0])
+def test_the_texture_of_the_vbd_has_no_k_to_turn(level):
+    x_mm = np.linspace(0, 2, 50)
+    paths = [
+        models(line(1), tuning=Tuning(texture=level, cycles=cycles))["vbd"].renderer().path(x_mm)
+        for cycles in (1, 7, 11)
+    ]
+    np.testing.assert_array_equal(paths[0], paths[1])
+    np.testing.assert_array_equal(paths[0], paths[2])
+
+
+@pytest.mark.parametrize("profile", Profile)
+def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
+    # Both dots of a cell 3 mm wide and 2 mm apart; and the right one reaches into the next cell.
+    crowded = Geometry(3.0, 2.0, 2.5, row_spacing_mm=3.6, line_pitch_mm=14.0)
+    swing = half_sine if profile is Profile.HALF_SINE else raised_cosine
+    renderer = Renderer(
+        line(cell(1, 4), cell(1)),
+        array=STRESS2_ARRAY,
+        profile=profile,
+        mapping=MAPPINGS["sheared"],
+        geometry=crowded,
+        tuning=Tuning(texture=1.0, contrast=0.8),
+    )
+    seen = set()
+    for x_mm in np.linspace(-0.5, 8, 171):
+        swings = [swing(x_mm - edge, 3.0, 1.0) for edge in (0.0, 2.0, 4.5)]
+        seen.add(tuple(value > 0.01 for value in swings))
+        frame = frame_at(renderer, x_mm)
+        # The inverted row of the pair goes as far the other way.
+        expected = [1 - 0.8 * max(swings), 0.8 * max(swings), 1, 0, 1, 0]
+        np.testing.assert_allclose(frame[:, 0], expected, rtol=0, atol=1e-12)
+    assert {(True, True, False), (False, True, True)} <= seen
+
+
+@pytest.mark.parametrize("contrast", [0.0, 0.3, 1.0])
+def test_contrast_scales_about_both_idle_ends(contrast):
+    scene = models(
+        line(cell(1, 2)), mapping=MAPPINGS["row-sheared"], tuning=Tuning(contrast=contrast)
+    )["stress2"]
+    on_the_dots = frame_at(scene.renderer(), 1.3)[:, 0]
+    expected = [contrast, contrast, 1 - contrast, 1 - contrast, 0, 0]
+    np.testing.assert_allclose(on_the_dots, expected, atol=1e-12)
+    off_the_dots = frame_at(scene.renderer(), -20.0)[:, 0]
+    np.testing.assert_array_equal(off_the_dots, [0, 0, 1, 1, 0, 0])
+
+
+def test_an_empty_line_is_idle_everywhere():
+    for scene in models(line()).values():
+        x_mm = np.linspace(-30, 30, 61)
+        assert not scene.renderer().path(x_mm).any()
+        assert not frame_at(scene.renderer(), 0.5).any()
+    inverted = models(line(), mapping=MAPPINGS["sheared"])["stress2"].renderer()
+    np.testing.assert_array_equal(frame_at(inverted, 0.5)[:, 4], [1, 0, 1, 0, 1, 0])
+
+
+def test_a_line_of_one_cell():
+    renderer = models(line(cell(4)))["stress2"].renderer()
+    # The right dot column stands 3.7 mm from the left edge; column 5 is 6 mm from the left one.
+    frame = frame_at(renderer, 3.7 + 1.3 - 6.0)
+    np.testing.assert_allclose(frame[0, 5], 1.0, atol=1e-12)
+    far = np.abs(np.arange(10) - 5) * 1.2 > 1.3
+    np.testing.assert_array_equal(frame[0, far], 0.0)
+    np.testing.assert_array_equal(frame[1:], 0.0)
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS.values(), ids=MAPPINGS)
+def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
+    says = rf"^mapping {mapping.name} needs 6 actuator rows; the array has 1$"
+    with pytest.raises(ValueError, match=says):
+        Renderer(
+            line(1),
+            array=VBD_ARRAY,
+            profile=VBD.profile,
+            mapping=mapping,
+            geometry=VBD.geometry,
+            tuning=VBD.tuning,
+        )
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS.values(), ids=MAPPINGS)
+def test_the_lateros_last_two_rows_rest(mapping, rng):
+    masks = rng.integers(0, 64, 5).astype(np.uint8)
+    x_mm = np.linspace(-9, 60, 90)
+    upper, all_rows = (
+        models(masks, mapping=mapping, array=array)["stress2"].renderer().path(x_mm)
+        for array in (ActuatorArray(6, 8, 1.2, 1.6125), LATERO)
+    )
+    np.testing.assert_allclose(all_rows[:, :6], upper, rtol=0, atol=1e-7)
+    np.testing.assert_array_equal(all_rows[:, 6:], 0.0)
+
+
+def test_one_dot_row_on_an_array_of_many_rows():
+    scene = models(np.full(2, 63, np.uint8), mapping=single_row(2))["stress2"]
+    frames = scene.renderer().path(np.linspace(-12, 20, 100))
+    assert np.ptp(frames[:, 0]) > 0.9
+    np.testing.assert_array_equal(frames[:, 1:], 0.0)
+
+
+def test_the_largest_array():
+    largest = ActuatorArray(rows=16, columns=64, column_pitch_mm=0.5, row_pitch_mm=1.0)
+    scene = models(line(63, 0, 21), array=largest, mapping=MAPPINGS["paired"])["stress2"]
+    x_mm = np.array([-20.0, -1.0, 3.3])
+    twin = scene.twin(x_mm)
+    assert np.ptp(twin) > 0.9
+    np.testing.assert_allclose(scene.renderer().path(x_mm), twin, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(frame_at(scene.renderer(), -1.0), twin[1], rtol=0, atol=1e-12)
+
+
+# Where frames are put
+
+
+def test_a_frame_in_single_and_in_double_precision():
+    for scene in models(line(63, 63)).values():
+        renderer = scene.renderer()
+        single, double = (frame_at(renderer, 2.2, dtype) for dtype in (np.float32, np.float64))
+        assert np.ptp(double) > 0.1
+        np.testing.assert_allclose(single, double, rtol=0, atol=1e-7)
+
+
+def test_a_frame_may_be_a_part_of_something_larger():
+    scene = models(line(63, 63))["stress2"]
+    renderer = scene.renderer()
+    larger = np.full((8, 24), -5.0)
+    renderer.frame(2.2, larger[1:7, 2:22:2])
+    np.testing.assert_allclose(larger[1:7, 2:22:2], scene.twin(2.2)[0], rtol=0, atol=1e-12)
+    larger[1:7, 2:22:2] = -5.0
+    np.testing.assert_array_equal(larger, -5.0)
+
+
+def test_a_path_fills_what_it_is_given():
+    renderer = models(line(63, 63))["stress2"].renderer()
+    x_mm = np.linspace(0, 5, 7)
+    room = np.full((9, 6, 10), np.float32(-5))
+    assert renderer.path(x_mm, room[1:8]).base is room
+    np.testing.assert_array_equal(room[1:8], renderer.path(x_mm))
+    np.testing.assert_array_equal(room[[0, 8]], -5)
+
+
+@pytest.mark.parametrize("shape", [(6, 6, 10), (8, 6, 10), (7, 8, 10), (7, 6, 12), (7, 60)])
+def test_a_path_refuses_frames_of_another_shape(shape):
+    renderer = models(line(63))["stress2"].renderer()
+    says = rf"^the frames have shape \({', '.join(map(str, shape))}\); it must be \(7, 6, 10\)$"
+    with pytest.raises(ValueError, match=says):
+        renderer.path(np.linspace(0, 5, 7), np.empty(shape, np.float32))
+
+
+def test_positions_of_a_path_may_be_any_numbers_in_a_row():
+    renderer = models(line(63))["stress2"].renderer()
+    x_mm = np.arange(6.0)
+    frames = renderer.path(x_mm)
+    for same in (np.repeat(x_mm, 2)[::2], x_mm.astype(np.float32), np.arange(6), list(x_mm)):
+        np.testing.assert_array_equal(renderer.path(same), frames)
+    assert renderer.path(np.empty(0)).shape == (0, 6, 10)
+
+
+def test_the_line_may_change_after_it_was_compiled():
+    masks = line(63, 63)
+    renderer = models(masks)["stress2"].renderer()
+    before = frame_at(renderer, 1.3)
+    masks[:] = 0
+    np.testing.assert_array_equal(frame_at(renderer, 1.3), before)
+    assert before.any()
+
+
+# From one frame to another
+
+levels = st.floats(0, 1)
+frames = st.tuples(levels, levels).map(lambda held: np.array([held]))
+
+
+def blended(before, after, share):
+    out = np.full_like(before, np.nan)
+    blend(before, after, share, out)
+    return out
+
+
+@examples(200)
+@given(frames, frames, levels)
+def test_a_blend_is_linear_and_between_the_two(before, after, share):
+    out = blended(before, after, share)
+    np.testing.assert_allclose(out, (1 - share) * before + share * after, rtol=0, atol=1e-15)
+    assert np.all(out >= np.minimum(before, after))
+    assert np.all(out <= np.maximum(before, after))
+    np.testing.assert_array_equal(blended(before, after, 0.0), before)
+    np.testing.assert_array_equal(blended(before, after, 1.0), after)
+
+
+def test_a_blend_from_rest_to_a_frame():
+    renderer = models(line(63))["stress2"].renderer()
+    frame = frame_at(renderer, STRESS2.geometry.dot_width_mm / 3)
+    rest = np.zeros_like(frame)
+    np.testing.assert_allclose(blended(rest, frame, 0.25), frame / 4, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(blended(frame, rest, 0.25), frame * 0.75, rtol=0, atol=1e-15)

@@ -1,0 +1,200 @@
+"""Options to objects: the page, and how it is shown."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from vbraille.devices import DeviceInfo
+from vbraille.errors import InputError
+from vbraille.geometry import PRESETS, Geometry
+from vbraille.page import Layout
+from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
+from vbraille.translate import Book, Document, Table, find_table
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from vbraille.page import Line
+
+LEVELS = 1024  # 10 bits, as the source's devices take
+COUNTS_PER_MM = 200.0  # 5 µm a count: at full texture 4 % of the swing
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A text laid out for a model.
+
+    Parameters
+    ----------
+    layout
+        Its lines.
+    model, geometry
+        What they are laid out for.
+    first, last
+        Lines asked for.
+    """
+
+    layout: Layout
+    model: Model
+    geometry: Geometry
+    first: int
+    last: int | None
+
+    @property
+    def document(self) -> Document:
+        """The text."""
+        return self.layout.book.document
+
+    def lines(self) -> Iterator[Line]:
+        """Lines asked for; says on stderr what the text's encoding needs saying."""
+        for line in self.layout.lines(self.first, self.last):
+            self.say_note()
+            yield line
+
+    def progress(self, line: Line) -> float:
+        """How much of the lines asked for is done with this one, about, 0 to 1."""
+        if self.last is None:
+            return self.layout.progress(line)
+        return (line.number - self.first + 1) / (self.last - self.first + 1)
+
+    def say_note(self) -> None:
+        """Say once if the text is not UTF-8."""
+        note = self.document.note()
+        if note is not None:
+            print(note, file=sys.stderr, flush=True)
+
+
+def build_geometry(arguments: argparse.Namespace) -> tuple[Model, Geometry]:
+    """Model and distances.
+
+    Raises
+    ------
+    InputError
+        If a length is out of range.
+    """
+    model = MODELS[arguments.model]
+    geometry = PRESETS[arguments.geometry] if arguments.geometry else model.geometry
+    given = {
+        f"{name}_mm": getattr(arguments, name)
+        for name in ("dot_width", "dot_spacing", "cell_gap", "line_pitch", "travel")
+        if getattr(arguments, name) is not None
+    }
+    try:
+        return model, replace(geometry, **given)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def build_table(arguments: argparse.Namespace) -> Table:
+    """Table of the text.
+
+    Raises
+    ------
+    InputError
+        If there is none such.
+    """
+    if arguments.table is None:
+        return Table(find_table(arguments.language or "en", arguments.grade))
+    if arguments.language is not None or arguments.grade is not None:
+        raise InputError("a table has its language and grade; give either --table or those")
+    return Table(arguments.table)
+
+
+def build_page(arguments: argparse.Namespace) -> Page:
+    """Page of the text, and say on stderr how wide it is.
+
+    Raises
+    ------
+    InputError
+        If an option or the text cannot be used.
+    """
+    model, geometry = build_geometry(arguments)
+    try:
+        width = geometry.cells_per_line(model.array.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    table = build_table(arguments)
+    document = Document.open(arguments.file, arguments.encoding, keep_lines=arguments.keep_lines)
+    print(f"line width: {width} cells", file=sys.stderr, flush=True)
+    first, last = arguments.lines
+    return Page(Layout(Book(document, table), width), model, geometry, first, last)
+
+
+def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tuning]:
+    """How the lines are shown.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range or not the model's.
+    """
+    if model.array.rows == 1:
+        if arguments.mapping is not None:
+            raise InputError(f"the {model.title} has one row of actuators; --dot-row chooses dots")
+        if arguments.texture_cycles is not None:
+            raise InputError(f"the texture of the {model.title} has a fixed wavelength")
+    elif arguments.dot_row is not None:
+        raise InputError(f"the {model.title} shows all dot rows; --mapping chooses how")
+    given = {
+        name: value
+        for name, value in (
+            ("texture", arguments.texture),
+            ("contrast", arguments.contrast),
+            ("cycles", arguments.texture_cycles),
+        )
+        if value is not None
+    }
+    try:
+        mapping = model.mapping
+        if arguments.dot_row is not None:
+            mapping = single_row(arguments.dot_row)
+        elif arguments.mapping is not None:
+            mapping = MAPPINGS[arguments.mapping]
+        return mapping, replace(model.tuning, **given)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def check_rate(rate_hz: float) -> float:
+    """Frames a second, if possible.
+
+    Raises
+    ------
+    InputError
+        If it is not 1 to 10,000.
+    """
+    if not 1 <= rate_hz <= 10_000:
+        raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+    return rate_hz
+
+
+def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
+    """Device that the page is laid out for; a simulated one is just so."""
+    array = model.array
+    return DeviceInfo(
+        name=f"simulated {model.title}",
+        rows=array.rows,
+        columns=array.columns,
+        column_pitch_mm=array.column_pitch_mm,
+        row_pitch_mm=array.row_pitch_mm,
+        levels=LEVELS,
+        rest_side=model.rest_side,
+        travel_mm=geometry.travel_mm,
+        counts_per_mm=COUNTS_PER_MM,
+        rate_hz=rate_hz,
+    )
+
+
+def note_unseen_dots(page: Page, mapping: Mapping) -> None:
+    """Say on stderr if the table writes dots that the display does not show."""
+    info = page.layout.book.table.info
+    if info is not None and info.dots == 8 and mapping.rows > 1:
+        print(
+            f"table {info.name} has eight dots; the {page.model.title} shows six, "
+            f"so that dots 7 and 8 are not felt",
+            file=sys.stderr,
+            flush=True,
+        )

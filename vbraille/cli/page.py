@@ -1,0 +1,37 @@
+"""``vbraille page``."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from vbraille.cli.build import build_page
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.page import Line
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the lines."""
+    page = build_page(arguments)
+    write = sys.stdout.write
+    for line in page.lines():
+        write(f"{_format(line, arguments.format)}\n")
+    page.say_note()
+    return 0
+
+
+def _format(line: Line, how: str) -> str:
+    if how == "text":
+        return line.text
+    if how == "dots":
+        return line.printed.to_dots()
+    if how == "unicode":
+        return line.printed.to_unicode()
+    try:
+        return line.printed.to_brf()
+    except ValueError as error:
+        raise InputError(f"line {line.number}: {error}; use --format unicode") from None

@@ -1,0 +1,173 @@
+"""The options of every command."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from typing import TYPE_CHECKING, NoReturn
+
+from vbraille import __version__
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MAPPINGS = ("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact")
+PLOTS = ("profile", "mapping", "wave", "strain", "page")
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are one sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message} ({self.prog} --help says what there is)")
+
+
+def parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    """Read the command line.
+
+    Raises
+    ------
+    InputError
+        If it cannot be understood.
+    """
+    parser = _Parser(
+        prog="vbraille",
+        description="Read braille under one fingertip, on a page as large as you like.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"vbraille {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def command(name: str, text: str) -> argparse.ArgumentParser:
+        return commands.add_parser(name, help=text, description=f"{text}.", allow_abbrev=False)
+
+    read = command("read", "Read a text on a device, line after line")
+    _text_options(read)
+    _show_options(read)
+    read.add_argument("--device", default="sim", metavar="SPEC", help="sim (default)")
+    read.add_argument(
+        "--advance",
+        choices=("return", "key"),
+        default="return",
+        help="next line when the hand returns (default), or by key",
+    )
+    read.add_argument(
+        "--echo",
+        choices=("none", "text", "cells", "both"),
+        help="what to say of each line (default: none at a terminal, else both)",
+    )
+    _hand_options(read)
+
+    page = command("page", "Print the laid-out page")
+    _text_options(page)
+    _page_options(page)
+    page.add_argument(
+        "--format",
+        choices=("unicode", "brf", "dots", "text"),
+        default="unicode",
+        help="Unicode braille (default), ASCII braille, dot numbers, or the text of each line",
+    )
+
+    render = command("render", "Write every frame of a reading to an HDF5 file")
+    _text_options(render)
+    _show_options(render)
+    _hand_options(render)
+    render.add_argument("--out", required=True, metavar="FILE.h5", help="the file to write")
+    render.add_argument("--plain", action="store_true", help="progress as lines, without a bar")
+
+    plot = command("plot", "Draw a picture, or print its numbers")
+    plot.add_argument("kind", choices=PLOTS, metavar="KIND", help=", ".join(PLOTS))
+    _text_options(plot, optional=True)
+    _show_options(plot)
+    plot.add_argument("--out", metavar="F.png|F.svg", help="the picture to write")
+    plot.add_argument("--csv", action="store_true", help="print the numbers instead")
+    plot.add_argument(
+        "--at", type=_number, default=20.0, metavar="MM", help="page: where the array is (20)"
+    )
+    plot.add_argument("--letter", help="mapping: the letter shown (z)")
+    plot.set_defaults(model=None)  # the one that the source drew the figure for
+
+    tables = command("tables", "List the braille tables there are")
+    tables.add_argument("--language", metavar="TAG", help="only of this language, such as fr")
+
+    return parser.parse_args(argv)
+
+
+def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
+    parser.add_argument("file", metavar="FILE", nargs="?" if optional else None, help="a text file")
+    parser.add_argument("--table", metavar="NAME", help="a liblouis table")
+    parser.add_argument("--language", metavar="TAG", help="instead of a table (en)")
+    parser.add_argument("--grade", type=_whole, metavar="N", help="of the language's braille")
+    parser.add_argument("--encoding", metavar="NAME", help="of the text, if it is not what it says")
+    parser.add_argument(
+        "--keep-lines", action="store_true", help="keep the text's line breaks (verse, code)"
+    )
+    parser.add_argument(
+        "--lines", type=_lines, default=(1, None), metavar="3-10", help="of the book, from 1"
+    )
+
+
+def _page_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--model", choices=("stress2", "vbd"), default="stress2", help="the display (stress2)"
+    )
+    parser.add_argument(
+        "--geometry", choices=("stress2", "vbd", "standard"), help="distances to start from"
+    )
+    for name, text in (
+        ("dot-width", "of a dot along the line"),
+        ("dot-spacing", "between the two dot columns of a cell"),
+        ("cell-gap", "from a cell's right dot column to the next cell's left one"),
+        ("line-pitch", "between lines"),
+        ("travel", "of the carriage; the source gives none, 300 is vbraille's own"),
+    ):
+        parser.add_argument(f"--{name}", type=_number, metavar="MM", help=text)
+
+
+def _show_options(parser: argparse.ArgumentParser) -> None:
+    _page_options(parser)
+    parser.add_argument("--texture", type=_number, metavar="0…1", help="level of texture")
+    parser.add_argument(
+        "--texture-cycles", type=_whole, metavar="K", help="stress2: half-cycles a radius, odd (7)"
+    )
+    parser.add_argument("--contrast", type=_number, metavar="0…1", help="share of the full swing")
+    parser.add_argument("--mapping", choices=MAPPINGS, help="stress2: dots to actuator rows")
+    parser.add_argument("--dot-row", type=_whole, metavar="1|2|3", help="vbd: the row shown (1)")
+
+
+def _hand_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--hand",
+        default="sweep:60",
+        metavar="HAND",
+        help="simulated: sweep:SPEED in mm/s (sweep:60), device, fluent, recorded:FILE.csv",
+    )
+    parser.add_argument("--seed", type=_whole, default=1, help="of the hand's chances (1)")
+    parser.add_argument(
+        "--rate", type=_number, default=1000.0, metavar="HZ", help="frames a second (1000)"
+    )
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+
+
+def _whole(text: str) -> int:
+    if not re.fullmatch(r"[+-]?[0-9]{1,18}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
+    return int(text)
+
+
+def _lines(text: str) -> tuple[int, int | None]:
+    found = re.fullmatch(r"([0-9]{1,15})?(-)?([0-9]{1,15})?", text)
+    if found is None or not (found[1] or found[3]):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a range of lines, such as 3-10")
+    first = int(found[1] or 1)
+    last = int(found[3]) if found[3] else None if found[2] else first
+    if first < 1 or (last is not None and last < first):
+        raise argparse.ArgumentTypeError(f"{text!r} is no range: lines count from 1 upwards")
+    return first, last

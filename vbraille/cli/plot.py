@@ -1,0 +1,83 @@
+"""``vbraille plot``."""
+
+from __future__ import annotations
+
+import math
+import sys
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from vbraille import pictures
+from vbraille.cli.build import build_geometry, build_page, build_show, build_table
+from vbraille.errors import InputError
+from vbraille.render import VBD
+from vbraille.translate import Document
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.pictures import Table
+
+_LINES = 6  # of a page, unless told otherwise
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw a picture, or print its numbers."""
+    if (arguments.out is None) == (not arguments.csv):
+        raise InputError("give --out F.png or F.svg for a picture, or --csv for its numbers")
+    if arguments.kind == "page" and arguments.file is None:
+        raise InputError("plot page needs a text: vbraille plot page FILE")
+    if arguments.kind != "page" and arguments.file is not None:
+        raise InputError(f"plot {arguments.kind} takes no text; only plot page does")
+    table = _table(arguments)
+    if arguments.csv:
+        pictures.write_csv(table, sys.stdout)
+        return 0
+    from vbraille.pictures import draw
+
+    draw.save(draw.draw(table), arguments.out)
+    print(f"drawn: {table.title}, {arguments.out}")
+    return 0
+
+
+def _table(arguments: argparse.Namespace) -> Table:
+    if arguments.model is None:
+        arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
+    model, geometry = build_geometry(arguments)
+    mapping, tuning = build_show(arguments, model)
+    match arguments.kind:
+        case "profile":
+            return pictures.profile(model, geometry, tuning)
+        case "wave":
+            return pictures.wave(model, geometry, tuning)
+        case "strain":
+            if model is not VBD:
+                raise InputError("the strain figure is of the VBD; leave --model out or give vbd")
+            return pictures.strain(geometry, tuning)
+        case "mapping":
+            if model is VBD:
+                raise InputError("the VBD has one row; the mappings are of stress2")
+            return pictures.mapping(geometry, tuning, **_letter(arguments))
+    if not math.isfinite(arguments.at):
+        raise InputError(f"--at is {arguments.at}; it must be a number of mm")
+    page = build_page(arguments)
+    lines = list(islice(page.lines(), None if page.last else _LINES))
+    if not lines:
+        raise InputError(f"{page.document.name} has no line {page.first}")
+    return pictures.page(
+        lines, model=model, mapping=mapping, geometry=geometry, tuning=tuning, x_mm=arguments.at
+    )
+
+
+def _letter(arguments: argparse.Namespace) -> dict:
+    """Cells of the letter asked for, if one is."""
+    if arguments.letter is None:
+        return {}
+    if not arguments.letter.strip():
+        raise InputError("--letter is blank; give a letter")
+    paragraph = Document.from_text(arguments.letter).paragraph(0)
+    assert paragraph is not None
+    cells = build_table(arguments).translate(paragraph)
+    if not 1 <= len(cells) <= 4:
+        raise InputError(f"{arguments.letter!r} is {len(cells)} cells; give a letter of 1 to 4")
+    return {"masks": cells.masks}

@@ -1,0 +1,111 @@
+"""``vbraille read``."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+from vbraille.cli.build import build_page, build_show, check_rate, device_info, note_unseen_dots
+from vbraille.devices import open_device
+from vbraille.devices.hand import Recorded, parse_hand
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.engine import Loop, RealClock
+from vbraille.errors import InputError
+from vbraille.reading import Echo, Reader
+from vbraille.reading.keyboard import Keyboard
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+    from vbraille.cli.build import Page
+    from vbraille.devices import Device
+    from vbraille.devices.hand import Hand
+    from vbraille.page import Line
+
+_KEYS_EVERY = 20  # ticks
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read until the text ends, a key says so, or something goes wrong."""
+    page = build_page(arguments)
+    mapping, tuning = build_show(arguments, page.model)
+    rate_hz = check_rate(arguments.rate)
+    hand = parse_hand(arguments.hand, arguments.seed)
+    if arguments.advance == "key" and not (sys.stdin and sys.stdin.isatty()):
+        raise InputError("--advance key needs a terminal to type at; leave it out without one")
+    wanted = device_info(page.model, page.geometry, rate_hz)
+    note_unseen_dots(page, mapping)
+    with Keyboard() as keyboard, open_device(arguments.device, wanted) as device:
+        loop = Loop(device, RealClock(), rate_hz=rate_hz)
+        reader = Reader(
+            page.layout,
+            loop,
+            model=page.model,
+            geometry=page.geometry,
+            mapping=mapping,
+            tuning=tuning,
+            say=_say,
+            first=page.first,
+            last=page.last,
+            advance=arguments.advance == "return",
+            echo=_echo(arguments.echo),
+            on_line=_mover(device, hand),
+        )
+        try:
+            _read(page, loop, reader, keyboard)
+        finally:
+            # Nothing that is typed or sent now may keep the array from going to rest.
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_IGN)
+            loop.fade_to_rest()
+    _say(_summary(reader, loop))
+    return 0
+
+
+def _read(page: Page, loop: Loop, reader: Reader, keyboard: Keyboard) -> None:
+    reader.start()
+    loop.warm_up()
+    page.say_note()
+    if keyboard.attached:
+        _say("h says the keys")
+    loop.restart_clock()
+    while not reader.done:
+        loop.tick()
+        reader.step()
+        if loop.tally.ticks % _KEYS_EVERY == 0:
+            for key in keyboard.pressed():
+                reader.press(key)
+            page.say_note()
+
+
+def _mover(device: Device, hand: Hand | Recorded) -> Callable[[Line, float], None] | None:
+    """Have the simulated hand read each line; a real one needs no telling."""
+    if not isinstance(device, SimulatedDevice):
+        return None
+    if isinstance(hand, Recorded):
+        device.move(hand.motion())
+        return None
+    start_mm = -device.info.span_mm
+    return lambda _line, end_mm: device.move(hand.read_line(start_mm, end_mm))
+
+
+def _echo(chosen: str | None) -> Echo:
+    """What to say of each line; at a terminal, speech must not read the book aloud."""
+    if chosen is not None:
+        return Echo(chosen)
+    return Echo.NONE if sys.stdout.isatty() else Echo.BOTH
+
+
+def _say(sentence: str) -> None:
+    print(sentence, flush=True)
+
+
+def _summary(reader: Reader, loop: Loop) -> str:
+    tally = loop.tally
+    return (
+        f"summary: {reader.lines} lines, {tally.ticks / loop.rate_hz:.1f} s, "
+        f"mean scanning speed {tally.scanning_mm_s:.1f} mm/s, "
+        f"{tally.ticks} ticks, {tally.late} late ticks"
+    )

@@ -1,0 +1,140 @@
+"""``vbraille render``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from vbraille.cli.build import build_page, build_show, check_rate, note_unseen_dots
+from vbraille.devices.hand import Recorded, parse_hand
+from vbraille.errors import InputError
+from vbraille.reading import EndOfLine, too_fast_note
+from vbraille.recording import Recorder, new_file
+from vbraille.render.renderer import Renderer
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+    from tqdm import tqdm
+
+    from vbraille.cli.build import Page
+    from vbraille.devices.hand import Hand
+    from vbraille.page import Line
+    from vbraille.render import Mapping, Tuning
+
+_BLOCK_FRAMES = 16_384
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the frames of every line asked for, and say how many."""
+    if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
+        raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
+    page = build_page(arguments)
+    mapping, tuning = build_show(arguments, page.model)
+    rate_hz = check_rate(arguments.rate)
+    hand = parse_hand(arguments.hand, arguments.seed)
+    note_unseen_dots(page, mapping)
+    lines = frames = 0
+    too_fast: str | None = None
+    with new_file(arguments.out) as file, _Progress(plain=arguments.plain) as progress:
+        recorder = Recorder(file, page.model.array, page.layout.width)
+        recorder.describe(
+            model=page.model,
+            mapping=mapping,
+            geometry=page.geometry,
+            tuning=tuning,
+            rate_hz=rate_hz,
+            first_line=page.first,
+            source=page.document.name,
+            sha256=page.document.sha256(),
+        )
+        for line, xs in _walk(page, hand, rate_hz):
+            row = recorder.add_line(line.masks)
+            renderer = _renderer(line, page, mapping, tuning)
+            for start in range(0, xs.size, _BLOCK_FRAMES):
+                x_mm = xs[start : start + _BLOCK_FRAMES]
+                t_s = (frames + np.arange(x_mm.size)) / rate_hz
+                recorder.add_frames(t_s, x_mm, row, renderer.path(x_mm))
+                frames += x_mm.size
+            lines += 1
+            too_fast = too_fast or too_fast_note(
+                _fastest(xs, rate_hz), page.model, page.geometry, tuning
+            )
+            progress.at(page.progress(line))
+    if too_fast is not None:
+        print(too_fast, file=sys.stderr)
+    page.say_note()
+    print(f"rendered: {lines} lines, {frames} frames, {frames / rate_hz:.1f} s of reading")
+    return 0
+
+
+def _walk(
+    page: Page, hand: Hand | Recorded, rate_hz: float
+) -> Iterator[tuple[Line, NDArray[np.float64]]]:
+    """Lines, each with the places of the array's left column while it is under the hand."""
+    span_mm = page.model.array.span_mm
+    recorded = hand.motion().sample(rate_hz) if isinstance(hand, Recorded) else None
+    for line in page.lines():
+        end_mm = page.geometry.extent_mm(len(line))
+        if recorded is None:
+            assert not isinstance(hand, Recorded)
+            yield line, hand.read_line(-span_mm, end_mm).sample(rate_hz)
+            continue
+        if not recorded.size:
+            return
+        done = EndOfLine(span_mm, end_mm).find(recorded)
+        stop = recorded.size if done is None else done + 1
+        yield line, recorded[:stop]
+        recorded = recorded[stop:]
+
+
+def _renderer(line: Line, page: Page, mapping: Mapping, tuning: Tuning) -> Renderer:
+    return Renderer(
+        line.masks,
+        array=page.model.array,
+        profile=page.model.profile,
+        mapping=mapping,
+        geometry=page.geometry,
+        tuning=tuning,
+    )
+
+
+def _fastest(x_mm: NDArray[np.float64], rate_hz: float) -> float:
+    """Largest speed to the right, in mm/s, as a mean over a twentieth of a second."""
+    window = max(1, round(rate_hz / 20))
+    if x_mm.size <= window:
+        return 0.0
+    return float((x_mm[window:] - x_mm[:-window]).max()) * rate_hz / window
+
+
+class _Progress:
+    """How far it is: a bar at a terminal, or a line for every tenth."""
+
+    def __init__(self, *, plain: bool) -> None:
+        self._bar: tqdm | None = None
+        self._said = 0 if plain else 100
+        if sys.stderr.isatty() and not plain:
+            from tqdm import tqdm
+
+            self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def at(self, share: float) -> None:
+        """Tell that a share of the work is done, 0 to 1."""
+        percent = round(100 * share)
+        if self._bar is not None:
+            self._bar.update(percent - self._bar.n)
+        elif percent >= self._said + 10:
+            self._said = percent - percent % 10
+            print(f"{self._said} percent", file=sys.stderr, flush=True)

@@ -1,0 +1,96 @@
+"""What every device must do, as checks that any driver's tests can run.
+
+    from vbraille.devices.conformance import CHECKS
+
+    @pytest.mark.parametrize("check", CHECKS)
+    def test_my_device(check):
+        check(lambda: MyDevice("an address"))
+
+A check is given a function that opens a fresh device, and raises AssertionError.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.devices.base import Device, DeviceInfo, Sample
+from vbraille.errors import DeviceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Open = Callable[[], Device]
+
+
+def check_info(open_device: Open) -> None:
+    """The device says what it is, and says the same again."""
+    with open_device() as device:
+        assert isinstance(device.info, DeviceInfo), "info must be a DeviceInfo"
+        assert device.info == device.info, "info must stay the same"
+        assert device.info.name.strip(), "a device has a name"
+
+
+def check_samples(open_device: Open) -> None:
+    """Samples have finite places within the travel, and times that never go back."""
+    with open_device() as device:
+        info, last_ns = device.info, None
+        for _ in range(100):
+            sample = device.read()
+            if sample is None:
+                continue
+            assert isinstance(sample, Sample), "read gives a Sample or None"
+            assert math.isfinite(sample.x_mm), "a place is a number"
+            slack = 1 / info.counts_per_mm
+            assert -info.span_mm - slack <= sample.x_mm, "the left stop is at -span"
+            assert sample.x_mm <= info.travel_mm - info.span_mm + slack, "the travel ends"
+            assert last_ns is None or sample.time_ns >= last_ns, "time never goes back"
+            last_ns = sample.time_ns
+
+
+def check_frames(open_device: Open) -> None:
+    """Frames from rest to full swing are taken, and left as they were."""
+    with open_device() as device:
+        for share in (0.0, 0.25, 1.0):
+            frame = _frame(device, share)
+            device.write(frame)
+            assert (frame == share).all(), "a frame belongs to the caller"
+
+
+def check_bad_frames(open_device: Open) -> None:
+    """A frame that is out of range, no number or of another shape is refused."""
+    with open_device() as device:
+        for bad in (-0.001, 1.001, math.nan, math.inf, -math.inf):
+            frame = _frame(device, 0.5)
+            frame[-1, -1] = bad
+            _refused(device, frame, f"a deflection of {bad}")
+        _refused(device, np.zeros((device.info.rows + 1, device.info.columns)), "another shape")
+        device.write(_frame(device, 0.5))
+
+
+def check_close(open_device: Open) -> None:
+    """Closing twice is closing once; nothing is written after it."""
+    device = open_device()
+    device.write(_frame(device, 1.0))
+    device.close()
+    device.close()
+    _refused(device, _frame(device, 0.0), "a frame after close")
+
+
+CHECKS = (check_info, check_samples, check_frames, check_bad_frames, check_close)
+
+
+def _frame(device: Device, share: float) -> NDArray[np.float64]:
+    return np.full((device.info.rows, device.info.columns), share)
+
+
+def _refused(device: Device, frame: NDArray[np.float64], what: str) -> None:
+    try:
+        device.write(frame)
+    except DeviceError:
+        return
+    raise AssertionError(f"{what} must be refused with a DeviceError")

@@ -1,0 +1,128 @@
+"""Motions: times and places, made step by step."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LEAST_KNOT_S = 1e-6  # what is shorter takes as long, so that time always increases
+# Rounding: what ticks and samples at tenths or thousandths of a second may be off.
+SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """A way along the surface, straight between its knots.
+
+    Parameters
+    ----------
+    t_s : float64[n]
+        Time of each knot, from 0, increasing; at least 2.
+    x_mm : float64[n]
+        Where the array's left column is then.
+
+    Raises
+    ------
+    ValueError
+        If the two differ in length, a value is not finite, or time does not
+        begin at 0 and increase.
+    """
+
+    t_s: NDArray[np.float64]
+    x_mm: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        if self.t_s.ndim != 1 or self.t_s.shape != self.x_mm.shape or self.t_s.size < 2:
+            raise ValueError(
+                f"times and positions have shapes {self.t_s.shape} and {self.x_mm.shape}; "
+                f"they must be as many, 2 or more"
+            )
+        if not (np.isfinite(self.t_s).all() and np.isfinite(self.x_mm).all()):
+            raise ValueError("a time or a position is not finite; they must be numbers")
+        if self.t_s[0] != 0:
+            raise ValueError(f"time begins at {self.t_s[0]:g} s; it must begin at 0")
+        if not (np.diff(self.t_s) > 0).all():
+            raise ValueError("time does not increase; each knot must be later than the one before")
+
+    @property
+    def duration_s(self) -> float:
+        """Time of the last knot."""
+        return float(self.t_s[-1])
+
+    def sample(
+        self, rate_hz: float, first: int = 0, count: int | None = None
+    ) -> NDArray[np.float64]:
+        """Positions at multiples of 1 / rate, up to the end.
+
+        Parameters
+        ----------
+        rate_hz
+            Ticks a second, above 0.
+        first
+            Number of the first tick wanted; tick 0 is at time 0.
+        count
+            At most so many, for a long motion in parts; None is all.
+
+        Returns
+        -------
+        float64[n]
+            In mm. The end itself is there only if it falls on a tick.
+
+        Raises
+        ------
+        ValueError
+            If the rate, the first tick or the count is out of range.
+        """
+        if not 0 < rate_hz < math.inf:
+            raise ValueError(f"rate is {rate_hz:g} Hz; it must be a number above 0")
+        if first < 0 or (count is not None and count < 0):
+            raise ValueError(
+                f"first tick and count are {first} and {count}; they must be 0 or more"
+            )
+        stop = 1 + math.floor(self.duration_s * rate_hz + SLACK)
+        if count is not None:
+            stop = min(stop, first + count)
+        return np.interp(np.arange(first, stop) / rate_hz, self.t_s, self.x_mm)
+
+
+class Way:
+    """A motion in the making.
+
+    Parameters
+    ----------
+    x_mm
+        Where it begins.
+
+    Attributes
+    ----------
+    x_mm : float
+        Where it has come to.
+    """
+
+    def __init__(self, x_mm: float) -> None:
+        self.x_mm = x_mm
+        self._t_s = 0.0
+        self._knots = [(0.0, x_mm)]
+
+    def move(self, to_mm: float, speed_mm_s: float) -> None:
+        """Go to a place, at a speed above 0; where it is already, do nothing."""
+        if to_mm != self.x_mm:
+            duration_s = abs(to_mm - self.x_mm) / speed_mm_s
+            self.x_mm = to_mm
+            self.wait(duration_s)
+
+    def wait(self, duration_s: float) -> None:
+        """Stay for some time."""
+        self._t_s += max(duration_s, LEAST_KNOT_S)
+        self._knots.append((self._t_s, self.x_mm))
+
+    def motion(self) -> Motion:
+        """Return what there is of it."""
+        t_s, x_mm = np.array(self._knots).T
+        return Motion(t_s, x_mm)

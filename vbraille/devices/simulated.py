@@ -1,0 +1,97 @@
+"""A device in memory, whose carriage a simulated hand moves."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.devices.base import Device, DeviceInfo, Sample
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from vbraille.devices.motion import Motion
+
+NS_PER_S = 1_000_000_000
+# How a hand goes to where its next motion begins.
+APPROACH_MM_S = 250.0
+
+
+class SimulatedDevice(Device):
+    """A device without hardware; a hand moves its carriage in the time of a clock.
+
+    Its encoder counts, its levels are as coarse as it says, and it rests on
+    close, as other devices do.
+
+    Parameters
+    ----------
+    info
+        What it is to be.
+    now_ns
+        Its clock.
+
+    Attributes
+    ----------
+    levels : int64[rows, columns]
+        What the actuators were last sent, 0 … info.levels - 1.
+    frames : int
+        Frames received.
+    """
+
+    def __init__(self, info: DeviceInfo, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
+        self._info = info
+        self._now_ns = now_ns
+        self.levels = np.zeros((info.rows, info.columns), np.int64)
+        self.frames = 0
+        self._begun_ns = now_ns()
+        home = -info.span_mm
+        self._t_s: NDArray[np.float64] = np.zeros(1)
+        self._x_mm: NDArray[np.float64] = np.full(1, home)
+
+    @property
+    def info(self) -> DeviceInfo:
+        """What the device says of itself."""
+        return self._info
+
+    @property
+    def moving(self) -> bool:
+        """Whether the hand is still on its way."""
+        return (self._now_ns() - self._begun_ns) / NS_PER_S < self._t_s[-1]
+
+    def move(self, motion: Motion) -> None:
+        """Move the hand along a motion, from now on; first to where that begins."""
+        here = self._hand_mm(self._now_ns())
+        approach_s = abs(motion.x_mm[0] - here) / APPROACH_MM_S
+        self._begun_ns = self._now_ns()
+        if approach_s > 0:
+            self._t_s = np.concatenate(([0.0], motion.t_s + approach_s))
+            self._x_mm = np.concatenate(([here], motion.x_mm))
+        else:
+            self._t_s, self._x_mm = motion.t_s, motion.x_mm
+
+    def read(self) -> Sample | None:
+        """Sample of the carriage now, to the nearest count of the encoder."""
+        now_ns = self._now_ns()
+        info = self._info
+        way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
+        counts = round(way * info.counts_per_mm)
+        return Sample(now_ns, counts / info.counts_per_mm - info.span_mm)
+
+    def _hand_mm(self, now_ns: int) -> float:
+        return float(np.interp((now_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm))
+
+    def _send(self, frame: NDArray[np.float64]) -> None:
+        np.rint(frame * (self._info.levels - 1), out=self.levels, casting="unsafe")
+        self.frames += 1
+
+    def _release(self) -> None:
+        """Nothing to let go."""
+
+
+def open_simulated(_address: str, wanted: DeviceInfo) -> SimulatedDevice:
+    """Open ``sim:``: a device as the page wants it."""
+    return SimulatedDevice(wanted)

@@ -1,0 +1,51 @@
+"""Clocks: the machine's, and one that tests and fast runs turn by hand."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """Nanoseconds that never go back."""
+
+    def now_ns(self) -> int:
+        """Time since some fixed moment."""
+        ...
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Return at the deadline, or at once if it has passed."""
+        ...
+
+
+class RealClock:
+    """The machine's monotonic clock."""
+
+    def now_ns(self) -> int:
+        """Time since some fixed moment."""
+        return time.monotonic_ns()
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Return at the deadline, or at once if it has passed."""
+        left = deadline_ns - time.monotonic_ns()
+        if left > 0:
+            time.sleep(left / 1e9)
+
+
+class ManualClock:
+    """A clock that goes only when somebody sleeps on it or turns it."""
+
+    def __init__(self) -> None:
+        self._now_ns = 0
+
+    def now_ns(self) -> int:
+        """Time turned so far."""
+        return self._now_ns
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Turn the clock to the deadline."""
+        self._now_ns = max(self._now_ns, deadline_ns)
+
+    def advance_ns(self, step_ns: int) -> None:
+        """Turn the clock on."""
+        self._now_ns += step_ns

@@ -1,0 +1,12 @@
+"""What the source draws, as numbers and as pictures.
+
+`series` and `surface` compute a `Table` of numbers for each picture, `draw`
+makes a figure of it. `draw` alone imports matplotlib, and so is not imported
+here.
+"""
+
+from vbraille.pictures.series import mapping, profile, strain, wave
+from vbraille.pictures.surface import page
+from vbraille.pictures.table import Table, write_csv
+
+__all__ = ["Table", "mapping", "page", "profile", "strain", "wave", "write_csv"]

@@ -1,0 +1,200 @@
+"""The numbers behind each picture; what is drawn and what `--csv` prints are these.
+
+Deflections are shares of the full swing: 0 is rest, 1 the other end. Rows and
+columns of actuators count from 0, from the far left.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.pictures.table import Table, contrast_words, tuning_words
+from vbraille.render.arrays import STRESS2_ARRAY, VBD_ARRAY
+from vbraille.render.mappings import MAPPINGS
+from vbraille.render.models import STRESS2, VBD, Profile
+from vbraille.render.reference import SWINGS, deflections
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from vbraille.geometry import Geometry
+    from vbraille.render.mappings import Mapping
+    from vbraille.render.models import Model
+    from vbraille.render.tuning import Tuning
+
+# Lévesque 2009, fig. 4.3, and the VBD's nominal and textured dots of 3.2.
+LEVELS = {Profile.RAISED_COSINE: (0.0, 0.25, 1.0), Profile.HALF_SINE: (0.0, 1.0)}
+# Narrower than ε = 0.7 mm, wider than ε, wider than 2ε: the cases of fig. 3.10.
+STRAIN_WIDTHS_MM = (0.5, 1.0, 2.0)
+# The letter of fig. 4.5, z: dots in all three rows and in both columns, no two rows alike.
+LETTER = np.array([0b110101], np.uint8)
+
+
+def profile(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
+    """Deflection across one dot, at each texture level of the source's.
+
+    Lévesque 2009, fig. 4.3 (STReSS²) and 3.2 (VBD).
+
+    Parameters
+    ----------
+    model
+        Whose dots.
+    geometry
+        Gives their width.
+    tuning
+        Contrast and cycles; its texture level is added if it is not there yet.
+
+    Returns
+    -------
+    Table
+        ``u_mm``, the distance from the dot's left edge, and of each level T a
+        column ``deflection_T<percent>``.
+    """
+    width = geometry.dot_width_mm
+    u = width * np.arange(-80, 481) / 400  # edges and centre are on the grid
+    columns: dict[str, NDArray] = {"u_mm": u}
+    for level in sorted({*LEVELS[model.profile], tuning.texture}):
+        columns[f"deflection_T{100 * level:g}"] = _swing(
+            u, width, model.profile, replace(tuning, texture=level)
+        )
+    cycles = f", k = {tuning.cycles}" if model.profile is Profile.RAISED_COSINE else ""
+    title = f"{model.title}: profile of a dot {width:g} mm wide{cycles}{contrast_words(tuning)}"
+    return Table("profile", title, columns)
+
+
+def mapping(
+    geometry: Geometry,
+    tuning: Tuning,
+    masks: NDArray[np.uint8] = LETTER,
+    methods: Sequence[Mapping] = tuple(MAPPINGS.values()),
+) -> Table:
+    """Deflection of the six rows of the STReSS² along a letter, under each method.
+
+    Lévesque 2009, fig. 4.5, and the two methods of its author's later code.
+
+    Parameters
+    ----------
+    masks : uint8[cells]
+        The letter, or several.
+    methods
+        To compare; six rows each.
+
+    Returns
+    -------
+    Table
+        ``method``, ``x_mm`` (of the actuator) and ``deflection_row_0`` … ``_5``.
+    """
+    # All columns sample the same function (eq. 3.1): one of them shows it.
+    array = replace(STRESS2_ARRAY, columns=1)
+    extent = geometry.extent_mm(len(masks))
+    x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
+    frames = [
+        deflections(
+            x,
+            masks,
+            array=array,
+            profile=STRESS2.profile,
+            mapping=method,
+            geometry=geometry,
+            tuning=tuning,
+        )[:, :, 0]
+        for method in methods
+    ]
+    columns = {
+        "method": np.repeat([method.name for method in methods], x.size),
+        "x_mm": np.tile(x, len(methods)),
+        **_numbered("deflection_row_", np.concatenate(frames).T),
+    }
+    letters = "".join(chr(0x2800 + mask) for mask in masks.tolist())
+    title = f"{STRESS2.title}: {letters} on six actuator rows{tuning_words(tuning)}"
+    return Table("mapping", title, columns)
+
+
+def wave(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
+    """Deflection of each column while the array passes one dot.
+
+    Lévesque 2009, eq. 3.1 and figs. 3.8-3.9.
+
+    Parameters
+    ----------
+    model
+        Whose array and dots.
+    geometry
+        Gives the width of the dot; its left edge is at 0.
+
+    Returns
+    -------
+    Table
+        ``x_mm``, the carriage's position, which is the left column's, and
+        ``deflection_column_0`` and on.
+    """
+    array, width = model.array, geometry.dot_width_mm
+    x = _grid(-array.span_mm - width / 4, width * 5 / 4, _step_mm(width))
+    surface = x + array.column_offsets_mm()[:, None]  # eq. 3.1
+    swing = _swing(surface, width, model.profile, tuning)
+    title = f"{model.title}: the array passes a dot {width:g} mm wide{tuning_words(tuning)}"
+    return Table("wave", title, {"x_mm": x, **_numbered("deflection_column_", swing)})
+
+
+def strain(geometry: Geometry, tuning: Tuning) -> Table:
+    """Two neighbouring actuators of the VBD, and the strain of the skin between them.
+
+    Lévesque 2009, 3.2 and fig. 3.10: (δ_{i+1} - δ_i) / ε.
+
+    Parameters
+    ----------
+    geometry
+        Its dot width is added to `STRAIN_WIDTHS_MM` if it is not there yet.
+
+    Returns
+    -------
+    Table
+        ``dot_width_mm``, ``pitch_mm`` (ε), ``x_mm`` (of the left of the two; the
+        dot's left edge is at 0), ``deflection_left``, ``deflection_right`` and
+        ``strain_per_mm`` (full swings per mm; positive is expansion).
+    """
+    pitch = VBD_ARRAY.column_pitch_mm
+    widths = sorted({*STRAIN_WIDTHS_MM, geometry.dot_width_mm})
+    parts = []
+    for width in widths:
+        x = _grid(-pitch - 0.5, max(widths) + 0.5, _step_mm(width))
+        left = _swing(x, width, VBD.profile, tuning)
+        right = _swing(x + pitch, width, VBD.profile, tuning)
+        constant = np.full(x.size, width), np.full(x.size, pitch)
+        parts.append((*constant, x, left, right, (right - left) / pitch))
+    names = (
+        "dot_width_mm",
+        "pitch_mm",
+        "x_mm",
+        "deflection_left",
+        "deflection_right",
+        "strain_per_mm",
+    )
+    joined = (np.concatenate(values) for values in zip(*parts, strict=True))
+    title = f"{VBD.title}: strain between neighbours, ε = {pitch:g} mm apart{tuning_words(tuning)}"
+    return Table("strain", title, dict(zip(names, joined, strict=True)))
+
+
+def _swing(
+    u_mm: ArrayLike, width_mm: float, shape: Profile, tuning: Tuning
+) -> NDArray[np.floating]:
+    return tuning.contrast * SWINGS[shape](u_mm, width_mm, tuning)
+
+
+def _grid(low: float, high: float, step: float) -> NDArray[np.floating]:
+    """Multiples of a step from `low` to `high`, 0 among them."""
+    return np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step
+
+
+def _step_mm(width_mm: float) -> float:
+    return min(0.01, width_mm / 100)
+
+
+def _numbered(name: str, series: NDArray[np.floating]) -> dict[str, NDArray]:
+    return {f"{name}{number}": values for number, values in enumerate(series)}

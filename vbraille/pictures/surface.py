@@ -1,0 +1,126 @@
+"""The numbers of the page: its dots on the surface and the array upon a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.pictures.table import Table, tuning_words
+from vbraille.render.mappings import NONE
+from vbraille.render.reference import deflections
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.geometry import Geometry
+    from vbraille.page import Line
+    from vbraille.render.mappings import Mapping
+    from vbraille.render.models import Model
+    from vbraille.render.tuning import Tuning
+
+
+def page(
+    lines: Sequence[Line],
+    *,
+    model: Model,
+    mapping: Mapping,
+    geometry: Geometry,
+    tuning: Tuning,
+    x_mm: float,
+    line_index: int = 0,
+) -> Table:
+    """Dots of some lines where they stand on the surface, and the array upon one of them.
+
+    Parameters
+    ----------
+    lines
+        From the top; the first dot row of the first is at y = 0.
+    model, mapping, geometry, tuning
+        What they are shown with and how.
+    x_mm
+        Place of the array's left column.
+    line_index
+        The line that the array is on, from 0.
+
+    Returns
+    -------
+    Table
+        A row a dot, then a row an actuator (``what``). Of both ``line`` (its
+        number), ``x_mm`` and ``y_mm`` (of the centre; y grows to the reader)
+        and ``width_mm`` (of the dot, or the column pitch); of a dot ``cell``
+        (from 0), ``dot`` (1 … 8) and ``raised`` (0 or 1); of an actuator
+        ``row``, ``column`` and ``deflection``.
+
+    Raises
+    ------
+    ValueError
+        If there is no line of that index.
+    """
+    if not 0 <= line_index < len(lines):
+        raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
+    six = not any((line.masks > 0x3F).any() for line in lines)
+    parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
+    line, array = lines[line_index], model.array
+    row, column = (grid.ravel() for grid in np.indices(array.shape))
+    frame = deflections(
+        x_mm,
+        line.masks,
+        array=array,
+        profile=model.profile,
+        mapping=mapping,
+        geometry=geometry,
+        tuning=tuning,
+    )
+    top = line_index * geometry.line_pitch_mm + _first_row_mm(model, mapping, geometry)
+    parts.append(
+        {
+            "what": np.full(row.size, "actuator"),
+            "line": np.full(row.size, line.number),
+            "x_mm": x_mm + array.column_offsets_mm()[column],
+            "y_mm": top + array.row_offsets_mm()[row],
+            "width_mm": np.full(row.size, array.column_pitch_mm),
+            "row": row,
+            "column": column,
+            "deflection": frame.ravel(),
+        }
+    )
+    names = dict.fromkeys(name for part in (parts[0], parts[-1]) for name in part)
+    columns = {
+        name: np.concatenate([p.get(name, np.full(len(p["what"]), np.nan)) for p in parts])
+        for name in names
+    }
+    title = (
+        f"{model.title}: line {line.number}, left column at {x_mm:g} mm, "
+        f"{mapping.name}{tuning_words(tuning)}"
+    )
+    return Table("page", title, columns)
+
+
+def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
+    """Places of the dots of a line whose first dot row is at `top_mm`."""
+    dot = np.arange(6 if six else 8)
+    dot_row = np.where(dot < 6, dot % 3, 3)
+    right = (dot == 7) | ((dot >= 3) & (dot < 6))
+    cell = np.repeat(np.arange(len(line)), dot.size)
+    centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
+    return {
+        "what": np.full(cell.size, "dot"),
+        "line": np.full(cell.size, line.number),
+        "x_mm": cell * geometry.cell_pitch_mm + np.tile(centre, len(line)),
+        "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
+        "width_mm": np.full(cell.size, geometry.dot_width_mm),
+        "cell": cell,
+        "dot": np.tile(dot + 1, len(line)),
+        "raised": (line.masks[:, None] >> dot.astype(np.uint8) & 1).ravel(),
+    }
+
+
+def _first_row_mm(model: Model, mapping: Mapping, geometry: Geometry) -> float:
+    """Where actuator row 0 is when the first row that shows dots is upon the row it shows."""
+    pairs = zip(mapping.left, mapping.right, strict=True)
+    shown = ((row, dot_row) for row, pair in enumerate(pairs) for dot_row in pair)
+    row, dot_row = next((place for place in shown if place[1] != NONE), (0, 0))
+    return dot_row * geometry.row_spacing_mm - row * model.array.row_pitch_mm

@@ -1,0 +1,51 @@
+"""When a hand is done with a line: it reached the end and came back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+HOME_MM = 1.0
+
+
+class EndOfLine:
+    """Watch a hand read a line.
+
+    The line is reached its end when the middle of the array passes the last
+    dot, and is done when the array is then back at the left stop, to a
+    millimetre.
+
+    Parameters
+    ----------
+    span_mm
+        Of the array.
+    end_mm
+        Right edge of the line's last dot.
+    """
+
+    def __init__(self, span_mm: float, end_mm: float) -> None:
+        self.reached = False
+        self._end_mm = end_mm - span_mm / 2
+        self._home_mm = HOME_MM - span_mm
+
+    def step(self, x_mm: float) -> bool:
+        """Whether the line is done, now that the array's left column is at x."""
+        if x_mm >= self._end_mm:
+            self.reached = True
+        return self.reached and x_mm <= self._home_mm
+
+    def find(self, x_mm: NDArray[np.float64]) -> int | None:
+        """First of these places, float64[n], at which the line is done; None if it is not yet."""
+        start = 0
+        if not self.reached:
+            at_end = np.flatnonzero(x_mm >= self._end_mm)
+            if not at_end.size:
+                return None
+            self.reached = True
+            start = int(at_end[0])
+        home = np.flatnonzero(x_mm[start:] <= self._home_mm)
+        return start + int(home[0]) if home.size else None

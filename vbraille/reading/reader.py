@@ -1,0 +1,255 @@
+"""A reader: the lines of a book under the hand, one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from vbraille.page import locate
+from vbraille.reading.advance import EndOfLine
+from vbraille.reading.commands import BY_KEY, COMMANDS
+from vbraille.render.renderer import Renderer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.engine.loop import Loop
+    from vbraille.geometry import Geometry
+    from vbraille.page import Layout, Line
+    from vbraille.render.mappings import Mapping
+    from vbraille.render.models import Model
+    from vbraille.render.tuning import Tuning
+
+STEP = 0.1
+# Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
+FILTER_HZ = 200.0
+
+
+class Echo(StrEnum):
+    """What is said of each line."""
+
+    NONE = "none"
+    TEXT = "text"
+    CELLS = "cells"
+    BOTH = "both"
+
+
+class Reader:
+    """Read a range of lines.
+
+    Parameters
+    ----------
+    layout
+        The book.
+    loop
+        Drives the device.
+    model, geometry, mapping, tuning
+        How lines are shown.
+    first, last
+        Lines to read, from 1, both included; None for the end.
+    advance
+        Whether the next line comes when the hand returns; else a key brings it.
+    echo
+        What to say of each line.
+    say
+        Where to say it, one thing a call.
+    on_line
+        Called with each line that comes under the hand, and its right edge.
+
+    Attributes
+    ----------
+    lines : int
+        Lines read so far: those that were under the hand.
+    done : bool
+        Whether there is no more to read, or the reader stopped.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        loop: Loop,
+        *,
+        model: Model,
+        geometry: Geometry,
+        mapping: Mapping,
+        tuning: Tuning,
+        say: Callable[[str], None],
+        first: int = 1,
+        last: int | None = None,
+        advance: bool = True,
+        echo: Echo = Echo.NONE,
+        on_line: Callable[[Line, float], None] | None = None,
+    ) -> None:
+        self.layout = layout
+        self.loop = loop
+        self.tuning = tuning
+        self.lines = 0
+        self.done = False
+        self._model = model
+        self._geometry = geometry
+        self._mapping = mapping
+        self._say = say
+        self._first, self._last = first, last
+        self._advance = advance
+        self._echo = echo
+        self._on_line = on_line or (lambda _line, _end_mm: None)
+        self._line: Line | None = None
+        self._end: EndOfLine
+        self._prefetched = False
+        self._too_fast_said = False
+
+    def start(self) -> None:
+        """Put the first line under the hand."""
+        line = self.layout.line(self._first)
+        if line is None:
+            self.done = True
+        else:
+            self._show(line)
+
+    def step(self) -> None:
+        """Look where the hand is, after a tick."""
+        x_mm = self.loop.x_mm
+        if self._line is None or x_mm is None or self.loop.paused:
+            return
+        if self._end.step(x_mm) and self._advance:
+            if not self._go(self._line.number + 1):
+                self.done = True
+        elif self._end.reached and not self._prefetched:
+            # On the way back to the start there is time for it.
+            self._prefetched = True
+            self.layout.line(self._line.number + 1)
+        self._watch_speed()
+
+    def press(self, key: str) -> None:
+        """Do what a key stands for."""
+        command = BY_KEY.get(key)
+        if command is None:
+            self._say(f"no command: {key!r}; h says the keys")
+        else:
+            getattr(self, command.name.lower())()
+
+    def lndn(self) -> None:
+        """Next line."""
+        if self._line is not None and not self._go(self._line.number + 1):
+            self._say("last line")
+
+    def lnup(self) -> None:
+        """Previous line."""
+        if self._line is not None and not self._go(self._line.number - 1):
+            self._say("first line")
+
+    def word(self) -> None:
+        """Say the word under the middle of the array."""
+        line, x_mm = self._line, self.loop.x_mm
+        cell = None
+        if line is not None and x_mm is not None:
+            cell = locate(line, self._geometry, x_mm + self._model.array.span_mm / 2)
+        word = line.word(cell) if line is not None and cell is not None else ""
+        self._say(f"word: {word}" if word else "word: none here")
+
+    def pause(self) -> None:
+        """Rest the array at once, or go on."""
+        self.loop.paused = not self.loop.paused
+        self._say("paused" if self.loop.paused else "reading")
+
+    def texture_up(self) -> None:
+        """More texture."""
+        self._turn("texture", STEP)
+
+    def texture_down(self) -> None:
+        """Less texture."""
+        self._turn("texture", -STEP)
+
+    def contrast_up(self) -> None:
+        """More contrast."""
+        self._turn("contrast", STEP)
+
+    def contrast_down(self) -> None:
+        """Less contrast."""
+        self._turn("contrast", -STEP)
+
+    def help(self) -> None:
+        """Say the keys."""
+        for command in COMMANDS:
+            keys = " or ".join("space" if key == " " else key for key in command.keys)
+            self._say(f"{keys}: {command.help}")
+
+    def quit(self) -> None:
+        """Stop reading."""
+        self.done = True
+
+    def _go(self, number: int) -> bool:
+        """Put another line under the hand; whether there is one."""
+        if number < self._first or (self._last is not None and number > self._last):
+            return False
+        line = self.layout.line(number)
+        if line is None:
+            return False
+        self._show(line)
+        return True
+
+    def _show(self, line: Line) -> None:
+        self._line = line
+        self.lines += 1
+        self._prefetched = False
+        end_mm = self._geometry.extent_mm(len(line))
+        self._end = EndOfLine(self._model.array.span_mm, end_mm)
+        self._picture(line)
+        self._say_line(line)
+        self._on_line(line, end_mm)
+
+    def _picture(self, line: Line) -> None:
+        self.loop.show(
+            Renderer(
+                line.masks,
+                array=self._model.array,
+                profile=self._model.profile,
+                mapping=self._mapping,
+                geometry=self._geometry,
+                tuning=self.tuning,
+            )
+        )
+
+    def _say_line(self, line: Line) -> None:
+        if self._echo is Echo.NONE:
+            return
+        self._say(f"line: {line.number}")
+        if self._echo in (Echo.CELLS, Echo.BOTH):
+            self._say(f"cells: {line.printed.to_unicode()}")
+        if self._echo in (Echo.TEXT, Echo.BOTH):
+            self._say(f"text: {line.text}")
+
+    def _turn(self, name: str, step: float) -> None:
+        value = round(min(max(getattr(self.tuning, name) + step, 0.0), 1.0), 6)
+        if value == getattr(self.tuning, name):
+            self._say(f"{name}: {value:g}, the {'most' if step > 0 else 'least'}")
+            return
+        self.tuning = replace(self.tuning, **{name: value})
+        self._too_fast_said = False
+        self._say(f"{name}: {value:g}")
+        if self._line is not None:
+            self._picture(self._line)
+
+    def _watch_speed(self) -> None:
+        if self._too_fast_said or self._end.reached:
+            return
+        note = too_fast_note(self.loop.speed_mm_s, self._model, self._geometry, self.tuning)
+        if note is not None:
+            self._too_fast_said = True
+            self._say(note)
+
+
+def too_fast_note(
+    speed_mm_s: float, model: Model, geometry: Geometry, tuning: Tuning
+) -> str | None:
+    """What to say of a hand so fast that texture passes the filters; None if it is not."""
+    if not tuning.texture:
+        return None
+    period_mm = model.profile.texture_period_mm(geometry.dot_width_mm, tuning.cycles)
+    if speed_mm_s / period_mm <= FILTER_HZ:
+        return None
+    return (
+        f"speed: {speed_mm_s:.0f} mm/s, at which texture passes {FILTER_HZ:g} Hz and fades; "
+        f"below {FILTER_HZ * period_mm:.0f} mm/s it is felt"
+    )

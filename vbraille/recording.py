@@ -1,0 +1,168 @@
+"""Frames and positions in HDF5: one layout for `render`, sessions and playback.
+
+`docs/recording.md` describes it.
+"""
+
+from __future__ import annotations
+
+import json
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import h5py
+
+from vbraille import __version__
+from vbraille.errors import InputError, VbrailleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.geometry import Geometry
+    from vbraille.render.arrays import ActuatorArray
+    from vbraille.render.mappings import Mapping
+    from vbraille.render.models import Model
+    from vbraille.render.tuning import Tuning
+
+CHUNK_FRAMES = 1024
+_CHUNK_LINES = 64
+
+
+class Recorder:
+    """Append frames and lines to an open file.
+
+    Parameters
+    ----------
+    file
+        Open for writing, and empty.
+    array
+        The actuators.
+    width
+        Cells a line.
+    """
+
+    def __init__(self, file: h5py.File, array: ActuatorArray, width: int) -> None:
+        self._file = file
+        rows, columns = array.shape
+
+        def growing(name: str, dtype: str, *shape: int, chunk: int = CHUNK_FRAMES) -> h5py.Dataset:
+            return file.create_dataset(
+                name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *shape)
+            )
+
+        self._time = growing("t_s", "f8")
+        self._place = growing("x_mm", "f8")
+        self._line = growing("line", "i8")
+        self._frames = growing("frames", "f4", rows, columns)
+        self._cells = growing("page/cells", "u1", width, chunk=_CHUNK_LINES)
+        self._length = growing("page/length", "i8", chunk=_CHUNK_LINES)
+        file.attrs["column_offset_mm"] = array.column_offsets_mm()
+        file.attrs["row_offset_mm"] = array.row_offsets_mm()
+        file.attrs["vbraille_version"] = __version__
+
+    def describe(
+        self,
+        *,
+        model: Model,
+        mapping: Mapping,
+        geometry: Geometry,
+        tuning: Tuning,
+        rate_hz: float,
+        first_line: int,
+        source: str,
+        sha256: str,
+    ) -> None:
+        """Write what was rendered, and how, as attributes."""
+        self._file.attrs.update(
+            model=model.name,
+            mapping=mapping.name,
+            geometry=json.dumps(asdict(geometry)),
+            tuning=json.dumps(asdict(tuning)),
+            rate_hz=rate_hz,
+            first_line=first_line,
+            source=source,
+            source_sha256=sha256,
+        )
+
+    def add_line(self, masks: NDArray[np.uint8]) -> int:
+        """Append a line of the page; its row in ``page/cells``."""
+        row = self._length.shape[0]
+        self._cells.resize(row + 1, 0)
+        self._cells[row, : masks.size] = masks
+        self._length.resize(row + 1, 0)
+        self._length[row] = masks.size
+        return row
+
+    def add_frames(
+        self,
+        t_s: NDArray[np.float64],
+        x_mm: NDArray[np.float64],
+        line: int,
+        frames: NDArray[np.float32],
+    ) -> None:
+        """Append the frames of a stretch of one line.
+
+        Parameters
+        ----------
+        t_s, x_mm : float64[n]
+            When, and where the array's left column was.
+        line
+            Row of ``page/cells``.
+        frames : float32[n, rows, columns]
+            Deflections, 0 … 1.
+        """
+        before = self._time.shape[0]
+        after = before + t_s.size
+        for dataset, values in (
+            (self._time, t_s),
+            (self._place, x_mm),
+            (self._line, line),
+            (self._frames, frames),
+        ):
+            dataset.resize(after, 0)
+            dataset[before:after] = values
+
+
+@contextmanager
+def new_file(path: Path | str) -> Iterator[h5py.File]:
+    """Write an HDF5 file under another name, which gets its own once it is whole.
+
+    Whatever ends the writing early leaves nothing behind.
+
+    Raises
+    ------
+    InputError
+        If no file can be made there.
+    VbrailleError
+        If writing fails, as on a full disk.
+    """
+    path = Path(path)
+    partial = path.with_name(f".{path.name}.partial")
+    if path.is_dir():
+        raise InputError(f"{path} is a directory; give the name of a file in it")
+    try:
+        with partial.open("wb"):
+            pass
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from None
+    try:
+        try:
+            with h5py.File(partial, "w") as file:
+                yield file
+            partial.replace(path)
+        except (OSError, RuntimeError) as error:
+            raise VbrailleError(f"{path} could not be written: {_reason(error)}") from error
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _reason(error: Exception) -> str:
+    """What the system said, out of what HDF5 made of it."""
+    text = str(error)
+    if "error message = '" in text:
+        return text.split("error message = '")[1].split("'")[0]
+    return getattr(error, "strerror", None) or text.split("(")[0].strip()
