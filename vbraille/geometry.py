@@ -85,13 +85,13 @@ class Geometry:
             If there is not even room for one.
         """
         room = self.travel_mm - span_mm - self.dot_width_mm - self.dot_spacing_mm
-        if room < 0:
+        # 1e-9: a travel given for exactly n cells must not lose one to rounding.
+        if room < -1e-9:
             least = span_mm + self.dot_width_mm + self.dot_spacing_mm
             raise ValueError(
                 f"a travel of {self.travel_mm:g} mm is too short for one cell; "
                 f"it must be at least {least:g} mm"
             )
-        # 1e-9: a travel given for exactly n cells must not lose one to rounding.
         return 1 + math.floor(room / self.cell_pitch_mm + 1e-9)
 
 

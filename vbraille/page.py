@@ -215,10 +215,17 @@ class Layout:
             paragraph, cells = before + paragraph, carried + cells
         bounds = wrap(_breaks(paragraph, cells), self.width, indent, runover)
         following = self.book.document.paragraph(number + 1)
-        if following is not None and following.continues:
-            start, _, indent = bounds.pop()
-            rest = paragraph.since(int(cells.starts[start]))
-            self._carried[number + 1] = indent, rest, cells[start:]
+        if following is None or not following.continues:
+            if paragraph.continues and bounds == [(0, 0, 0)]:
+                bounds = []  # nothing but blanks after the last piece
+        else:
+            start, stop, first = bounds.pop()
+            if start == stop:  # blank so far
+                start, first = len(cells), indent
+            elif stop < len(cells):  # the blanks after it have filled it
+                bounds.append((start, stop, first))
+                start, first = len(cells), runover
+            self._carried[number + 1] = first, *_rest(paragraph, cells, start)
         if len(self._recent) >= _REMEMBERED:
             del self._recent[next(iter(self._recent))]
         laid = self._recent[number] = _Laid(paragraph, cells, bounds)
@@ -231,6 +238,13 @@ class _Laid(NamedTuple):
     paragraph: Paragraph
     cells: Cells
     bounds: list[tuple[int, int, int]]
+
+
+def _rest(paragraph: Paragraph, cells: Cells, start: int) -> tuple[Paragraph, Cells]:
+    """A paragraph from one of its cells on; keeps nothing of what is before in memory."""
+    character = int(cells.starts[start]) if start < len(cells) else paragraph.end
+    rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
+    return paragraph.since(character), rest
 
 
 def _breaks(paragraph: Paragraph, cells: Cells) -> bytes:
@@ -265,15 +279,15 @@ def wrap(
     leading = end - len(breaks.lstrip(b"\0"))
     if leading == end:
         return [(0, 0, 0)]
-    # Deep indents of the source's own must leave room for words.
-    start = max(0, leading - width // 2)
+    # Deep indents of the source's own must leave room for words: half a line, and the first whole.
+    word = len(breaks[leading:].split(b"\0", 1)[0])
+    start = leading - min(leading, width // 2, max(0, width - indent - word))
     bounds = []
     while end - start > width - indent:
         room = width - indent
         cut = breaks.rfind(0, start, start + room + 1)
-        stop = start + len(breaks[start : max(cut, start)].rstrip(b"\0"))
-        if stop > start and breaks[start:stop].strip(b"\0"):
-            bounds.append((start, stop, indent))
+        if cut > start:
+            bounds.append((start, start + len(breaks[start:cut].rstrip(b"\0")), indent))
             start = end - len(breaks[cut:].lstrip(b"\0"))
         else:
             bounds.append((start, start + room, indent))

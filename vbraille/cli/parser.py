@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
-from typing import TYPE_CHECKING, NoReturn
 
 from vbraille import __version__
 from vbraille.errors import InputError
 
+TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import NoReturn
 
 MAPPINGS = ("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact")
 PLOTS = ("profile", "mapping", "wave", "strain", "page")
 
 
+class _Help(argparse.HelpFormatter):
+    """Help without a look at the terminal, which would load half the standard library."""
+
+    def __init__(self, prog: str) -> None:
+        columns = os.environ.get("COLUMNS", "")
+        super().__init__(prog, width=int(columns) - 2 if columns.isdecimal() else 78)
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one sentence."""
+
+    def __init__(self, **options) -> None:
+        super().__init__(**options, formatter_class=_Help, allow_abbrev=False)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} ({self.prog} --help says what there is)")
@@ -34,13 +47,12 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser = _Parser(
         prog="vbraille",
         description="Read braille under one fingertip, on a page as large as you like.",
-        allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"vbraille {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def command(name: str, text: str) -> argparse.ArgumentParser:
-        return commands.add_parser(name, help=text, description=f"{text}.", allow_abbrev=False)
+        return commands.add_parser(name, help=text, description=f"{text}.")
 
     read = command("read", "Read a text on a device, line after line")
     _text_options(read)

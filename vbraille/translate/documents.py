@@ -66,7 +66,7 @@ class Document:
     name
         What to call it in messages.
     encoding
-        Overrides what the bytes say.
+        Overrides what the bytes say: a name, or how the caller knows them to be written.
     keep_lines
         Keep the line breaks of the source (verse, code): each line is a
         paragraph, its blanks kept; a run of empty lines is an empty paragraph.
@@ -88,7 +88,7 @@ class Document:
         self,
         stream: BinaryIO,
         name: str = "text",
-        encoding: str | None = None,
+        encoding: str | Encoding | None = None,
         *,
         keep_lines: bool = False,
     ) -> None:
@@ -99,14 +99,19 @@ class Document:
         self.size = stream.seek(0, io.SEEK_END)
         if not sample:
             raise InputError(f"{name} is empty; give a text file")
-        if encoding is None:
+        if isinstance(encoding, Encoding):
+            self.encoding = encoding
+        elif encoding is not None:
+            self.encoding = _named_encoding(encoding, sample)
+        else:
             kind = binary_kind(sample)
             if kind:
-                raise InputError(f"{name} is {kind}, not text; give a text file")
+                raise InputError(f"{name} is {kind}, not text; give a text file, or --encoding")
             self.encoding = find_encoding(sample)
-        else:
-            self.encoding = _named_encoding(encoding, sample)
+            if len(sample) == self.encoding.skip:
+                raise InputError(f"{name} is empty; give a text file")
         self._decoder = Decoder(self.encoding.name)
+        self._found = encoding is None
         self._noted = False
         start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
         self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
@@ -127,8 +132,10 @@ class Document:
         path = Path(path)
         try:
             stream = path.open("rb")
-            if not stream.seekable():  # a pipe: what cannot be read twice is kept
-                stream = io.BytesIO(stream.read())
+            # A pipe cannot be read twice, and a file of /proc does not say how long it is.
+            if not stream.seekable() or (path.is_file() and not path.stat().st_size):
+                with stream:
+                    stream = io.BytesIO(stream.read())
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
         except IsADirectoryError:
@@ -136,19 +143,23 @@ class Document:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise InputError(f"{path} cannot be read: {reason}") from None
-        return cls(stream, str(path), encoding, keep_lines=keep_lines)
+        try:
+            return cls(stream, str(path), encoding, keep_lines=keep_lines)
+        except InputError:
+            stream.close()
+            raise
 
     @classmethod
     def from_text(cls, text: str, *, keep_lines: bool = False) -> Document:
         """Make a document of a string."""
         stream = io.BytesIO(text.encode("utf-32-le", "surrogatepass"))
-        return cls(stream, "text", "utf-32-le", keep_lines=keep_lines)
+        return cls(stream, "text", Encoding("utf-32-le"), keep_lines=keep_lines)
 
     def note(self) -> str | None:
         """Say once, after it is found, that the text is not UTF-8, and where; None otherwise."""
         if self._noted:
             return None
-        if self.encoding.guessed:
+        if self._found and self.encoding.name != "utf-8":
             self._noted = True
             bad = first_not_utf8(self._read(0, SAMPLE_BYTES))
             return (
@@ -169,7 +180,7 @@ class Document:
         Raises
         ------
         InputError
-            If the file cannot be read any more.
+            If the file cannot be read any more, or is no longer what it was.
         """
         while number >= self._marks[-1].paragraph and not self._complete:
             self._read_block(len(self._marks) - 1)
@@ -179,7 +190,10 @@ class Document:
         paragraphs = self._recent.get(block)
         if paragraphs is None:
             paragraphs = self._read_block(block)
-        return paragraphs[number - self._marks[block].paragraph]
+        index = number - self._marks[block].paragraph
+        if index >= len(paragraphs):
+            raise InputError(f"{self.name} has changed since it was opened; open it again")
+        return paragraphs[index]
 
     def paragraph_at(self, character: int) -> int | None:
         """Number of the paragraph that holds a character of the source, or None past the end."""
@@ -197,7 +211,9 @@ class Document:
     def progress(self, paragraph: int) -> float:
         """About how much of the file stands before a paragraph that was read, 0 to 1."""
         block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
-        return min(1.0, self._marks[block].offset / self.size)
+        here, after = self._marks[block], self._marks[min(block + 1, len(self._marks) - 1)]
+        share = (paragraph - here.paragraph) / max(after.paragraph - here.paragraph, 1)
+        return min(1.0, (here.offset + share * (after.offset - here.offset)) / self.size)
 
     def sha256(self) -> str:
         """SHA-256 of the bytes, in hexadecimal."""

@@ -60,13 +60,10 @@ class Encoding:
         Python's name of the codec.
     skip
         Bytes of byte-order mark at the start.
-    guessed
-        Whether only the detector says so.
     """
 
     name: str
     skip: int = 0
-    guessed: bool = False
 
 
 def binary_kind(sample: bytes) -> str | None:
@@ -97,14 +94,12 @@ def find_encoding(sample: bytes) -> Encoding:
             return Encoding(name, skip=len(mark))
     wide = _wide(sample)
     if wide is not None:
-        return Encoding(wide, guessed=True)
+        return Encoding(wide)
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         decoder.decode(sample, final=len(sample) < SAMPLE_BYTES)
     except UnicodeDecodeError:
-        return (
-            Encoding("utf-8") if _mostly_utf8(sample) else Encoding(_detect(sample), guessed=True)
-        )
+        return Encoding("utf-8" if _mostly_utf8(sample) else _detect(sample))
     return Encoding("utf-8")
 
 

@@ -48,6 +48,9 @@ _DEFAULTS = {
 }
 _USUAL_GRADE = {"en": 2, "fr": 1, "de": 2}
 
+# Bytes; liblouis puts a name, with a folder before it, into 2 kB, and does not look if it fits.
+_LONGEST_NAME = 1_000
+
 _MODE = louis.dotsIO | louis.ucBrl
 # Invisible characters that carry no text unless a table knows them (joiners, variation selectors,
 # directions); and the byte-order mark, which liblouis 3.24 turns into a wrong "zero".
@@ -198,10 +201,10 @@ class Table:
         self.name = name
         self._list = name.encode("utf-8", "surrogateescape")
         with _lock:
-            known = bool(name.strip()) and "\0" not in name
+            known = bool(name.strip()) and "\0" not in name and len(self._list) <= _LONGEST_NAME
             if not known or not louis.liblouis.lou_checkTable(self._list):
                 names = _table_files()
-                if name in names or Path(name).is_file():
+                if name in names or _is_file(name):
                     raise InputError(f"liblouis cannot use {name} as a braille table")
                 raise InputError(f"there is no braille table {name!r}{nearest(name, names)}")
         # Characters this table was seen to know; what stands for those it does not.
@@ -332,6 +335,13 @@ class Table:
         """Whether the table has dots of its own for a character."""
         masks, _ = self._call(np.array([code], np.uint32), _MODE | louis.noUndefined)
         return bool(masks.any()) or (masks.size > 0 and code == UNICODE_BLANK)
+
+
+def _is_file(name: str) -> bool:
+    try:
+        return Path(name).is_file()
+    except OSError:  # longer than names can be
+        return False
 
 
 def _table_files() -> list[str]:

@@ -77,9 +77,10 @@ class Paragraph:
         )
 
     def since(self, character: int) -> Paragraph:
-        """The part from a source character on."""
+        """The part from a source character on; keeps nothing of the rest in memory."""
         at = int(np.searchsorted(self.source, character))
-        return Paragraph(self.codes[at:], self.source[at:], self.end, True, self.alphabet)
+        codes, source = self.codes[at:].copy(), self.source[at:].copy()
+        return Paragraph(codes, source, self.end, True, self.alphabet)
 
 
 def to_codes(text: str) -> NDArray[np.uint32]:
