@@ -12,7 +12,8 @@ NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q
 .PHONY: read test bench format setup clean
 
 read: .venv/runs
-	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 --lines 1-5 --echo both
+	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
+	  --lines 1-5 --echo both </dev/null
 
 test: .venv/tests
 	$(BIN)/ruff check
@@ -31,7 +32,7 @@ format: .venv/tests
 
 setup: .venv/runs
 
-.venv/pip: Makefile
+.venv/pip:
 	@[ -x $(PYTHON) ] && $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo 'vbraille needs $(PYTHON) to be Python 3.11 or later' >&2; exit 1; }
 	@[ -z '$(NEED)' ] || { set -e; \

@@ -221,6 +221,19 @@ def test_speed_and_scanning_speed(clock, device):
     assert loop.tally.scanning_mm_s == pytest.approx(50, rel=0.02)
 
 
+def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
+    device.move(straight((0, -10.0), (4, 190.0)))
+    loop = Loop(device, clock)
+    fastest = 0.0
+    for tick in range(1500):
+        if tick % 100 == 50:
+            clock.advance_ns(60 * MS)
+        loop.tick()
+        fastest = max(fastest, loop.speed_mm_s)
+    assert fastest == pytest.approx(50, rel=0.02)
+    assert loop.tally.late > 500
+
+
 def test_a_place_that_is_no_number_is_a_fault(clock, device):
     device.read = lambda: Sample(0, float("nan"))
     with pytest.raises(DeviceError, match="nan"):

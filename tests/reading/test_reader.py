@@ -101,6 +101,17 @@ def test_with_keys_only_a_key_brings_the_next_line():
     assert bench.press("n") == ["line: 2", "text: four five six"]
 
 
+def test_at_a_terminal_the_end_of_the_text_waits_for_keys():
+    bench = Bench(hand=Sweep(300), stay=True, echo=Echo.TEXT, first=3)
+    bench.run(10)
+    assert not bench.reader.done
+    assert bench.said[-1] == "end of text; p goes back, q stops"
+    assert bench.said.count(bench.said[-1]) == 1
+    assert bench.press("p") == ["first line"]
+    bench.press("q")
+    assert bench.reader.done
+
+
 def test_next_and_previous_line_and_their_ends():
     bench = Bench(echo=Echo.TEXT)
     assert bench.press("p") == ["first line"]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page, build_show, check_rate, device_info, note_unseen_dots
+from vbraille.cli.printable import printable
+from vbraille.cli.stopping import ignore_signals
 from vbraille.devices import open_device
 from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.devices.simulated import SimulatedDevice
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.devices.hand import Hand
     from vbraille.page import Line
 
-_KEYS_EVERY = 20  # ticks
+_KEYS_HZ = 50
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -50,15 +51,17 @@ def run(arguments: argparse.Namespace) -> int:
             first=page.first,
             last=page.last,
             advance=arguments.advance == "return",
+            stay=keyboard.attached,
             echo=_echo(arguments.echo),
             on_line=_mover(device, hand),
         )
+        # Compile before the hand sets out, not under it.
+        loop.show(reader.picture(np.zeros(1, np.uint8)))
+        loop.warm_up()
         try:
-            _read(page, loop, reader, keyboard)
+            _read(page, loop, reader, keyboard, hand)
         finally:
-            # Nothing that is typed or sent now may keep the array from going to rest.
-            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                signal.signal(number, signal.SIG_IGN)
+            ignore_signals()  # so that the array goes to rest
             loop.fade_to_rest()
     _say(_summary(reader, loop))
     return 0
@@ -99,13 +102,14 @@ def _echo(chosen: str | None) -> Echo:
 
 
 def _say(sentence: str) -> None:
-    print(sentence, flush=True)
+    print(printable(sentence), flush=True)
 
 
 def _summary(reader: Reader, loop: Loop) -> str:
     tally = loop.tally
+    seconds = (tally.ticks + tally.late) / loop.rate_hz
     return (
-        f"summary: {reader.lines} lines, {tally.ticks / loop.rate_hz:.1f} s, "
+        f"summary: lines {reader.lines}, seconds {seconds:.1f}, "
         f"mean scanning speed {tally.scanning_mm_s:.1f} mm/s, "
-        f"{tally.ticks} ticks, {tally.late} late ticks"
+        f"ticks {tally.ticks}, late ticks {tally.late}"
     )

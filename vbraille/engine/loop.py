@@ -17,7 +17,7 @@ from vbraille.render.kernels import blend
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device
+    from vbraille.devices.base import Device, Sample
     from vbraille.engine.clock import Clock
 
 NS_PER_S = 1_000_000_000
@@ -29,7 +29,7 @@ STILL_MM = 0.05
 # No hand moves 5 m/s: a carriage that is further within a tick was lost and found again.
 JUMP_MM_S = 5_000.0
 SILENCE_S = 0.1
-_SPEED_WINDOW = 50  # ticks
+_SPEED_WINDOW = 50  # samples
 
 
 class Picture(Protocol):
@@ -85,7 +85,7 @@ class Loop:
     x_mm : float or None
         Where the array's left column is; None before the first sample.
     speed_mm_s : float
-        Over the last 50 ticks, positive to the right.
+        Over the last 50 samples, positive to the right; 0 until there are as many.
     output : float64[rows, columns]
         The frame last sent.
     tally : Tally
@@ -130,7 +130,9 @@ class Loop:
         self._deadline_ns = clock.now_ns()
         self._moved_ns = self._sampled_ns = self._deadline_ns
         self._moved_mm = 0.0
-        self._places = np.zeros(_SPEED_WINDOW)
+        self._samples = 0
+        self._places_mm = np.zeros(_SPEED_WINDOW)
+        self._times_ns = np.zeros(_SPEED_WINDOW, np.int64)
 
     def show(self, picture: Picture | None) -> None:
         """Put something else under the hand; it fades in. None is rest."""
@@ -207,26 +209,35 @@ class Loop:
         x_mm = sample.x_mm
         if not -1e6 < x_mm < 1e6:
             raise DeviceError(f"{self.device.info.name} says that its carriage is at {x_mm} mm")
-        slot = self.tally.ticks % _SPEED_WINDOW
         if self.x_mm is None:
-            self._places.fill(x_mm)
             self._moved_mm, self._moved_ns = x_mm, now_ns
         else:
             step_mm = x_mm - self.x_mm
             elapsed_s = max(now_ns - self._sampled_ns, self._period_ns) / NS_PER_S
             if abs(step_mm) > JUMP_MM_S * elapsed_s:
-                self._places.fill(x_mm)
+                self._samples = 0
                 self._change(now_ns, self._shown, self._fade_ns)
             elif step_mm > 0:
                 self.tally.forward_mm += step_mm
                 self.tally.forward_s += elapsed_s
-            window_s = _SPEED_WINDOW * self._period_ns / NS_PER_S
-            self.speed_mm_s = float(x_mm - self._places[slot]) / window_s
-        self._places[slot] = x_mm
+        self._estimate_speed(sample)
         self.x_mm = x_mm
         self._sampled_ns = now_ns
         if abs(x_mm - self._moved_mm) > STILL_MM:
             self._moved_mm, self._moved_ns = x_mm, now_ns
+
+    def _estimate_speed(self, sample: Sample) -> None:
+        """Way since the oldest of the last samples, by the device's own time."""
+        slot = self._samples % _SPEED_WINDOW
+        if self._samples >= _SPEED_WINDOW:
+            way_mm = sample.x_mm - float(self._places_mm[slot])
+            time_ns = sample.time_ns - int(self._times_ns[slot])
+            self.speed_mm_s = way_mm / time_ns * NS_PER_S if time_ns > 0 else 0.0
+        else:
+            self.speed_mm_s = 0.0
+        self._places_mm[slot] = sample.x_mm
+        self._times_ns[slot] = sample.time_ns
+        self._samples += 1
 
     def _wanted(self, now_ns: int) -> Picture | None:
         """What belongs under the hand now."""

@@ -50,6 +50,8 @@ class Reader:
         Lines to read, from 1, both included; None for the end.
     advance
         Whether the next line comes when the hand returns; else a key brings it.
+    stay
+        Whether to wait for keys at the end of the text, instead of being done.
     echo
         What to say of each line.
     say
@@ -78,6 +80,7 @@ class Reader:
         first: int = 1,
         last: int | None = None,
         advance: bool = True,
+        stay: bool = False,
         echo: Echo = Echo.NONE,
         on_line: Callable[[Line, float], None] | None = None,
     ) -> None:
@@ -92,10 +95,12 @@ class Reader:
         self._say = say
         self._first, self._last = first, last
         self._advance = advance
+        self._stay = stay
         self._echo = echo
         self._on_line = on_line or (lambda _line, _end_mm: None)
         self._line: Line | None = None
         self._end: EndOfLine
+        self._finished = False  # said that there is no more, until a key brings another line
         self._prefetched = False
         self._too_fast_said = False
 
@@ -112,9 +117,9 @@ class Reader:
         x_mm = self.loop.x_mm
         if self._line is None or x_mm is None or self.loop.paused:
             return
-        if self._end.step(x_mm) and self._advance:
+        if self._end.step(x_mm) and self._advance and not self._finished:
             if not self._go(self._line.number + 1):
-                self.done = True
+                self._finish()
         elif self._end.reached and not self._prefetched:
             # On the way back to the start there is time for it.
             self._prefetched = True
@@ -179,6 +184,13 @@ class Reader:
         """Stop reading."""
         self.done = True
 
+    def _finish(self) -> None:
+        if self._stay:
+            self._finished = True
+            self._say("end of text; p goes back, q stops")
+        else:
+            self.done = True
+
     def _go(self, number: int) -> bool:
         """Put another line under the hand; whether there is one."""
         if number < self._first or (self._last is not None and number > self._last):
@@ -192,6 +204,7 @@ class Reader:
     def _show(self, line: Line) -> None:
         self._line = line
         self.lines += 1
+        self._finished = False
         self._prefetched = False
         end_mm = self._geometry.extent_mm(len(line))
         self._end = EndOfLine(self._model.array.span_mm, end_mm)

@@ -209,7 +209,7 @@ class Table:
                 raise InputError(f"there is no braille table {name!r}{nearest(name, names)}")
         # Characters this table was seen to know; what stands for those it does not.
         self._known = {SPACE}
-        self._instead: dict[int, NDArray[np.uint32]] = {}
+        self._instead: dict[int, tuple[int, ...]] = {}
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
 
@@ -291,45 +291,40 @@ class Table:
         self, codes: NDArray[np.uint32], source: NDArray[np.int64]
     ) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
         """Put what the table can write for what it cannot."""
-        pieces: list[NDArray[np.uint32]] = []
-        places: list[NDArray[np.int64]] = []
-        done = 0
-        for at, code in enumerate(codes.tolist()):
-            if code in self._known:
-                continue
-            instead = self._instead.get(code)
-            if instead is None:
-                instead = self._probe(code)
-                if instead is None:
-                    self._known.add(code)
-                    continue
-                self._instead[code] = instead
-            pieces += (codes[done:at], instead)
-            places += (source[done:at], np.repeat(source[at], instead.size))
-            done = at + 1
-        return (
-            np.concatenate((*pieces, codes[done:])),
-            np.concatenate((*places, source[done:])),
-        )
+        written: list[int] = []
+        places: list[int] = []
+        for code, place in zip(codes.tolist(), source.tolist(), strict=True):
+            if code not in self._known and code not in self._instead:
+                self._probe(code)
+            instead = self._instead.get(code, (code,))
+            written += instead
+            places += (place,) * len(instead)
+        return np.array(written, np.uint32), np.array(places, np.int64)
 
-    def _probe(self, code: int) -> NDArray[np.uint32] | None:
-        """What to hand liblouis for a character; None for the character itself."""
+    def _probe(self, code: int) -> None:
+        """Learn whether the table knows a character, and what to hand liblouis if it does not."""
+        instead = self._find_instead(code)
+        if instead == (code,):
+            self._known.add(code)
+        else:
+            self._instead[code] = instead
+
+    def _find_instead(self, code: int) -> tuple[int, ...]:
         if code == 0xFEFF:
-            return np.empty(0, np.uint32)
+            return ()
         if code and self._writes(code):
-            return None
+            return (code,)
         if code in _IGNORABLE:
-            return np.empty(0, np.uint32)
+            return ()
         character = to_text(np.array([code], np.uint32))
         if character.isspace():
-            return np.array([SPACE], np.uint32)
-        plain = to_codes(unicodedata.normalize("NFKC", character))
-        if code not in plain and all(c and self._writes(c) for c in plain.tolist()):
+            return (SPACE,)
+        plain = tuple(map(ord, unicodedata.normalize("NFKC", character)))
+        if code not in plain and all(c and self._writes(c) for c in plain):
             return plain
-        spelled, _ = self._call(np.array([code], np.uint32), _MODE) if code else (None, None)
-        if spelled is not None and spelled.any():
-            return None
-        return to_codes(f"'\\x{code:04x}'")
+        if code and self._call(np.array([code], np.uint32), _MODE)[0].any():
+            return (code,)  # liblouis spells it out
+        return tuple(map(ord, f"'\\x{code:04x}'"))
 
     def _writes(self, code: int) -> bool:
         """Whether the table has dots of its own for a character."""

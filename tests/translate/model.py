@@ -1,0 +1,117 @@
+"""The rules for paragraphs once more, a character at a time and in plain Python."""
+
+import unicodedata
+from typing import NamedTuple
+
+BLANKS = "\t \u1680\u205f\u3000" + "".join(chr(c) for c in range(0x2000, 0x200B) if c != 0x2007)
+NEWLINES = "\n\v\r\x85\u2028"
+BREAKS = "\f\u2029"
+DROPPED = "\xad\ufeff"
+NO_BREAK = "\xa0\u2007\u202f"
+ACCENTS = frozenset(map(chr, (*range(0x300, 0x370), 0x3099, 0x309A)))
+SUSPENDED = ("and", "or", "to", "und", "oder", "bis", "et", "ou")
+PIECE = 8192
+
+
+class Piece(NamedTuple):
+    """Text, the place of each of its characters, and whether it goes on with the one before."""
+
+    text: str
+    source: list[int]
+    continues: bool
+
+
+def pieces_of(text: str, *, keep_lines: bool = False) -> list[Piece]:
+    """All paragraphs of a text, the long ones cut."""
+    whole = _lines(text) if keep_lines else _paragraphs(text)
+    return [piece for characters in whole for piece in _cut(characters)]
+
+
+def _paragraphs(text):
+    done, characters, newlines, broken, gap = [], [], 0, False, False
+    for at, c in enumerate(text):
+        if c == "\n" and text[max(at - 1, 0)] == "\r":
+            continue
+        if c in NEWLINES:
+            newlines += 1
+            gap = True
+        elif c in BREAKS:
+            broken = True
+        elif c in BLANKS:
+            gap = True
+        elif c not in DROPPED:
+            if characters and (broken or newlines > 1):
+                done.append(characters)
+                characters = []
+            elif characters and gap and not _joins(text, characters[-1][1], at, newlines):
+                characters.append((" ", characters[-1][1] + 1))
+            characters.append(("\xa0" if c in NO_BREAK else c, at))
+            newlines, broken, gap = 0, False, False
+    return [*done, characters] if characters else done
+
+
+def _joins(text, before, after, newlines):
+    if newlines != 1:
+        return False
+    if text[before + 1] == "\xad":
+        return True
+    if text[before] not in "-\u2010" or before == 0:
+        return False
+    if not (text[before - 1].isalpha() and text[after].isalpha()):
+        return False
+    return text[after : after + 5].split()[0] not in SUSPENDED
+
+
+def _lines(text):
+    done, characters, blanks, empty = [], [], [], False
+    for at, c in enumerate(f"{text}\n"):
+        if c == "\n" and text[max(at - 1, 0)] == "\r" and at:
+            continue
+        if c in NEWLINES + BREAKS:
+            if characters:
+                done.append(characters)
+                empty = False
+            elif done and not empty:
+                done.append([])
+                empty = True
+            characters, blanks = [], []
+        elif c in BLANKS:
+            blanks.append((" ", at))
+        elif c not in DROPPED:
+            characters += [*blanks, ("\xa0" if c in NO_BREAK else c, at)]
+            blanks = []
+    return done[:-1] if empty else done
+
+
+def _cut(characters):
+    text = "".join(c for c, _ in characters)
+    start, continues = 0, False
+    while len(text) - start > PIECE:
+        window = text[start : start + PIECE + 1]
+        sentences = [n + 2 for n in range(PIECE) if window[n : n + 2] in (". ", "! ", "? ", "… ")]
+        spaces = [n + 1 for n in range(1, PIECE + 1) if window[n] == " "]
+        if sentences and sentences[-1] > PIECE // 2 + 2:
+            length = sentences[-1]
+        elif spaces:
+            length = spaces[-1]
+        else:
+            length = PIECE
+            while length > 1 and unicodedata.combining(window[length]):
+                length -= 1
+        yield _composed(characters[start : start + length], continues)
+        start, continues = start + length, True
+        if start == len(text):
+            return
+    yield _composed(characters[start:], continues)
+
+
+def _composed(characters, continues):
+    text, source = "", []
+    for c, at in characters:
+        together = unicodedata.normalize("NFC", text[-1:] + c)
+        if c in ACCENTS and text and len(together) == 1:
+            text = text[:-1] + together
+        else:
+            text += c
+            source.append(at)
+    return Piece(text, source, continues)
