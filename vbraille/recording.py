@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import json
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -145,19 +145,21 @@ def new_file(path: Path | str) -> Iterator[h5py.File]:
     if path.is_dir():
         raise InputError(f"{path} is a directory; give the name of a file in it")
     try:
-        with partial.open("wb"):
-            pass
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from None
-    try:
+        try:
+            partial.write_bytes(b"")
+        except OSError as error:
+            raise InputError(f"{path} cannot be written: {error.strerror}") from None
         try:
             with h5py.File(partial, "w") as file:
                 yield file
             partial.replace(path)
+        except BrokenPipeError:  # of somebody who reads our messages
+            raise
         except (OSError, RuntimeError) as error:
             raise VbrailleError(f"{path} could not be written: {_reason(error)}") from error
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def _reason(error: Exception) -> str:

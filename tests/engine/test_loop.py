@@ -222,7 +222,7 @@ def test_speed_and_scanning_speed(clock, device):
 
 
 def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
-    device.move(straight((0, -10.0), (4, 190.0)))
+    device.move(straight((0, -SPAN_MM), (4, 200 - SPAN_MM)))
     loop = Loop(device, clock)
     fastest = 0.0
     for tick in range(1500):

@@ -26,7 +26,7 @@ from vbraille.render.kernels import blend
 from vbraille.render.renderer import Renderer
 
 ONE = ActuatorArray(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
-PEAK = {0.0: 1.0, 1.0: 1.107908722138734}  # M(a) of thesis-like textures, a = T / 8
+PEAK = {0.0: 1.0, 1.0: 1.107908722138734}  # M(a) by texture level, a = T / 8
 
 
 def half_sine(u_mm, width_mm, level):
@@ -215,6 +215,16 @@ def test_a_frame_may_be_a_part_of_something_larger():
     np.testing.assert_allclose(larger[1:7, 2:22:2], scene.twin(2.2)[0], rtol=0, atol=1e-12)
     larger[1:7, 2:22:2] = -5.0
     np.testing.assert_array_equal(larger, -5.0)
+
+
+@pytest.mark.parametrize("shape", [(1, 10), (5, 10), (7, 10), (6, 9), (6, 11), (10, 6)])
+def test_a_frame_of_another_shape_is_refused(shape):
+    renderer = models(line(63))["stress2"].renderer()
+    for dtype in (np.float32, np.float64):
+        out = np.zeros(shape, dtype)
+        with pytest.raises(ValueError, match=r"^the frame has not the shape of the array$"):
+            renderer.frame(1.3, out)
+        assert not out.any()
 
 
 def test_a_path_fills_what_it_is_given():

@@ -30,7 +30,7 @@ def pieces_of(text: str, *, keep_lines: bool = False) -> list[Piece]:
 def _paragraphs(text):
     done, characters, newlines, broken, gap = [], [], 0, False, False
     for at, c in enumerate(text):
-        if c == "\n" and text[max(at - 1, 0)] == "\r":
+        if c == "\n" and text[at - 1 : at] == "\r":
             continue
         if c in NEWLINES:
             newlines += 1
@@ -65,7 +65,7 @@ def _joins(text, before, after, newlines):
 def _lines(text):
     done, characters, blanks, empty = [], [], [], False
     for at, c in enumerate(f"{text}\n"):
-        if c == "\n" and text[max(at - 1, 0)] == "\r" and at:
+        if c == "\n" and text[at - 1 : at] == "\r":
             continue
         if c in NEWLINES + BREAKS:
             if characters:
@@ -96,7 +96,7 @@ def _cut(characters):
             length = spaces[-1]
         else:
             length = PIECE
-            while length > 1 and unicodedata.combining(window[length]):
+            while length > PIECE // 2 and unicodedata.combining(window[length]):
                 length -= 1
         yield _composed(characters[start : start + length], continues)
         start, continues = start + length, True

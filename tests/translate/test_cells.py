@@ -1,5 +1,7 @@
 """Cells: every spelling is exact, and the maps to the source hold both ways."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -128,7 +130,7 @@ class TestMaps:
         spans = sorted({cells.source(n) for n in range(len(cells))})
         assert spans[0][0] == cells.starts[0]
         assert spans[-1][1] == cells.end
-        assert all(one[1] == two[0] for one, two in zip(spans, spans[1:], strict=False))
+        assert all(one[1] == two[0] for one, two in itertools.pairwise(spans))
 
     @given(runs(), st.data())
     def test_a_part_says_the_same_of_its_cells(self, cells, data):

@@ -9,12 +9,11 @@ import os
 import sys
 from contextlib import suppress
 from importlib import import_module
-from io import TextIOWrapper
-from pathlib import Path
+from io import FileIO, TextIOWrapper
 from typing import TYPE_CHECKING
 
 from vbraille.cli.printable import printable
-from vbraille.cli.stopping import Stopped, hear_signals, ignore_signals
+from vbraille.cli.stopping import Ear, Stopped, ignore_signals
 from vbraille.errors import VbrailleError
 
 if TYPE_CHECKING:
@@ -27,14 +26,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     0 is done, 1 a fault at run time or a signal, 2 something that cannot be used.
     Afterwards signals are ignored: the program is at its end.
     """
+    ear = Ear()
     try:
         try:
-            hear_signals()
+            ear.listen()
             _set_streams()
             sentence, code = _run(argv)
         finally:
             ignore_signals()
     except (KeyboardInterrupt, Stopped):
+        sentence, code = "stopped", 1
+    if ear.heard and code:
         sentence, code = "stopped", 1
     if sentence:
         with suppress(OSError):
@@ -50,7 +52,7 @@ def _set_streams() -> None:
     """Have both streams, and have them take any text, lone surrogates and all."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # closed by whoever started us
-            setattr(sys, name, Path(os.devnull).open("w"))
+            setattr(sys, name, TextIOWrapper(FileIO(os.devnull, "w")))
         stream = getattr(sys, name)
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")

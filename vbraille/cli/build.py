@@ -6,6 +6,7 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.cli.printable import printable
 from vbraille.devices import DeviceInfo
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
@@ -64,7 +65,7 @@ class Page:
         """Say once if the text is not UTF-8."""
         note = self.document.note()
         if note is not None:
-            print(note, file=sys.stderr, flush=True)
+            print(printable(note), file=sys.stderr, flush=True)
 
 
 def build_geometry(arguments: argparse.Namespace) -> tuple[Model, Geometry]:

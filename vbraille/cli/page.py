@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
+from vbraille.cli.printable import printable
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _format(line: Line, how: str) -> str:
     if how == "text":
-        return line.text
+        return printable(line.text)
     if how == "dots":
         return line.printed.to_dots()
     if how == "unicode":

@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vbraille.cli.build import build_page, build_show, check_rate, device_info, note_unseen_dots
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import ignore_signals
@@ -15,6 +17,7 @@ from vbraille.engine import Loop, RealClock
 from vbraille.errors import InputError
 from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
+from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     import argparse
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.devices import Device
     from vbraille.devices.hand import Hand
     from vbraille.page import Line
+    from vbraille.render import Mapping, Tuning
 
 _KEYS_HZ = 50
 
@@ -55,11 +59,11 @@ def run(arguments: argparse.Namespace) -> int:
             echo=_echo(arguments.echo),
             on_line=_mover(device, hand),
         )
-        # Compile before the hand sets out, not under it.
-        loop.show(reader.picture(np.zeros(1, np.uint8)))
+        # The kernels are compiled before the hand sets out, not under it.
+        loop.show(_blank_line(page, mapping, tuning))
         loop.warm_up()
         try:
-            _read(page, loop, reader, keyboard, hand)
+            _read(page, reader, keyboard, hand)
         finally:
             ignore_signals()  # so that the array goes to rest
             loop.fade_to_rest()
@@ -67,20 +71,52 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _read(page: Page, loop: Loop, reader: Reader, keyboard: Keyboard) -> None:
+def _read(page: Page, reader: Reader, keyboard: Keyboard, hand: Hand | Recorded) -> None:
+    loop = reader.loop
     reader.start()
-    loop.warm_up()
     page.say_note()
     if keyboard.attached:
         _say("h says the keys")
     loop.restart_clock()
     while not reader.done:
+        stopped = _stopped(loop.device)  # asked before the tick, which sees where it stopped
         loop.tick()
         reader.step()
-        if loop.tally.ticks % _KEYS_EVERY == 0:
+        if loop.tally.ticks % max(1, round(loop.rate_hz / _KEYS_HZ)) == 0:
             for key in keyboard.pressed():
                 reader.press(key)
             page.say_note()
+        if stopped and _stopped(loop.device) and not keyboard.attached:
+            _go_on(reader, hand)
+
+
+def _blank_line(page: Page, mapping: Mapping, tuning: Tuning) -> Renderer:
+    model = page.model
+    return Renderer(
+        np.zeros(1, np.uint8),
+        array=model.array,
+        profile=model.profile,
+        mapping=mapping,
+        geometry=page.geometry,
+        tuning=tuning,
+    )
+
+
+def _stopped(device: Device) -> bool:
+    """Whether a simulated hand has come to the end of its motion."""
+    return isinstance(device, SimulatedDevice) and not device.moving
+
+
+def _go_on(reader: Reader, hand: Hand | Recorded) -> None:
+    """Go on though the hand was not seen to be done.
+
+    It was at the end of the line between two ticks, or its recording is over.
+    """
+    lines = reader.lines
+    if not isinstance(hand, Recorded):
+        reader.lndn()
+    if reader.lines == lines:
+        reader.quit()
 
 
 def _mover(device: Device, hand: Hand | Recorded) -> Callable[[Line, float], None] | None:

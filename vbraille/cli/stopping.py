@@ -17,33 +17,41 @@ class Stopped(BaseException):
     """Somebody ended the program by a signal."""
 
 
-def hear_signals() -> None:
-    """Raise `Stopped` wherever the program then is.
+class Ear:
+    """Raises `Stopped` when a signal says so, wherever the program then is.
 
-    What our parent has us ignore (nohup, a shell's background) stays ignored.
+    Attributes
+    ----------
+    heard : bool
+        Whether one did: what fails from then on fails because of it.
     """
-    before = sys.unraisablehook
 
-    def swallowed(unraisable: sys.UnraisableHookArgs) -> None:
+    def __init__(self) -> None:
+        self.heard = False
+        self._say_unraisable = sys.unraisablehook
+
+    def listen(self) -> None:
+        """Begin; signals that our parent has us ignore (nohup) stay ignored."""
+        sys.unraisablehook = self._take_unraisable
+        for number in SIGNALS:
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, self._stop)
+
+    def _stop(self, _signal: int, _frame: FrameType | None) -> NoReturn:
+        self.heard = True
+        ignore_signals()
+        raise Stopped
+
+    def _take_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
         # Python cannot stop within a destructor or a callback: try again a moment later.
         if isinstance(unraisable.exc_value, Stopped):
-            signal.signal(signal.SIGALRM, _stop)
+            signal.signal(signal.SIGALRM, self._stop)
             signal.setitimer(signal.ITIMER_REAL, _AGAIN_S)
-        else:
-            before(unraisable)
-
-    sys.unraisablehook = swallowed
-    for number in SIGNALS:
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _stop)
+        elif not self.heard:
+            self._say_unraisable(unraisable)
 
 
 def ignore_signals() -> None:
     """Let nothing disturb what has to be done before the end."""
     for number in (*SIGNALS, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
-
-
-def _stop(_signal: int, _frame: FrameType | None) -> NoReturn:
-    ignore_signals()
-    raise Stopped

@@ -193,14 +193,26 @@ class Loop:
         self._deadline_ns = self.clock.now_ns()
 
     def fade_to_rest(self) -> None:
-        """Bring every actuator to rest, over the usual time, whatever is shown."""
+        """Bring every actuator to rest, over the usual time.
+
+        Asks the device for nothing: it may be the carriage that has failed.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone.
+        """
         self.show(None)
-        self.restart_clock()
-        ticks = int(self._fade_ns / self._period_ns) + 2
-        for _ in range(ticks):
-            self.tick()
-            if self.resting:
-                return
+        np.copyto(self._held, self.output)
+        begun_ns = self._deadline_ns = self.clock.now_ns()
+        while not self.resting:
+            self._deadline_ns += self._period_ns
+            self.clock.sleep_until_ns(self._deadline_ns)
+            since_ns = self.clock.now_ns() - begun_ns
+            share = since_ns / self._fade_ns if since_ns < self._fade_ns else 1.0
+            blend(self._held, self._rest, share, self.output)
+            self.device.write(self.output)
+        self._shown = None
 
     def _read(self, now_ns: int) -> None:
         sample = self.device.read()

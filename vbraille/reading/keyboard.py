@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import sys
 import termios
 import tty
+from contextlib import suppress
 from typing import Self
 
 _SEQUENCES = {"\x1b[A": "up", "\x1b[B": "down", "\x1bOA": "up", "\x1bOB": "down"}
+# What one key sends: an escape sequence, whole (ECMA-48, 5.4; a function key), or a character.
+_KEY = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.|[^\x1b])?|.", re.DOTALL)
 
 
 class Keyboard:
@@ -31,22 +35,32 @@ class Keyboard:
     def __enter__(self) -> Self:
         if self._descriptor is not None:
             self._before = termios.tcgetattr(self._descriptor)
-            tty.setcbreak(self._descriptor)
+            try:
+                tty.setcbreak(self._descriptor)
+            except BaseException:  # a signal
+                self._restore()
+                raise
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._restore()
+
+    def _restore(self) -> None:
         if self._descriptor is not None and self._before is not None:
-            termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._before)
+            with suppress(termios.error):  # the terminal is gone
+                termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._before)
 
     def pressed(self) -> list[str]:
         """Keys typed since the last call; arrows as "up" and "down". Never waits."""
         if self._descriptor is None or not select.select([self._descriptor], [], [], 0)[0]:
             return []
-        typed = os.read(self._descriptor, 64).decode("utf-8", "ignore")
+        try:
+            typed = os.read(self._descriptor, 4096)
+        except OSError:
+            typed = b""
         if not typed:  # the terminal is gone
             self._descriptor = None
             return ["q"]
-        for sequence, name in _SEQUENCES.items():
-            if typed == sequence:
-                return [name]
-        return [] if typed.startswith("\x1b") else list(typed)
+        keys: list[str] = _KEY.findall(typed.decode("utf-8", "ignore"))
+        named = (_SEQUENCES.get(key, key) for key in keys)
+        return [key for key in named if not key.startswith("\x1b")]

@@ -24,6 +24,7 @@ from numba import njit
     CELLS_PER_MM,
     CELL_PITCH,
     COLUMN_PITCH,
+    COLUMNS,
     DOTS_PER_MM,
     DOT_SPACING,
     PROFILE,
@@ -35,7 +36,7 @@ from numba import njit
     _S4,
     _S5,
     IDLE,  # deflection of each row off the dots
-) = range(14)
+) = range(15)
 SWING, SLOT = 1, 2  # further rows of work
 
 _HALF_SINE = 0.0
@@ -144,7 +145,10 @@ def _write_larger(work, gains, first, out):
 @_compiled
 def frame(work, gains, x_mm, out):
     """Fill one frame, float[rows, columns], for the left column at x."""
-    columns = out.shape[1]
+    rows, columns = out.shape
+    # Compiled, nothing else would stop it from reading beyond the gains.
+    if rows != gains.shape[0] or columns != work[0, COLUMNS]:
+        raise ValueError("the frame has not the shape of the array")
     cells = gains.shape[1] // 2 - 2
     _places(work, x_mm, 0, columns)
     if work[0, OVERLAP] == 0.0:

@@ -69,6 +69,7 @@ class Renderer:
         parameters[kernels.CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
         parameters[kernels.CELL_PITCH] = geometry.cell_pitch_mm
         parameters[kernels.COLUMN_PITCH] = array.column_pitch_mm
+        parameters[kernels.COLUMNS] = array.columns
         parameters[kernels.DOTS_PER_MM] = 1 / geometry.dot_width_mm
         parameters[kernels.DOT_SPACING] = geometry.dot_spacing_mm
         parameters[kernels.PROFILE] = profile
@@ -93,7 +94,13 @@ class Renderer:
             Where the left column is; anything that is not on the line, NaN
             among it, gives the idle frame.
         out : float[rows, columns]
-            Deflections, 0 … 1.
+            Deflections, 0 … 1. It need not be contiguous, but each new kind of
+            array is compiled for, once, in some seconds.
+
+        Raises
+        ------
+        ValueError
+            If ``out`` has not the shape of the array.
         """
         kernels.frame(self._work, self._gains, x_mm, out)
 

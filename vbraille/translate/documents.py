@@ -55,6 +55,11 @@ class _Mark:
     skip: int
     continues: bool
 
+    @property
+    def bytes(self) -> int:
+        """About how many bytes stand before it: a character is one at least."""
+        return self.offset + self.skip
+
 
 class Document:
     """A text as paragraphs, read lazily.
@@ -213,7 +218,7 @@ class Document:
         block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
         here, after = self._marks[block], self._marks[min(block + 1, len(self._marks) - 1)]
         share = (paragraph - here.paragraph) / max(after.paragraph - here.paragraph, 1)
-        return min(1.0, (here.offset + share * (after.offset - here.offset)) / self.size)
+        return min(1.0, (here.bytes + share * (after.bytes - here.bytes)) / self.size)
 
     def sha256(self) -> str:
         """SHA-256 of the bytes, in hexadecimal."""

@@ -20,7 +20,7 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.cells import UNICODE_BLANK, Cells
-from vbraille.translate.paragraphs import SPACE, to_codes, to_text
+from vbraille.translate.paragraphs import SPACE, to_text
 
 try:
     import louis

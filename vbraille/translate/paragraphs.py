@@ -29,7 +29,8 @@ _KINDS[[0x0C, 0x2029]] = _BREAK
 _KINDS[0xAD] = _DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
-_COMBINING = frozenset((*range(0x300, 0x370), 0x3099, 0x309A))
+# Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
+_COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A))
 # Words before which a hyphen stands for the rest of the word before it.
 _SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
 # Characters after a line break that say whether a space belongs there: such a word and one more.
@@ -170,10 +171,16 @@ def split_paragraphs(
         starts = text
         empty = np.zeros(text.size - 1, bool)
     kept = np.flatnonzero(keep)
-    alphabet = frozenset(np.unique(codes[kept]).tolist())
+    own, source = codes[kept], kept + first
+    seen = np.zeros(int(own.max()) + 1, np.bool_)
+    seen[own] = True
+    alphabet = frozenset(np.flatnonzero(seen).tolist())
+    accents = not alphabet.isdisjoint(_COMBINING)
 
     def paragraph(start: int, end: int, continues: bool) -> Paragraph:
-        return _paragraph(codes[kept[start:end]], kept[start:end] + first, continues, alphabet)
+        part = slice(start, end)
+        piece = Paragraph(own[part], source[part], int(source[end - 1]) + 1, continues, alphabet)
+        return _compose(piece) if accents else piece
 
     last = np.flatnonzero(ends)
     begin = np.concatenate((starts[:1], starts[last + 1]))
@@ -247,7 +254,7 @@ def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: in
             start += space + 1
         else:
             length = PIECE_CHARACTERS
-            while length > 1 and unicodedata.combining(window[length]):
+            while length > PIECE_CHARACTERS // 2 and unicodedata.combining(window[length]):
                 length -= 1  # an accent stays with its letter
             start += length
         if start >= end:
@@ -255,33 +262,27 @@ def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: in
         yield start
 
 
-def _paragraph(
-    codes: NDArray[np.uint32],
-    source: NDArray[np.int64],
-    continues: bool,
-    alphabet: frozenset[int],
-) -> Paragraph:
-    end = int(source[-1]) + 1
-    if not alphabet.isdisjoint(_COMBINING):
-        codes, source = _compose(codes, source)
-        alphabet = frozenset(codes.tolist())
-    return Paragraph(codes, source, end, continues, alphabet)
-
-
-def _compose(
-    codes: NDArray[np.uint32], source: NDArray[np.int64]
-) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
-    """Letters with their combining accents as one character where Unicode has one.
+def _compose(paragraph: Paragraph) -> Paragraph:
+    """Make letters with combining accents one character where Unicode has one.
 
     Many tables know é and not e followed by U+0301.
     """
     composed: list[str] = []
     places: list[int] = []
-    for character, place in zip(to_text(codes), source.tolist(), strict=True):
-        together = unicodedata.normalize("NFC", composed[-1] + character) if composed else ""
-        if unicodedata.combining(character) and len(together) == 1:
+    for character, place in zip(paragraph.text, paragraph.source.tolist(), strict=True):
+        together = ""
+        if composed and ord(character) in _COMBINING:
+            together = unicodedata.normalize("NFC", composed[-1] + character)
+        if len(together) == 1:
             composed[-1] = together
         else:
             composed.append(character)
             places.append(place)
-    return to_codes("".join(composed)), np.array(places, np.int64)
+    codes = to_codes("".join(composed))
+    return Paragraph(
+        codes,
+        np.array(places, np.int64),
+        paragraph.end,
+        paragraph.continues,
+        frozenset(codes.tolist()),
+    )

@@ -1,0 +1,104 @@
+"""Whatever ends a reading, the actuators fade to rest: seen by a device in a real process."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+_DRIVER = '''
+import os
+import numpy as np
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.errors import DeviceError
+
+class Logged(SimulatedDevice):
+    """Writes every frame to a file; can break."""
+
+    def __init__(self, address, wanted):
+        super().__init__(wanted)
+        path, _, self.fault = address.partition(",")
+        self.log = open(path, "wb", buffering=0)
+
+    def read(self):
+        if self.frames == 300 and self.fault.isdigit():
+            os.kill(os.getpid(), int(self.fault))
+        if self.frames >= 300 and self.fault == "gone":
+            raise DeviceError("the device is gone")
+        if self.frames >= 300 and self.fault == "bug":
+            raise ZeroDivisionError("a bug")
+        return super().read()
+
+    def _send(self, frame):
+        if self.frames >= 300 and self.fault == "gone":
+            raise DeviceError("the device is gone")
+        super()._send(frame)
+        self.log.write(frame.tobytes())
+'''
+
+
+@pytest.fixture
+def driver(tmp_path) -> dict[str, str]:
+    """Environment of a process that knows the device kind ``logged``."""
+    package = tmp_path / "logged-1.dist-info"
+    package.mkdir()
+    (package / "METADATA").write_text("Name: logged\nVersion: 1\n")
+    (package / "entry_points.txt").write_text("[vbraille.devices]\nlogged = logged:Logged\n")
+    (tmp_path / "logged.py").write_text(_DRIVER)
+    return {**os.environ, "PYTHONPATH": str(tmp_path)}
+
+
+def read(driver, texts: Path, log: Path, fault: str, *options: str):
+    done = subprocess.run(
+        [sys.executable, "-m", "vbraille", "read", str(texts / "english.txt"), "--lines", "1-2",
+         "--device", f"logged:{log},{fault}", "--mapping", "sheared", "--texture", "0", *options],
+        env=driver, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
+        timeout=60,
+    )  # fmt: skip
+    frames = np.fromfile(log).reshape(-1, 6, 10)
+    return done, frames
+
+
+@pytest.mark.parametrize(
+    ("fault", "code", "said"),
+    [
+        ("", 0, ""),
+        (str(int(signal.SIGINT)), 1, "stopped"),
+        (str(int(signal.SIGTERM)), 1, "stopped"),
+        (str(int(signal.SIGHUP)), 1, "stopped"),
+    ],
+)
+def test_an_end_and_a_signal(driver, texts, tmp_path, fault, code, said):
+    done, frames = read(driver, texts, tmp_path / "log", fault, "--hand", "sweep:150")
+    assert done.returncode == code
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    fades(frames)
+
+
+def fades(frames: np.ndarray) -> None:
+    """Inverted rows come down from 1 within 100 ms, in as many steps as the machine could make."""
+    assert frames.max() == 1.0
+    assert not frames[-1].any()
+    down = frames[frames[:, 0, 0].nonzero()[0][-1] - 10 :, 0, 0]
+    assert (np.diff(down) <= 0).all()
+    assert ((down > 0.02) & (down < 0.98)).any()
+
+
+def test_a_bug_in_the_loop_still_rests(driver, texts, tmp_path):
+    done, frames = read(driver, texts, tmp_path / "log", "bug")
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 2  # the line's width, and the fault
+    assert "ZeroDivisionError" in done.stderr
+    assert "Traceback" not in done.stderr
+    fades(frames)
+
+
+def test_a_device_that_is_gone_is_said_in_one_sentence(driver, texts, tmp_path):
+    done, frames = read(driver, texts, tmp_path / "log", "gone")
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[1:] == ["vbraille: the device is gone"]
+    assert len(frames) == 300
