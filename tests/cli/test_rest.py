@@ -83,7 +83,8 @@ def fades(frames: np.ndarray) -> None:
     """Inverted rows come down from 1 within 100 ms, in as many steps as the machine could make."""
     assert frames.max() == 1.0
     assert not frames[-1].any()
-    down = frames[frames[:, 0, 0].nonzero()[0][-1] - 10 :, 0, 0]
+    row = frames[:, 0].max(axis=1)  # off the dots it stands at full swing
+    down = row[np.flatnonzero(row == 1.0)[-1] :]
     assert (np.diff(down) <= 0).all()
     assert ((down > 0.02) & (down < 0.98)).any()
 

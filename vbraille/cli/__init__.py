@@ -26,17 +26,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     0 is done, 1 a fault at run time or a signal, 2 something that cannot be used.
     Afterwards signals are ignored: the program is at its end.
     """
-    ear = Ear()
     try:
-        try:
-            ear.listen()
-            _set_streams()
-            sentence, code = _run(argv)
-        finally:
-            ignore_signals()
+        sentence, code = _listen(argv)
     except (KeyboardInterrupt, Stopped):
-        sentence, code = "stopped", 1
-    if ear.heard and code:
         sentence, code = "stopped", 1
     if sentence:
         with suppress(OSError):
@@ -46,6 +38,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError:  # Python must not try again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return code
+
+
+def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
+    """Run a command until it ends or a signal stops it."""
+    ear = Ear()
+    try:
+        ear.listen()
+        _set_streams()
+        sentence, code = _run(argv)
+    finally:
+        ignore_signals()
+    return ("stopped", 1) if ear.heard and code else (sentence, code)
 
 
 def _set_streams() -> None:

@@ -119,9 +119,15 @@ def build_page(arguments: argparse.Namespace) -> Page:
         raise InputError(str(error)) from None
     table = build_table(arguments)
     document = Document.open(arguments.file, arguments.encoding, keep_lines=arguments.keep_lines)
-    print(f"line width: {width} cells", file=sys.stderr, flush=True)
     first, last = arguments.lines
-    return Page(Layout(Book(document, table), width), model, geometry, first, last)
+    layout = Layout(Book(document, table), width)
+    if layout.line(first) is None:
+        lines = layout.count()
+        if not lines:
+            raise InputError(f"{arguments.file} has no text in it; give a text file")
+        raise InputError(f"{arguments.file} ends at line {lines}; --lines {first} is past that")
+    print(f"line width: {width} cells", file=sys.stderr, flush=True)
+    return Page(layout, model, geometry, first, last)
 
 
 def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tuning]:

@@ -62,8 +62,6 @@ def _table(arguments: argparse.Namespace) -> Table:
         raise InputError(f"--at is {arguments.at}; it must be a number of mm")
     page = build_page(arguments)
     lines = list(islice(page.lines(), None if page.last else _LINES))
-    if not lines:
-        raise InputError(f"{page.document.name} has no line {page.first}")
     return pictures.page(
         lines, model=model, mapping=mapping, geometry=geometry, tuning=tuning, x_mm=arguments.at
     )
