@@ -99,7 +99,7 @@ class TestWrap:
         assert wrap(b"aa\0bb\0cc\0dd", 6, 2, 1) == [(0, 2, 2), (3, 8, 1), (9, 11, 1)]
         assert wrap(b"aa\0bb\0cc", 6, 0, 4) == [(0, 5, 0), (6, 8, 4)]
 
-    @settings(max_examples=500)
+    @settings(max_examples=150)
     @given(runs_of_cells | st.binary(max_size=60), st.integers(1, 14), st.data())
     def test_laws(self, breaks, width, data):
         indent = data.draw(st.integers(0, width - 1))
@@ -125,7 +125,7 @@ class TestWrap:
                 assert not breaks[stop:following].strip(b"\0")
                 assert following + len(word) - start > width - i
 
-    @settings(max_examples=500)
+    @settings(max_examples=150)
     @given(runs_of_cells, st.integers(1, 14), st.data())
     def test_as_its_twin(self, breaks, width, data):
         indent = data.draw(st.integers(0, width - 1))
@@ -171,7 +171,7 @@ class TestLayout:
             lay_out("a", table, width)
 
     @pytest.mark.parametrize("keep_lines", [False, True])
-    @pytest.mark.parametrize("width", [5, 26, 28, 40])
+    @pytest.mark.parametrize("width", [5, 26, 28])
     @pytest.mark.parametrize("file", ["english.txt", "francais.txt"])
     def test_the_lines_are_the_translation(self, texts, table, letters, file, width, keep_lines):
         text = (texts / file).read_text()
@@ -197,7 +197,7 @@ class TestLayout:
         assert one.count() == len(expected)
         other = lay_out(text, table)
         chance = random.Random(SEED)
-        for n in chance.choices(range(1, len(expected) + 1), k=80):
+        for n in chance.choices(range(1, len(expected) + 1), k=30):
             for layout in (one, other):
                 line = layout.line(n)
                 assert line is not None
@@ -276,25 +276,25 @@ class TestLongParagraphs:
         assert [line.strip() for line in brf(begins)] == ["UN"]
 
     def test_little_memory(self, english, letters):
-        text = " ".join(english.split() * 60)
+        text = " ".join(english.split() * 30)
         layout = lay_out(text, letters)
-        assert layout.line(4_000) is not None  # caches are full
         tracemalloc.start()
         try:
+            assert layout.line(5_500) is not None  # all that is remembered at once is
             before, _ = tracemalloc.get_traced_memory()
-            layout.count()
+            assert layout.count() > 9_000
             after, _ = tracemalloc.get_traced_memory()
         finally:
             tracemalloc.stop()
-        assert len(text) > 450_000
-        assert after - before < 12_000_000
+        print(after - before)
+        assert after - before < 2_000_000
 
 
 class TestPlace:
     @pytest.mark.parametrize("keep_lines", [False, True])
     @pytest.mark.parametrize("width", [3, 26])
     def test_there_and_back(self, english, table, width, keep_lines):
-        text = english[:3_000]
+        text = english[:900]
         layout = lay_out(text, table, width, keep_lines=keep_lines)
         for line in layout.lines():
             for cell in range(line.indent, len(line)):

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy as np
+    from _typeshed import ReadableBuffer as Buffer
+    from _typeshed import WriteableBuffer
     from numpy.typing import NDArray
 
     from vbraille.geometry import Geometry
@@ -38,14 +41,14 @@ class Recorder:
     Parameters
     ----------
     file
-        Open for writing, and empty.
+        Of `new_file`.
     array
         The actuators.
     width
         Cells a line.
     """
 
-    def __init__(self, file: h5py.File, array: ActuatorArray, width: int) -> None:
+    def __init__(self, file: NewFile, array: ActuatorArray, width: int) -> None:
         self._file = file
         rows, columns = array.shape
 
@@ -125,10 +128,11 @@ class Recorder:
         ):
             dataset.resize(after, 0)
             dataset[before:after] = values
+        self._file.check()
 
 
 @contextmanager
-def new_file(path: Path | str) -> Iterator[h5py.File]:
+def new_file(path: Path | str) -> Iterator[NewFile]:
     """Write an HDF5 file under another name, which gets its own once it is whole.
 
     Whatever ends the writing early leaves nothing behind.
@@ -146,25 +150,71 @@ def new_file(path: Path | str) -> Iterator[h5py.File]:
         raise InputError(f"{path} is a directory; give the name of a file in it")
     try:
         try:
-            partial.write_bytes(b"")
+            target = _Target(partial)
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None
         try:
-            with h5py.File(partial, "w") as file:
+            with target, NewFile(target) as file:
                 yield file
+            target.check()
             partial.replace(path)
-        except BrokenPipeError:  # of somebody who reads our messages
-            raise
-        except (OSError, RuntimeError) as error:
-            raise VbrailleError(f"{path} could not be written: {_reason(error)}") from error
+        except _DiskError as error:
+            raise VbrailleError(f"{path} could not be written: {error}") from None
     finally:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
 
 
-def _reason(error: Exception) -> str:
-    """What the system said, out of what HDF5 made of it."""
-    text = str(error)
-    if "error message = '" in text:
-        return text.split("error message = '")[1].split("'")[0]
-    return getattr(error, "strerror", None) or text.split("(")[0].strip()
+class NewFile(h5py.File):
+    """A file in the making."""
+
+    def __init__(self, target: _Target) -> None:
+        super().__init__(target, "w")
+        self.check = target.check
+
+
+class _DiskError(Exception):
+    """The system did not write; says why."""
+
+
+class _Target(io.FileIO):
+    """A file for HDF5, which crashes the process some time after a write has failed.
+
+    The first failure is kept for `check`, and what comes later goes nowhere.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._error: OSError | None = None
+        super().__init__(path, "w+")
+
+    def check(self) -> None:
+        """Raise `_DiskError` if a write has failed."""
+        if self._error is not None:
+            raise _DiskError(self._error.strerror)
+
+    def write(self, data: Buffer) -> int:
+        view = memoryview(data).cast("B")
+        done = 0
+        while self._error is None and done < view.nbytes:
+            try:
+                done += super().write(view[done:])
+            except OSError as error:
+                self._error = error
+        return view.nbytes
+
+    def truncate(self, size: int | None = None) -> int:
+        if self._error is None:
+            try:
+                return super().truncate(size)
+            except OSError as error:
+                self._error = error
+        return size or 0
+
+    def readinto(self, buffer: WriteableBuffer) -> int:
+        # What was never written reads as zeros.
+        view = memoryview(buffer).cast("B")
+        count = super().readinto(view) or 0
+        if self._error is not None:
+            view[count:] = bytes(view.nbytes - count)
+            count = view.nbytes
+        return count

@@ -8,7 +8,7 @@ NEWLINES = "\n\v\r\x85\u2028"
 BREAKS = "\f\u2029"
 DROPPED = "\xad\ufeff"
 NO_BREAK = "\xa0\u2007\u202f"
-ACCENTS = frozenset(map(chr, (*range(0x300, 0x370), 0x3099, 0x309A)))
+ACCENTS = frozenset(map(chr, (*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A)))
 SUSPENDED = ("and", "or", "to", "und", "oder", "bis", "et", "ou")
 PIECE = 8192
 

@@ -44,9 +44,9 @@ def sample_of_unicode() -> list[str]:
     categories: dict[str, list[int]] = {}
     for code in range(0x110000):
         categories.setdefault(unicodedata.category(chr(code)), []).append(code)
-    found = set(range(0x250)) | {0x2028, 0x2029, 0xFFFD, 0x1F600, 0x10FFFF, 0xD800, 0xDFFF}
+    found = set(range(0x180)) | {0x2028, 0x2029, 0xFFFD, 0x1F600, 0x10FFFF, 0xD800, 0xDFFF}
     for codes in categories.values():
-        found.update(chance.sample(codes, min(len(codes), 25)))
+        found.update(chance.sample(codes, min(len(codes), 12)))
     return [chr(code) for code in sorted(found)]
 
 
@@ -202,7 +202,7 @@ class TestNothingLost:
         assert translate(table, "ﬁ").to_brf() == translate(table, "fi").to_brf()
         assert translate(table, "ｆ").to_brf() == translate(table, "f").to_brf()
 
-    @settings(max_examples=150)
+    @settings(max_examples=100)
     @given(st.text(st.sampled_from([*SAMPLE, *"abc ABC 123 .,'-"]), min_size=1, max_size=20))
     def test_maps_hold_for_any_text(self, text):
         table = Table("en-ueb-g2.ctb")
@@ -256,7 +256,7 @@ from threading import Barrier
 from vbraille.translate import Document, Table
 
 NAMES = {TABLES!r}
-TEXT = "Words, numbers 123 and \\U0001f600 \\0 \\u0152uvre: " * 20
+TEXT = "Words, numbers 123 and \\U0001f600 \\0 \\u0152uvre: " * 10
 start = Barrier(8)
 
 def work(n):

@@ -13,7 +13,7 @@ from io import FileIO, TextIOWrapper
 from typing import TYPE_CHECKING
 
 from vbraille.cli.printable import printable
-from vbraille.cli.stopping import Ear, Stopped, ignore_signals
+from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         sentence, code = _listen(argv)
     except (KeyboardInterrupt, Stopped):
-        sentence, code = "stopped", 1
+        sentence, code = SAID, EXIT_CODE
     if sentence:
         with suppress(OSError):
             print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
@@ -42,14 +42,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
     """Run a command until it ends or a signal stops it."""
-    ear = Ear()
     try:
-        ear.listen()
+        EAR.listen()
         _set_streams()
         sentence, code = _run(argv)
     finally:
-        ignore_signals()
-    return ("stopped", 1) if ear.heard and code else (sentence, code)
+        EAR.close()
+    return (SAID, EXIT_CODE) if EAR.heard and code else (sentence, code)
 
 
 def _set_streams() -> None:
@@ -82,10 +81,12 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
 
 
 def _call(argv: Sequence[str] | None) -> int:
-    from vbraille.cli.parser import parse
-
+    with EAR.at_once():
+        from vbraille.cli.parser import parse
     try:
         arguments = parse(argv)
     except SystemExit:  # --help and --version have been printed
         return 0
-    return import_module(f"vbraille.cli.{arguments.command}").run(arguments)
+    with EAR.at_once():
+        command = import_module(f"vbraille.cli.{arguments.command}")
+    return command.run(arguments)

@@ -103,7 +103,11 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     tables = command("tables", "List the braille tables there are")
     tables.add_argument("--language", metavar="TAG", help="only of this language, such as fr")
 
-    return parser.parse_args(argv)
+    arguments = parser.parse_args(argv)
+    for name, value in vars(arguments).items():
+        if isinstance(value, list):  # Python before 3.13 takes the value of --name=-- away
+            parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
+    return arguments
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:

@@ -7,9 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.cli.build import build_page, build_show, check_rate, device_info, note_unseen_dots
+from vbraille.cli.build import (
+    build_page,
+    build_show,
+    check_rate,
+    device_info,
+    note_unseen_dots,
+)
 from vbraille.cli.printable import printable
-from vbraille.cli.stopping import ignore_signals
+from vbraille.cli.renderers import build_renderer
+from vbraille.cli.stopping import EAR
 from vbraille.devices import open_device
 from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.devices.simulated import SimulatedDevice
@@ -17,14 +24,13 @@ from vbraille.engine import Loop, RealClock
 from vbraille.errors import InputError
 from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
-from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable
 
     from vbraille.cli.build import Page
-    from vbraille.devices import Device
+    from vbraille.devices import Device, DeviceInfo
     from vbraille.devices.hand import Hand
     from vbraille.page import Line
     from vbraille.render import Mapping, Tuning
@@ -42,6 +48,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("--advance key needs a terminal to type at; leave it out without one")
     wanted = device_info(page.model, page.geometry, rate_hz)
     note_unseen_dots(page, mapping)
+    with EAR.at_once():
+        _warm_up(page, mapping, tuning, wanted)
     with Keyboard() as keyboard, open_device(arguments.device, wanted) as device:
         loop = Loop(device, RealClock(), rate_hz=rate_hz)
         reader = Reader(
@@ -59,13 +67,10 @@ def run(arguments: argparse.Namespace) -> int:
             echo=_echo(arguments.echo),
             on_line=_mover(device, hand),
         )
-        # The kernels are compiled before the hand sets out, not under it.
-        loop.show(_blank_line(page, mapping, tuning))
-        loop.warm_up()
         try:
             _read(page, reader, keyboard, hand)
         finally:
-            ignore_signals()  # so that the array goes to rest
+            EAR.close()  # so that the array goes to rest
             loop.fade_to_rest()
     _say(_summary(reader, loop))
     return 0
@@ -90,16 +95,11 @@ def _read(page: Page, reader: Reader, keyboard: Keyboard, hand: Hand | Recorded)
             _go_on(reader, hand)
 
 
-def _blank_line(page: Page, mapping: Mapping, tuning: Tuning) -> Renderer:
-    model = page.model
-    return Renderer(
-        np.zeros(1, np.uint8),
-        array=model.array,
-        profile=model.profile,
-        mapping=mapping,
-        geometry=page.geometry,
-        tuning=tuning,
-    )
+def _warm_up(page: Page, mapping: Mapping, tuning: Tuning, wanted: DeviceInfo) -> None:
+    """Compile the kernels before the hand sets out, not under it."""
+    loop = Loop(SimulatedDevice(wanted), RealClock())
+    loop.show(build_renderer(np.zeros(1, np.uint8), page, mapping, tuning))
+    loop.warm_up()
 
 
 def _stopped(device: Device) -> bool:

@@ -8,12 +8,18 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from vbraille.cli.build import build_page, build_show, check_rate, note_unseen_dots
+from vbraille.cli.build import (
+    build_page,
+    build_show,
+    check_rate,
+    note_unseen_dots,
+)
+from vbraille.cli.renderers import build_renderer
+from vbraille.cli.stopping import EAR
 from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.errors import InputError
 from vbraille.reading import EndOfLine, too_fast_note
 from vbraille.recording import Recorder, new_file
-from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     import argparse
@@ -25,7 +31,6 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.devices.hand import Hand
     from vbraille.page import Line
-    from vbraille.render import Mapping, Tuning
 
 _BLOCK_FRAMES = 16_384
 
@@ -39,6 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
     note_unseen_dots(page, mapping)
+    with EAR.at_once():  # numba compiles
+        build_renderer(np.zeros(1, np.uint8), page, mapping, tuning).path(np.zeros(1))
     lines = frames = 0
     too_fast: str | None = None
     with new_file(arguments.out) as file, _Progress(plain=arguments.plain) as progress:
@@ -55,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
         for line, xs in _walk(page, hand, rate_hz):
             row = recorder.add_line(line.masks)
-            renderer = _renderer(line, page, mapping, tuning)
+            renderer = build_renderer(line.masks, page, mapping, tuning)
             for start in range(0, xs.size, _BLOCK_FRAMES):
                 x_mm = xs[start : start + _BLOCK_FRAMES]
                 t_s = (frames + np.arange(x_mm.size)) / rate_hz
@@ -91,17 +98,6 @@ def _walk(
         stop = recorded.size if done is None else done + 1
         yield line, recorded[:stop]
         recorded = recorded[stop:]
-
-
-def _renderer(line: Line, page: Page, mapping: Mapping, tuning: Tuning) -> Renderer:
-    return Renderer(
-        line.masks,
-        array=page.model.array,
-        profile=page.model.profile,
-        mapping=mapping,
-        geometry=page.geometry,
-        tuning=tuning,
-    )
 
 
 def _fastest(x_mm: NDArray[np.float64], rate_hz: float) -> float:

@@ -1,15 +1,25 @@
-"""Being told by a signal to stop: heard once, at any moment, and then no more."""
+"""Being told by a signal to stop: heard once, at any moment, and then no more.
+
+A signal raises `Stopped` wherever the program then is, so that what it is about
+is left in order. Where nothing has to be, and where an exception out of nowhere
+would do harm - in imports, and while numba compiles - it ends the program at once.
+"""
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+SAID = "stopped"
+EXIT_CODE = 1
 _AGAIN_S = 0.001
 
 
@@ -17,29 +27,50 @@ class Stopped(BaseException):
     """Somebody ended the program by a signal."""
 
 
-class Ear:
-    """Raises `Stopped` when a signal says so, wherever the program then is.
+class _Ear:
+    """What hears the process's signals; there is one, as there is one set of them.
 
     Attributes
     ----------
     heard : bool
-        Whether one did: what fails from then on fails because of it.
+        Whether a signal came: what fails from then on fails because of it.
     """
 
     def __init__(self) -> None:
         self.heard = False
+        self._at_once = False
         self._say_unraisable = sys.unraisablehook
 
     def listen(self) -> None:
         """Begin; signals that our parent has us ignore (nohup) stay ignored."""
+        self.heard = self._at_once = False
+        self._say_unraisable = sys.unraisablehook
         sys.unraisablehook = self._take_unraisable
         for number in SIGNALS:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._stop)
 
+    def close(self) -> None:
+        """Let nothing disturb what has to be done before the end."""
+        for number in (*SIGNALS, signal.SIGALRM):
+            signal.signal(number, signal.SIG_IGN)
+
+    @contextmanager
+    def at_once(self) -> Iterator[None]:
+        """Nothing is open here that would have to be left in order."""
+        self._at_once = True
+        try:
+            yield
+        finally:
+            self._at_once = False
+
     def _stop(self, _signal: int, _frame: FrameType | None) -> NoReturn:
         self.heard = True
-        ignore_signals()
+        self.close()
+        if self._at_once:
+            with suppress(OSError):
+                os.write(2, f"vbraille: {SAID}\n".encode())
+            os._exit(EXIT_CODE)
         raise Stopped
 
     def _take_unraisable(self, unraisable: sys.UnraisableHookArgs) -> None:
@@ -51,7 +82,4 @@ class Ear:
             self._say_unraisable(unraisable)
 
 
-def ignore_signals() -> None:
-    """Let nothing disturb what has to be done before the end."""
-    for number in (*SIGNALS, signal.SIGALRM):
-        signal.signal(number, signal.SIG_IGN)
+EAR = _Ear()

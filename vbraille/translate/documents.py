@@ -226,8 +226,11 @@ class Document:
         return hashlib.file_digest(self._stream, "sha256").hexdigest()  # pyright: ignore
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file; it is closed anyhow once the document is forgotten."""
         self._stream.close()
+
+    def __del__(self) -> None:
+        self.close()
 
     def _read(self, offset: int, size: int) -> bytes:
         try:

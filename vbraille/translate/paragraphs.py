@@ -239,7 +239,7 @@ def _joins_words(
         at, after = text[gaps[n]], text[gaps[n] + 1]
         word = to_text(codes[after : after + _LOOK_AHEAD])
         letters = at > 0 and chr(codes[at - 1]).isalpha() and word[0].isalpha()
-        joins[n] = letters and word.split(maxsplit=1)[0] not in _SUSPENDED
+        joins[n] |= letters and word.split(maxsplit=1)[0] not in _SUSPENDED
     return joins
 
 
@@ -267,6 +267,8 @@ def _compose(paragraph: Paragraph) -> Paragraph:
 
     Many tables know é and not e followed by U+0301.
     """
+    if _COMBINING.isdisjoint(paragraph.codes.tolist()):
+        return paragraph
     composed: list[str] = []
     places: list[int] = []
     for character, place in zip(paragraph.text, paragraph.source.tolist(), strict=True):
