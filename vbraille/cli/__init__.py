@@ -10,12 +10,12 @@ import sys
 from contextlib import suppress
 from importlib import import_module
 from io import FileIO, TextIOWrapper
-from typing import TYPE_CHECKING
 
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
 
+TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
