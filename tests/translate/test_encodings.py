@@ -48,8 +48,9 @@ def chance() -> random.Random:
 
 def windows(text: bytes, size: int, unit: int, chance: random.Random) -> list[bytes]:
     """Stretches of a text from anywhere in it, fewer of the long ones."""
+    count = 60 if size < 500 else 10 if size < 4_000 else 3
     repeated = text * (2 + size // len(text))
-    starts = [chance.randrange(len(text) // unit) * unit for _ in range(24 if size < 4_000 else 3)]
+    starts = [chance.randrange(len(text) // unit) * unit for _ in range(count)]
     return [repeated[start : start + size] for start in (0, *starts)]
 
 
@@ -247,6 +248,11 @@ class TestDecoder:
             pieces = [raw[n : n + 50] for n in range(0, len(raw), 50)]
             text, _first_bad = decode(encoding, pieces)
             assert isinstance(text, str)
+
+    def test_an_escape_that_never_ends(self):
+        raw = b"\xe9\xff\x81~\x1b((\xe9\xff\xe9\x0e-~\n\x00$\nB\xff\x0fJa}\x0ea\n\xe9J\x0e\x00\x0e(~\x00"
+        pieces = [raw[n : n + 16] for n in range(0, len(raw), 16)]
+        assert "~\x00" in decode("iso2022_jp", pieces)[0]
 
     @pytest.mark.parametrize("encoding", CODECS)
     def test_good_text_is_the_same_in_any_pieces(self, encoding, chance):
