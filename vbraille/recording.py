@@ -146,10 +146,10 @@ def new_file(path: Path | str) -> Iterator[NewFile]:
     """
     path = Path(path)
     partial = path.with_name(f".{path.name}.partial")
-    if path.is_dir():
-        raise InputError(f"{path} is a directory; give the name of a file in it")
     try:
         try:
+            if path.is_dir():
+                raise InputError(f"{path} is a directory; give the name of a file in it")
             target = _Target(partial)
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None

@@ -1,40 +1,44 @@
-"""The program as users have it: a process of its own."""
+"""The program as its users have it: a process, perhaps at a terminal."""
 
 import os
-import pty
+import re
 import select
 import subprocess
 import sys
 import termios
+import time
 
-VBRAILLE = [sys.executable, "-m", "vbraille"]
-PATIENCE_S = 60
+PROGRAM = [sys.executable, "-m", "vbraille"]
+PATIENCE_S = 60.0
 
 
-def run(*arguments, **options) -> subprocess.CompletedProcess[str]:
-    """Run a command to its end, without a terminal."""
+def run(*arguments, **options):
+    """Run the program to its end, without a terminal."""
+    options = {"stdin": subprocess.DEVNULL, "capture_output": True, "encoding": "utf-8", **options}
     return subprocess.run(
-        [*VBRAILLE, *map(str, arguments)],
-        **{"stdin": subprocess.DEVNULL, "capture_output": True, "text": True, "check": False}
-        | {"timeout": PATIENCE_S}
-        | options,
+        [*PROGRAM, *map(str, arguments)], check=False, timeout=PATIENCE_S, **options
     )
 
 
-class Terminal:
-    """A command at a terminal; a context manager."""
+def start(*arguments, **options):
+    """Start the program, its output and its messages in pipes."""
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.Popen([*PROGRAM, *map(str, arguments)], **{**pipes, **options})
 
-    def __init__(self, *arguments) -> None:
-        self._ours, self._its = pty.openpty()
-        self.before = termios.tcgetattr(self._its)
+
+class Terminal:
+    """A process at a terminal of its own: what it prints is read, keys are typed."""
+
+    def __init__(self, *arguments):
+        self.master, self._slave = os.openpty()
+        self.before = termios.tcgetattr(self._slave)
+        self.printed = ""
+        # The first terminal that the leader of a new session opens is the session's: Ctrl-C works.
+        at_terminal = 'exec "$@" <>"$0" >&0 2>&0'
         self.process = subprocess.Popen(
-            [*VBRAILLE, *map(str, arguments)],
-            stdin=self._its,
-            stdout=self._its,
-            stderr=self._its,
+            ["sh", "-c", at_terminal, os.ttyname(self._slave), *PROGRAM, *map(str, arguments)],
             start_new_session=True,
         )
-        self.shown = ""
 
     def __enter__(self):
         return self
@@ -42,21 +46,46 @@ class Terminal:
     def __exit__(self, *_):
         self.process.kill()
         self.process.wait()
-        os.close(self._ours)
-        os.close(self._its)
+        self.hang_up()
+        os.close(self._slave)
 
-    def type(self, keys: str) -> None:
-        os.write(self._ours, keys.encode())
+    def hang_up(self):
+        """Take the terminal away."""
+        if self.master is not None:
+            os.close(self.master)
+        self.master = None
 
-    def read_until(self, text: str) -> str:
-        """What it shows up to some text, and not more than has been read before."""
-        start = len(self.shown)
-        while text not in self.shown[start:]:
-            ready, _, _ = select.select([self._ours], [], [], PATIENCE_S)
-            assert ready, f"waited in vain for {text!r} after {self.shown!r}"
-            self.shown += os.read(self._ours, 65536).decode()
-        return self.shown[start:]
+    def type(self, keys):
+        """Type keys."""
+        os.write(self.master, keys.encode())
+
+    def until(self, pattern):
+        """Read until something new that matches is printed; give the new part."""
+        new = ""
+        end = time.monotonic() + PATIENCE_S
+        while not re.search(pattern, new):
+            assert time.monotonic() < end, f"{pattern!r} was not printed, but {self.printed!r}"
+            new += self._read(1.0)
+        return new
+
+    def silent(self, seconds):
+        """Whether nothing is printed for some time."""
+        return not self._read(seconds)
+
+    def end(self):
+        """Wait for the process's end; its exit code."""
+        code = self.process.wait(PATIENCE_S)
+        while self._read(0.0):
+            pass
+        return code
 
     def settings(self):
-        """How the terminal is set now."""
-        return termios.tcgetattr(self._its)
+        """The terminal's settings now."""
+        return termios.tcgetattr(self._slave)
+
+    def _read(self, seconds):
+        if not select.select([self.master], [], [], seconds)[0]:
+            return ""
+        text = os.read(self.master, 65_536).decode("utf-8", "replace")
+        self.printed += text
+        return text

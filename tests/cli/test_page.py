@@ -1,113 +1,175 @@
+"""``vbraille page``: the formats, ranges of lines, and its output in hostile surroundings."""
+
+import os
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.cli.program import VBRAILLE, run
+from tests.cli import program
+from vbraille import __version__
 from vbraille.page import Layout
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, Cells, Document, Table
+
+UNICODE = """\
+⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑
+⠀⠀⠋⠳⠗⠀⠋⠊⠧⠑⠀⠎⠊⠭
+⠀⠀⠎⠑⠧⠢⠀⠑⠊⠣⠞⠀⠝⠔⠑
+"""
 
 
-@pytest.fixture(scope="module")
-def layout(texts):
-    return Layout(
-        Book(Document.from_text((texts / "english.txt").read_text()), Table("en-ueb-g2.ctb")), 26
-    )
+def test_the_formats_say_the_same(call, text):
+    assert call("page", text) == call("page", text, "--format", "unicode")
+    assert call("page", text).out == UNICODE
+    assert call("page", text).err == "line width: 26 cells\n"
+    said = call("page", text, "--format", "text")
+    assert said.out == "one two three\nfour five six\nseven eight nine\n"
+    brf = call("page", text, "--format", "brf").out
+    assert brf.splitlines()[0] == '  "O TWO ?REE'
+    dots = call("page", text, "--format", "dots").out
+    assert dots.splitlines()[0] == ("0 0 5 1-3-5 0 2-3-4-5 2-4-5-6 1-3-5 0 1-4-5-6 1-2-3-5 1-5 1-5")
+    for line, brf_line, dots_line in zip(
+        UNICODE.splitlines(), brf.splitlines(), dots.splitlines(), strict=True
+    ):
+        masks = Cells.from_unicode(line).masks.tolist()
+        assert Cells.from_brf(brf_line).masks.tolist() == masks
+        assert Cells.from_dots(dots_line).masks.tolist() == masks
+
+
+def test_a_long_text_is_all_there(call, texts):
+    book = Book(Document.open(texts / "english.txt"), Table("en-ueb-g2.ctb"))
+    lines = list(Layout(book, 26).lines())
+    said = call("page", texts / "english.txt")
+    assert said.out.splitlines() == [line.printed.to_unicode() for line in lines]
+    said = call("page", texts / "english.txt", "--format", "text")
+    assert said.out.splitlines() == [line.text for line in lines]
 
 
 @pytest.mark.parametrize(
-    ("how", "spell"),
+    ("lines", "wanted"),
     [
-        ("unicode", lambda line: line.printed.to_unicode()),
-        ("brf", lambda line: line.printed.to_brf()),
-        ("dots", lambda line: line.printed.to_dots()),
-        ("text", lambda line: line.text),
+        ("1", slice(0, 1)),
+        ("3-10", slice(2, 10)),
+        ("290-", slice(289, None)),
+        ("-3", slice(0, 3)),
+        ("292-999999999999999", slice(291, None)),
     ],
 )
-def test_formats(texts, layout, how, spell):
-    done = run("page", texts / "english.txt", "--format", how, "--lines", "3-30")
+def test_lines_are_counted_from_1_in_the_book(call, texts, lines, wanted):
+    whole = call("page", texts / "english.txt", "--format", "text").out.splitlines()
+    assert len(whole) == 293
+    part = call("page", texts / "english.txt", "--format", "text", f"--lines={lines}")
+    assert part.code == 0
+    assert part.out.splitlines() == whole[wanted]
+
+
+def test_options_of_text_and_page_reach_it(call, tmp_path, text):
+    def first(*options):
+        said = call("page", text, "--lines", "1", *options)
+        assert said.code == 0
+        return said.out.strip("\n⠀"), said.err
+
+    assert first("--table", "en-ueb-g1.ctb")[0] == "⠕⠝⠑⠀⠞⠺⠕⠀⠞⠓⠗⠑⠑"
+    assert first("--grade", "1") == first("--table", "en-ueb-g1.ctb")
+    french = tmp_path / "french.txt"
+    french.write_text("où")
+    assert call("page", french, "--language", "fr").out == "⠀⠀⠕⠾\n"
+    assert first("--travel", "60") == ("⠐⠕", "line width: 4 cells\n")
+    assert first("--model", "vbd")[1] == "line width: 28 cells\n"
+    assert first("--geometry", "standard", "--cell-gap", "10")[1] == "line width: 24 cells\n"
+    text.write_bytes("Größe\n  kurz".encode("latin-1"))
+    verse = call("page", text, "--format", "text", "--encoding", "latin-1", "--keep-lines")
+    assert verse.out == "Größe\nkurz\n"
+
+
+def test_a_text_that_is_not_utf_8_is_told_once(call, text):
+    text.write_bytes("Zwölf Boxkämpfer jagen Viktor quer über den Sylter Deich".encode("cp1252"))
+    said = call("page", text, "--format", "text")
+    assert "Boxkämpfer" in said.out
+    assert len(said.err.splitlines()) == 2
+    assert "--encoding" in said.err
+
+
+def test_nothing_in_a_text_moves_the_cursor(call, text):
+    text.write_bytes(b"red \x1b[31m ring \x07 rub \x7f csi \xc2\x9b2J")
+    said = call("page", text, "--format", "text", "--travel", "1000")
+    assert said.out == "red \\x1b[31m ring \\x07 rub \\x7f csi \\x9b2J\n"
+
+
+def test_a_table_of_eight_dots_has_no_brf(call, text):
+    said = call("page", text, "--table", "fr-bfu-comp8.utb", "--format", "brf")
+    assert said.code == 0
+    text.write_text("small\n\nLARGE\n")
+    said = call("page", text, "--table", "fr-bfu-comp8.utb", "--format", "brf")
+    assert said.code == 2
+    assert said.out == "  SMALL\n"
+    assert "line 2" in said.err
+    assert "--format unicode" in said.err
+
+
+def test_help_and_version_end_well(call):
+    said = call("--help")
+    assert said.code == 0
+    for command in ("read", "page", "render", "plot", "tables"):
+        assert f"  {command} " in said.out
+        assert call(command, "--help").code == 0
+    assert call("--version").out == f"vbraille {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "surroundings",
+    [
+        {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"},
+        {"LC_ALL": "POSIX", "PYTHONIOENCODING": "latin-1"},
+    ],
+)
+def test_it_prints_whatever_the_locale(tmp_path, surroundings):
+    text = tmp_path / "Größe.txt"
+    text.write_text("naïve 點\n\none two three\n")
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG"))}
+    done = program.run("page", text, "--format", "text", env={**environment, **surroundings})
     assert done.returncode == 0
-    assert done.stdout.splitlines() == [spell(line) for line in layout.lines(3, 30)]
-    assert done.stderr == "line width: 26 cells\n"
+    assert done.stdout == "naïve 點\none two three\n"
+    done = program.run("page", f"{text}.Ω", env={**environment, **surroundings})
+    assert done.returncode == 2
+    assert done.stderr.startswith("vbraille: there is no file")
+    assert done.stderr.count("\n") == 1
 
 
-def test_the_whole_text_on_the_vbd_in_french(texts):
-    done = run("page", texts / "francais.txt", "--model", "vbd", "--language", "fr")
-    assert done.stderr == "line width: 28 cells\n"
-    table = Table("fr-bfu-comp6.utb")
-    layout = Layout(Book(Document.from_text((texts / "francais.txt").read_text()), table), 28)
-    assert done.stdout.splitlines() == [line.printed.to_unicode() for line in layout.lines()]
+def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
+    big = tmp_path / "big.txt"
+    big.write_text("one two three\n\n" * 20_000)
+    with program.start("page", big) as process:
+        assert process.stdout.readline() == "⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑\n".encode()
+        process.stdout.close()
+        assert process.stderr.read() == b"line width: 26 cells\n"
+        assert process.wait(program.PATIENCE_S) == 0
 
 
-def test_the_geometry_s_width(texts):
-    done = run("page", texts / "english.txt", "--lines", "1", "--geometry", "standard")
-    assert done.stderr == "line width: 48 cells\n"
-    done = run("page", texts / "english.txt", "--lines", "1", "--travel", "100", "--cell-gap", "6")
-    assert done.stderr == "line width: 9 cells\n"
+def test_a_pipe_is_read_like_a_file(text):
+    done = program.run("page", "/dev/stdin", stdin=None, input=text.read_text())
+    assert (done.returncode, done.stdout) == (0, UNICODE)
 
 
-def test_verse_keeps_its_lines(tmp_path):
-    verse = tmp_path / "verse"
-    verse.write_text("one\n  two\n\nthree\n")
-    kept = run("page", verse, "--keep-lines", "--format", "brf").stdout
-    assert kept == '"O\n  TWO\n\n?REE\n'
-    assert run("page", verse, "--format", "text").stdout == "one two\nthree\n"
-
-
-def test_an_encoding_is_guessed_said_once_and_overridden(tmp_path, texts):
-    path = tmp_path / "text"
-    path.write_bytes((texts / "francais.txt").read_text().encode("cp1252", "replace"))
-    right = run("page", texts / "francais.txt", "--format", "text", "--lines", "2-4").stdout
-    guessed = run("page", path, "--format", "text", "--lines", "2-4")
-    assert guessed.stdout == right
-    assert guessed.stderr.count("--encoding") == 1
-    first = next(n for n, byte in enumerate(path.read_bytes()) if byte > 127)
-    assert f"(byte {first})" in guessed.stderr
-    told = run("page", path, "--format", "text", "--lines", "2-4", "--encoding", "cp1252")
-    assert (told.stdout, told.stderr) == (right, "line width: 26 cells\n")
-
-
-@pytest.mark.parametrize("locale", ["C", "POSIX", "en_US.ISO-8859-1"])
-def test_it_prints_in_any_locale(texts, locale):
-    environment = {"PATH": "/usr/bin:/bin", "LC_ALL": locale, "PYTHONIOENCODING": "latin-1"}
-    done = run("page", texts / "english.txt", "--lines", "1", env=environment, encoding="utf-8")
-    assert "⠠⠁" in done.stdout
-
-
-def test_a_reader_that_has_enough_ends_it_quietly(texts):
-    with subprocess.Popen(
-        [*VBRAILLE, "page", str(texts / "english.txt"), "--format", "dots"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as page:
-        assert page.stdout
-        assert page.stderr
-        assert page.stdout.readline()
-        page.stdout.close()
-        assert page.stderr.read() == "line width: 26 cells\n"
-        assert page.wait() == 0
-
-
-def test_a_full_disk_is_said():
-    with Path("/dev/full").open("w") as full:
-        done = run("tables", capture_output=False, stdout=full, stderr=subprocess.PIPE)
+@pytest.mark.parametrize("arguments", ["page {}", "tables", "--help", "--version"])
+def test_a_full_disk_under_the_output(text, arguments):
+    with Path("/dev/full").open("wb") as full:
+        done = program.run(
+            *arguments.format(text).split(),
+            capture_output=False, stdout=full, stderr=subprocess.PIPE,
+        )  # fmt: skip
     assert done.returncode == 1
-    assert done.stderr == "vbraille: No space left on device\n"
+    assert done.stderr.splitlines()[-1] == "vbraille: No space left on device"
+    assert "Traceback" not in done.stderr
 
 
-def test_tables():
-    every = run("tables").stdout.splitlines()
-    assert len(every) > 150
-    english = next(line for line in every if line.startswith("en-ueb-g2.ctb: "))
-    assert ", language en, grade 2, " in english
-    french = run("tables", "--language", "fr").stdout.splitlines()
-    assert french == [line for line in every if ", language fr," in line]
-    assert any(line.startswith("fr-bfu-comp6.utb: ") and line.endswith("6 dots") for line in french)
-
-
-def test_help_and_version_are_no_errors():
-    done = run("--help")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert all(command in done.stdout for command in ("read", "page", "render", "plot", "tables"))
-    assert run("--version").stdout.startswith("vbraille 0.")
+def test_closed_streams_are_no_fault(text):
+    shell = 'exec "$@" <&- >&- 2>&-'
+    done = subprocess.run(["sh", "-c", shell, "sh", *program.PROGRAM, "page", text], check=False)
+    assert done.returncode == 0
+    shell = 'exec "$@" 2>&-'
+    done = subprocess.run(
+        ["sh", "-c", shell, "sh", *program.PROGRAM, "page", text, "--lines=0"],
+        check=False, capture_output=True,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (2, b"")

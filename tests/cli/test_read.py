@@ -1,107 +1,189 @@
+"""``vbraille read``: through a pipe, and at a terminal with its keys."""
+
 import re
 import signal
 
 import pytest
 
-from tests.cli.program import Terminal, run
+from tests.cli import program
+from vbraille.page import Layout
+from vbraille.reading import COMMANDS
+from vbraille.translate import Book, Document, Table
 
-SUMMARY = re.compile(
-    r"summary: lines (\d+), seconds ([\d.]+), mean scanning speed ([\d.]+) mm/s, "
-    r"ticks (\d+), late ticks (\d+)\n"
+SUMMARY = (
+    r"summary: lines (\d+), seconds (\d+\.\d), mean scanning speed (\d+\.\d) mm/s, "
+    r"ticks (\d+), late ticks (\d+)"
 )
+FAST = ("--hand", "sweep:1000")
 
 
-@pytest.fixture
-def text(tmp_path):
-    path = tmp_path / "text"
-    path.write_text("go on\n\nso it is\n\nwe do\n")
-    return path
+def of_lines(said):
+    """What was said but for notes on the speed of the hand."""
+    return [line for line in said.splitlines() if not line.startswith("speed:")]
 
 
-def test_without_a_terminal_it_runs_through(text):
-    done = run("read", text, "--hand", "sweep:200", "--texture", "0")
-    assert (done.returncode, done.stderr) == (0, "line width: 26 cells\n")
-    said = done.stdout.splitlines(keepends=True)
-    assert said[0::3] == ["line: 1\n", "line: 2\n", "line: 3\n", said[-1]]
-    assert said[1] == "cells: ⠀⠀⠛⠀⠕⠝\n"
-    assert said[2::3] == ["text: go on\n", "text: so it is\n", "text: we do\n"]
-    found = SUMMARY.fullmatch(said[-1])
-    assert found
-    lines, seconds, speed, ticks, late = map(float, found.groups())
-    assert lines == 3
-    assert abs(seconds * 1000 - ticks - late) < 100
-    assert 100 < speed < 260  # 200, but for what a machine that stalls does not see
+def spoken(path, first, last, labels=("line", "cells", "text")):
+    layout = Layout(Book(Document.open(path), Table("en-ueb-g2.ctb")), 26)
+    said = []
+    for line in layout.lines(first, last):
+        parts = {"line": line.number, "cells": line.printed.to_unicode(), "text": line.text}
+        said += [f"{label}: {parts[label]}" for label in labels]
+    return said
 
 
-@pytest.mark.parametrize(("echo", "labels"), [("none", []), ("text", ["line", "text"])])
-def test_echo(text, echo, labels):
-    done = run(
-        "read", text, "--hand", "sweep:999", "--lines", "1", "--texture", "0", "--echo", echo
-    )
-    assert [line.split(":")[0] for line in done.stdout.splitlines()] == [*labels, "summary"]
-
-
-@pytest.mark.parametrize("model", ["stress2", "vbd"])
-@pytest.mark.parametrize("hand", ["fluent", "recorded"])
-def test_other_hands(text, tmp_path, model, hand):
-    if hand == "recorded":
-        path = tmp_path / "hand.csv"
-        places = [*range(-10, 80, 10), *range(80, -20, -10)]
-        path.write_text("".join(f"{n * 0.05},{max(x, -10.8)}\n" for n, x in enumerate(places)))
-        hand = f"recorded:{path}"
-    done = run("read", text, "--model", model, "--hand", hand, "--lines", "1", "--echo", "none")
+def test_without_a_terminal_it_runs_through_and_says_each_line(text):
+    done = program.run("read", text, "--hand", "sweep:500", "--lines", "2-3")
     assert done.returncode == 0
-    assert SUMMARY.fullmatch(done.stdout.splitlines(keepends=True)[-1])
+    assert done.stderr == "line width: 26 cells\n"
+    *lines, summary = of_lines(done.stdout)
+    assert lines == spoken(text, 2, 3)
+    found = re.fullmatch(SUMMARY, summary)
+    read, seconds, speed, ticks, late = map(float, found.groups())
+    assert read == 2
+    assert 300 < speed <= 505
+    assert 1 < seconds < 60
+    assert seconds == pytest.approx((ticks + late) / 1000, abs=0.051)
 
 
-def test_keys_at_a_terminal(text):
-    with Terminal("read", text, "--texture", "0.5", "--advance", "key") as terminal:
-        terminal.read_until("h says the keys")
-        for keys, answer in (
-            ("t", "texture: 0.6"),
-            ("T", "texture: 0.5"),
-            ("C", "contrast: 0.9"),
-            ("c", "contrast: 1"),
-            ("w", "word: "),
-            (" ", "paused"),
-            (" ", "reading"),
-            ("p", "first line"),
-            (
-                "n\x1b[B",
-                "",
-            ),  # two lines on, and nothing said of them: speech is not to read the book
-            ("n", "last line"),
-            ("x", "no command: 'x'"),
-            ("h", "q: stop reading"),
-        ):
+@pytest.mark.parametrize(
+    ("echo", "labels"),
+    [
+        ("none", ()),
+        ("text", ("line", "text")),
+        ("cells", ("line", "cells")),
+        ("both", ("line", "cells", "text")),
+    ],
+)
+def test_echo(call, text, echo, labels):
+    said = call("read", text, *FAST, "--lines", "1", "--echo", echo)
+    assert said.code == 0
+    *lines, summary = of_lines(said.out)
+    assert lines == spoken(text, 1, 1, labels)
+    assert re.fullmatch(SUMMARY, summary)
+
+
+def test_the_other_model_and_the_tuning(call, text):
+    options = "--model vbd --dot-row 3 --texture 0.5 --contrast 0.5 --rate 500 --lines 3"
+    said = call("read", text, *FAST, *options.split())
+    assert said.code == 0
+    assert said.err == "line width: 28 cells\n"
+    assert "line: 3" in said.out
+
+
+def test_a_recording_that_is_over_ends_the_reading(call, tmp_path, text):
+    hand = tmp_path / "hand.csv"
+    hand.write_text("0,-10.8\n0.05,40\n0.1,20\n")
+    said = call("read", text, "--hand", f"recorded:{hand}")
+    assert said.code == 0
+    *lines, summary = of_lines(said.out)
+    assert lines == spoken(text, 1, 1)
+    assert summary.startswith("summary: lines 1,")
+
+
+def test_a_hand_that_is_at_the_end_between_two_ticks_goes_on(call, text):
+    text.write_text("a\n\nb\n")
+    said = call("read", text, *FAST, "--rate", "2", "--echo", "text")
+    assert said.code == 0
+    assert [line for line in said.out.splitlines() if line.startswith("line:")] == [
+        "line: 1",
+        "line: 2",
+    ]
+    assert said.out.splitlines()[-1].startswith("summary: lines 2,")
+
+
+def test_nothing_in_a_text_moves_the_cursor(call, text):
+    text.write_bytes(b"red \x1b[31m\n")
+    said = call("read", text, *FAST)
+    assert "text: red \\x1b[31m\n" in said.out
+    assert "\x1b" not in said.out
+
+
+def check_plain(terminal):
+    """Nothing was printed but lines."""
+    assert not re.search(r"[^\n\x20-\x7e\u00a0-\U0010ffff\r]", terminal.printed)
+    assert not re.search(r"\r(?!\n)", terminal.printed)
+
+
+def test_keys_at_a_terminal(tmp_path, text):
+    hand = tmp_path / "hand.csv"
+    hand.write_text("0,64.2\n0.1,64.2\n")  # goes to the second word, and stays
+    arguments = ("read", text, "--hand", f"recorded:{hand}", "--advance", "key")
+    with program.Terminal(*arguments) as terminal:
+
+        def press(keys, said):
             terminal.type(keys)
-            if answer:
-                shown = terminal.read_until(answer)
-                assert "text:" not in shown
-                assert "cells:" not in shown
+            return terminal.until(rf"(^|\n){re.escape(said)}\r\n")
+
+        start = terminal.until("h says the keys\r\n")
+        assert start.splitlines()[0] == "line width: 26 cells"
+        assert terminal.settings() != terminal.before
+        helped = press("h", "q: stop reading").splitlines()
+        assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
+            f"{' or '.join('space' if key == ' ' else key for key in command.keys)}: {command.help}"
+            for command in COMMANDS
+        ]
+        word = ""
+        while "two" not in word:
+            terminal.type("w")
+            word = terminal.until(r"word: .*\r\n")
+        press("p", "first line")
+        press("T", "texture: 0.9")
+        press("tt", "texture: 1, the most")
+        press("CC", "contrast: 0.8")
+        press("c", "contrast: 0.9")
+        press(" ", "paused")
+        press(" ", "reading")
+        press("x", "no command: 'x'; h says the keys")
+        press("n\x1b[Bn", "last line")
+        press("\x1b[A\x1bOAp", "first line")
+        press("\x1b[15~\x1b[1;5Cé", "no command: 'é'; h says the keys")
+        assert "~" not in terminal.printed  # keys that stand for nothing are passed over whole
+        press("\x04", "no command: '\\x04'; h says the keys")
         terminal.type("q")
-        terminal.read_until("late ticks")
-        assert terminal.process.wait() == 0
-        assert "\x1b" not in terminal.shown
-        assert "\r" not in terminal.shown.replace("\r\n", "")
+        assert terminal.end() == 0
         assert terminal.settings() == terminal.before
+        *_, summary = terminal.printed.splitlines()
+        assert re.fullmatch(SUMMARY, summary)
+        assert summary.startswith("summary: lines 5,")
+        for label in ("line: ", "cells: ", "text: "):  # no echo unless asked for
+            assert label not in terminal.printed
+        check_plain(terminal)
 
 
-def test_at_the_end_of_the_text_a_terminal_waits(text):
-    with Terminal(
-        "read", text, "--lines", "3", "--hand", "sweep:500", "--texture", "0"
-    ) as terminal:
-        terminal.read_until("end of text")
-        terminal.type("q")
-        terminal.read_until("summary")
-        assert terminal.process.wait() == 0
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_restores_the_terminal(text, number):
-    with Terminal("read", text, "--hand", "device") as terminal:
-        terminal.read_until("h says the keys")
-        terminal.process.send_signal(number)
-        assert "Traceback" not in terminal.read_until("vbraille: stopped")
-        assert terminal.process.wait() == 1
+def test_a_key_brings_the_next_line_and_nothing_else_does(text):
+    text.write_text("one\n\ntwo\n\nthree\n")
+    options = ("--echo", "text", "--model", "vbd", "--texture", "0")
+    with program.Terminal("read", text, *FAST, "--advance", "key", *options) as terminal:
+        terminal.until("text: one\r\nh says the keys\r\n")
+        assert terminal.silent(1.0)  # the hand is there and back in 0.3 s
+        terminal.type("n")
+        terminal.until("line: 2\r\ntext: two\r\n")
+        terminal.type("\x03")  # Ctrl-C
+        assert terminal.end() == 1
+        assert terminal.printed.endswith("\r\nvbraille: stopped\r\n")
         assert terminal.settings() == terminal.before
+        check_plain(terminal)
+
+
+def test_at_a_terminal_the_hand_brings_lines_and_the_end_waits_for_keys(text):
+    text.write_text("one\n\ntwo\n")
+    arguments = ("read", text, "--hand", "sweep:60", "--echo", "text")
+    with program.Terminal(*arguments) as terminal:
+        said = terminal.until("end of text.*\r\n")
+        assert [s for s in said.splitlines() if s.startswith("text")] == [
+            "text: one",
+            "text: two",
+        ]
+        terminal.type("w")
+        terminal.until("word: none here\r\n")
+        terminal.process.send_signal(signal.SIGTERM)
+        assert terminal.end() == 1
+        assert terminal.settings() == terminal.before
+        check_plain(terminal)
+
+
+def test_a_terminal_that_goes_away_ends_it(text):
+    with program.Terminal("read", text, "--advance", "key", "--lines", "1") as terminal:
+        terminal.until("h says the keys")
+        terminal.hang_up()
+        assert terminal.process.wait(program.PATIENCE_S) == 1

@@ -1,6 +1,7 @@
+"""``vbraille render``: what the file holds, and what is left when it is not finished."""
+
 import hashlib
 import json
-import resource
 import signal
 import subprocess
 
@@ -8,116 +9,238 @@ import h5py
 import numpy as np
 import pytest
 
-from tests.cli.program import VBRAILLE, run
+from tests.cli import program
 from vbraille import __version__
-from vbraille.geometry import Geometry
+from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.render.reference import deflections
+from vbraille.render.renderer import Renderer
 from vbraille.translate import Book, Document, Table
 
-OPTIONS = {
-    "stress2": ("--mapping", "sheared", "--texture", "0.5", "--contrast", "0.8"),
-    "vbd": ("--model", "vbd", "--dot-row", "2", "--dot-width", "3"),
-}
+RECORDED = "t_s,x_mm\n" + "".join(f"{t / 10},{x}\n" for t, x in enumerate((-9, 40, 155, 20, -11)))
 
 
-@pytest.mark.parametrize("name", sorted(OPTIONS))
-@pytest.mark.parametrize("hand", ["sweep:80", "fluent", "recorded"])
-def test_the_file_is_enough_to_render_it_again(texts, tmp_path, name, hand):
-    out = tmp_path / "reading.h5"
-    if hand == "recorded":
-        path = tmp_path / "hand.csv"
-        times = np.arange(0, 12, 0.05)
-        places = 150 - 162 * np.cos(times * 2 * np.pi / 5)
-        rows = [f"{t:.6f},{x:.6f}" for t, x in zip(times, np.maximum(places, -10.5), strict=True)]
-        path.write_text("t_s,x_mm\n" + "\n".join(rows))
-        hand = f"recorded:{path}"
-    source = texts / "english.txt"
-    done = run("render", source, "--out", out, "--lines", "3-4", "--hand", hand, "--rate", "500",
-               *OPTIONS[name])  # fmt: skip
-    assert done.returncode == 0
-    model = MODELS[name]
+def from_the_file_alone(file):
+    """Frames of a file once more, by the kernels and by their twin."""
+    attributes = file.attrs
+    model = MODELS[attributes["model"]]
+    name = attributes["mapping"]
+    show = {
+        "array": model.array,
+        "profile": model.profile,
+        "mapping": MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
+        "geometry": Geometry(**json.loads(attributes["geometry"])),
+        "tuning": Tuning(**json.loads(attributes["tuning"])),
+    }
+    np.testing.assert_array_equal(attributes["column_offset_mm"], model.array.column_offsets_mm())
+    np.testing.assert_array_equal(attributes["row_offset_mm"], model.array.row_offsets_mm())
+    cells, length = file["page/cells"][:], file["page/length"][:]
+    x_mm, line = file["x_mm"][:], file["line"][:]
+    again = np.empty(file["frames"].shape, np.float32)
+    twin = np.empty(again.shape)
+    for row in range(len(cells)):
+        here = line == row
+        masks = cells[row, : length[row]]
+        again[here] = Renderer(masks, **show).path(x_mm[here])
+        twin[here] = deflections(x_mm[here], masks, **show)
+    return again, twin
+
+
+@pytest.mark.parametrize(
+    ("options", "model", "rate", "first", "last"),
+    [
+        ("--hand sweep:1000 --lines 2-3", "stress2", 1000, 2, 3),
+        ("--model vbd --dot-row 2 --texture 0.5 --rate 333 --hand sweep:90", "vbd", 333, 1, 293),
+        ("--hand fluent --seed 5 --lines 4 --mapping sheared --contrast 0.6 --texture-cycles 5",
+         "stress2", 1000, 4, 4),
+        ("--hand device --rate 100 --lines 1-2 --geometry standard --travel 60 --mapping paired",
+         "stress2", 100, 1, 2),
+        ("--hand recorded:{} --lines 1-2 --rate 2000 --dot-width 6", "stress2", 2000, 1, 1),
+    ],
+)  # fmt: skip
+def test_the_file_holds_all_that_was_rendered(
+    call, tmp_path, texts, options, model, rate, first, last
+):
+    source, out = texts / "english.txt", tmp_path / "out.h5"
+    if model == "vbd":  # all of a text, a small one
+        source, last = tmp_path / "text.txt", 2
+        source.write_text("one\n\ntwo\n")
+    recorded = tmp_path / "hand.csv"
+    recorded.write_text(RECORDED)
+    said = call("render", source, "--out", out, *options.format(recorded).split())
+    assert said.code == 0
+    assert not list(tmp_path.glob(".*"))
     with h5py.File(out) as file:
-        attributes = dict(file.attrs)
-        data = {key: file[key][:] for key in ("t_s", "x_mm", "line", "frames")}
-        cells, lengths = file["page/cells"][:], file["page/length"][:]
-    assert attributes["first_line"] == 3
-    assert attributes["model"] == name
-    assert attributes["vbraille_version"] == __version__
-    assert attributes["source"] == str(source)
-    assert attributes["source_sha256"] == hashlib.sha256(source.read_bytes()).hexdigest()
-    assert attributes["rate_hz"] == 500
-    np.testing.assert_allclose(attributes["column_offset_mm"], model.array.column_offsets_mm())
-    np.testing.assert_allclose(attributes["row_offset_mm"], model.array.row_offsets_mm())
-    count = len(data["t_s"])
-    assert data["frames"].shape == (count, *model.array.shape)
-    assert data["frames"].dtype == np.float32
-    np.testing.assert_allclose(data["t_s"], np.arange(count) / 500)
-    assert set(data["line"]) == {0, 1}
-    assert (np.diff(data["line"]) >= 0).all()
-    geometry = Geometry(**json.loads(attributes["geometry"]))
-    width = geometry.cells_per_line(model.array.span_mm)
-    layout = Layout(Book(Document.from_text(source.read_text()), Table("en-ueb-g2.ctb")), width)
-    for row, line in enumerate(layout.lines(3, 4)):
-        masks = cells[row, : lengths[row]]
-        np.testing.assert_array_equal(masks, line.masks)
-        assert not cells[row, lengths[row] :].any()
-        here = data["line"] == row
-        again = deflections(
-            data["x_mm"][here],
-            masks,
-            array=model.array,
-            profile=model.profile,
-            mapping=single_row(2) if name == "vbd" else MAPPINGS[attributes["mapping"]],
-            geometry=geometry,
-            tuning=Tuning(**json.loads(attributes["tuning"])),
+        t_s, x_mm, line, frames = (file[name][:] for name in ("t_s", "x_mm", "line", "frames"))
+        assert file.attrs["model"] == model
+        assert file.attrs["rate_hz"] == rate
+        assert file.attrs["first_line"] == first
+        assert file.attrs["vbraille_version"] == __version__
+        assert file.attrs["source"] == str(source)
+        assert file.attrs["source_sha256"] == hashlib.sha256(source.read_bytes()).hexdigest()
+
+        array = MODELS[model].array
+        assert frames.dtype == np.float32
+        assert frames.shape == (t_s.size, array.rows, array.columns)
+        assert t_s.shape == x_mm.shape == line.shape
+        np.testing.assert_allclose(t_s, np.arange(t_s.size) / rate, rtol=0, atol=1e-9)
+
+        cells, length = file["page/cells"][:], file["page/length"][:]
+        assert cells.dtype == np.uint8
+        layout = Layout(Book(Document.open(source), Table("en-ueb-g2.ctb")), cells.shape[1])
+        masks = [wanted.masks for wanted in layout.lines(first, last)]
+        assert length.tolist() == [m.size for m in masks]
+        for row, wanted in enumerate(masks):
+            assert cells[row, : length[row]].tolist() == wanted.tolist()
+            assert not cells[row, length[row] :].any()
+        assert set(np.unique(line)) == set(range(len(masks)))
+        assert (np.diff(line) >= 0).all()
+        geometry = Geometry(**json.loads(file.attrs["geometry"]))
+        if "recorded" not in options:
+            for row in range(len(masks)):  # each line from the left stop to its end and back
+                there = x_mm[line == row]
+                assert there[0] == pytest.approx(-array.span_mm)
+                assert there[-1] < -array.span_mm + 250 / rate
+                end_mm = geometry.extent_mm(length[row])
+                assert end_mm - 1000 / rate < there.max() < end_mm + 1e-9
+        assert frames.max() > 0.5
+        again, twin = from_the_file_alone(file)
+    np.testing.assert_array_equal(frames, again)
+    np.testing.assert_allclose(frames, twin, rtol=0, atol=1e-6)
+    assert said.out == (
+        f"rendered: {len(masks)} lines, {t_s.size} frames, {t_s.size / rate:.1f} s of reading\n"
+    )
+
+
+def test_options_are_in_the_file(call, tmp_path, text):
+    out = tmp_path / "out.h5"
+    options = "--geometry vbd --dot-width 2.5 --dot-spacing 4.5 --cell-gap 6 --line-pitch 15"
+    more = "--travel 222 --texture 0.25 --contrast 0.75 --texture-cycles 3 --mapping compact"
+    said = call("render", text, "--out", out, "--hand=sweep:1000", *options.split(), *more.split())
+    assert said.code == 0
+    with h5py.File(out) as file:
+        row_spacing_mm = PRESETS["vbd"].row_spacing_mm
+        assert Geometry(**json.loads(file.attrs["geometry"])) == Geometry(
+            2.5, 4.5, 6.0, row_spacing_mm, 15.0, 222.0
         )
-        np.testing.assert_allclose(data["frames"][here], again, atol=1e-6)
-        assert again.max() > 0.5
+        assert Tuning(**json.loads(file.attrs["tuning"])) == Tuning(0.25, 0.75, 3)
+        assert file.attrs["mapping"] == "compact"
 
 
-def test_progress_in_plain_lines(texts, tmp_path):
-    done = run("render", texts / "deutsch.txt", "--language", "de", "--out", tmp_path / "d.h5",
-               "--rate", "50", "--plain")  # fmt: skip
-    said = [line for line in done.stderr.splitlines() if line.endswith("percent")]
-    percents = [int(line.split()[0]) for line in said]
-    assert percents == sorted(set(percents))
-    assert len(percents) >= 3
-    assert "\r" not in done.stderr
+def test_a_hand_s_chances_come_from_the_seed(call, tmp_path, text):
+    def places(seed):
+        out = tmp_path / "out.h5"
+        options = ("--out", out, "--hand", "fluent", "--lines", "1", "--rate", "100")
+        assert call("render", text, *options, "--seed", seed).code == 0
+        with h5py.File(out) as file:
+            return file["x_mm"][:].tolist()
+
+    assert places(3) == places(3)
+    assert places(3) != places(4)
 
 
-def small_disk() -> None:
-    """A disk that is full after 300 kB, for the process to come."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+def test_progress_in_lines(call, tmp_path, texts):
+    arguments = ("render", texts / "english.txt", "--out", tmp_path / "out.h5")
+    fast = ("--hand", "sweep:1000", "--rate", "100")
+    whole = call(*arguments, *fast, "--plain")
+    tenths = [f"{tenth}0 percent" for tenth in range(1, 10)]
+    said = whole.err.splitlines()
+    assert [line for line in said if "percent" in line][:9] == tenths
+    assert all("percent" in line for line in said[1:10])  # after the width, before other notes
+    some = call(*arguments, *fast, "--plain", "--lines", "11-14")
+    said = [line for line in some.err.splitlines() if "percent" in line]
+    assert said == ["20 percent", "50 percent", "70 percent", "100 percent"]
+    without = call(*arguments, *fast, "--lines", "11-14")
+    assert "percent" not in without.err
+    for run in (whole, some, without):
+        assert "\r" not in run.err
+        assert "\x1b" not in run.err
 
 
-def test_a_full_disk_leaves_what_was_there(texts, tmp_path):
-    out = tmp_path / "reading.h5"
-    out.write_bytes(b"precious")
-    done = run("render", texts / "english.txt", "--out", out, preexec_fn=small_disk)
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].startswith(f"vbraille: {out} could not be written: ")
-    assert "Traceback" not in done.stderr
-    assert "HDF5" not in done.stderr
-    assert out.read_bytes() == b"precious"
-    assert list(tmp_path.iterdir()) == [out]
+def test_texture_that_passes_the_filters_is_told(call, tmp_path, text):
+    arguments = ("render", text, "--out", tmp_path / "out.h5", "--lines", "1", "--hand")
+    assert "below 74 mm/s it is felt" in call(*arguments, "sweep:80").err
+    assert "speed" not in call(*arguments, "sweep:70").err
+    assert "speed" not in call(*arguments, "sweep:80", "--texture", "0").err
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_leaves_no_file(texts, tmp_path, number):
-    with subprocess.Popen(
-        [*VBRAILLE, "render", str(texts / "english.txt"), "--out", str(tmp_path / "r.h5"),
-         "--plain", "--hand", "device"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    ) as process:  # fmt: skip
-        assert process.stderr
-        while not process.stderr.readline().endswith("percent\n"):
-            pass
-        process.send_signal(number)
-        rest = process.stderr.read()
-        assert process.wait() == 1
-    assert rest.splitlines()[-1] == "vbraille: stopped"
-    assert "Traceback" not in rest
-    assert list(tmp_path.iterdir()) == []
+@pytest.fixture
+def old(call, tmp_path, text):
+    """A file from an earlier run, as bytes, where the next is to be."""
+    out = tmp_path / "out.h5"
+    assert call("render", text, "--out", out, "--hand", "sweep:1000").code == 0
+    return out, out.read_bytes()
+
+
+def files_in(folder):
+    return sorted(path.name for path in folder.iterdir() if path.suffix != ".txt")
+
+
+def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, text):
+    out, before = old
+    for size in (4096, len(before) - 1):  # at the first writing, and at the last
+        blocks = size // 512
+        limited = f'ulimit -f {blocks}; exec "$@"'
+        done = subprocess.run(
+            ["sh", "-c", limited, "sh", *program.PROGRAM, "render", text, "--out", out,
+             "--hand", "sweep:1000"],
+            capture_output=True, check=False, encoding="utf-8", timeout=program.PATIENCE_S,
+        )  # fmt: skip
+        assert done.returncode == 1
+        *_, sentence = done.stderr.splitlines()
+        assert sentence == f"vbraille: {out} could not be written: File too large"
+        assert "Traceback" not in done.stderr
+        assert done.stdout == ""
+        assert files_in(tmp_path) == ["out.h5"]
+        assert out.read_bytes() == before
+
+
+def half_done(texts, out):
+    """Start a long run, and wait until a part of it is written."""
+    process = program.start(
+        "render", texts / "english.txt", "--out", out, "--hand", "sweep:200", "--plain"
+    )
+    for line in process.stderr:
+        if line == b"10 percent\n":
+            return process
+    raise AssertionError("the run ended before its tenth")
+
+
+@pytest.mark.parametrize("signals", [(signal.SIGINT, signal.SIGINT), (signal.SIGHUP,)])
+def test_a_signal_leaves_the_old_file_and_no_part_of_the_new(old, texts, tmp_path, signals):
+    out, before = old
+    with half_done(texts, out) as process:
+        assert files_in(tmp_path) == [".out.h5.partial", "out.h5"]
+        for number in signals:
+            process.send_signal(number)
+        assert is_stopped(process)
+    assert files_in(tmp_path) == ["out.h5"]
+    assert out.read_bytes() == before
+
+
+def is_stopped(process):
+    said = process.stderr.read().decode()
+    return (
+        process.wait(program.PATIENCE_S) == 1
+        and process.stdout.read() == b""
+        and [s for s in said.splitlines() if "percent" not in s] == ["vbraille: stopped"]
+    )
+
+
+def test_a_killed_run_leaves_the_old_file_and_the_next_run_cleans_up(old, call, texts, tmp_path):
+    out, before = old
+    with half_done(texts, out) as process:
+        process.kill()
+    assert out.read_bytes() == before
+    assert files_in(tmp_path) == [".out.h5.partial", "out.h5"]
+    assert call("render", tmp_path / "text.txt", "--out", out, "--hand=sweep:1000").code == 0
+    assert files_in(tmp_path) == ["out.h5"]
+    assert out.read_bytes() == before  # the same run as before
+
+
+def test_a_first_run_that_is_stopped_leaves_nothing(texts, tmp_path):
+    with half_done(texts, tmp_path / "out.h5") as process:
+        process.terminate()
+        assert is_stopped(process)
+    assert files_in(tmp_path) == []

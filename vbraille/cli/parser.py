@@ -159,7 +159,7 @@ def _hand_options(parser: argparse.ArgumentParser) -> None:
         metavar="HAND",
         help="simulated: sweep:SPEED in mm/s (sweep:60), device, fluent, recorded:FILE.csv",
     )
-    parser.add_argument("--seed", type=_whole, default=1, help="of the hand's chances (1)")
+    parser.add_argument("--seed", type=_seed, default=1, help="of the hand's chances (1)")
     parser.add_argument(
         "--rate", type=_number, default=1000.0, metavar="HZ", help="frames a second (1000)"
     )
@@ -176,6 +176,13 @@ def _whole(text: str) -> int:
     if not re.fullmatch(r"[+-]?[0-9]{1,18}", text):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
     return int(text)
+
+
+def _seed(text: str) -> int:
+    seed = _whole(text)
+    if seed < 0:
+        raise argparse.ArgumentTypeError(f"seed is {seed}; it must be 0 or more")
+    return seed
 
 
 def _lines(text: str) -> tuple[int, int | None]:

@@ -24,6 +24,7 @@ from vbraille.engine import Loop, RealClock
 from vbraille.errors import InputError
 from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
+from vbraille.render import MODELS
 
 if TYPE_CHECKING:
     import argparse
@@ -40,12 +41,12 @@ _KEYS_HZ = 50
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
-    page = build_page(arguments)
-    mapping, tuning = build_show(arguments, page.model)
+    mapping, tuning = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
     if arguments.advance == "key" and not (sys.stdin and sys.stdin.isatty()):
         raise InputError("--advance key needs a terminal to type at; leave it out without one")
+    page = build_page(arguments)
     wanted = device_info(page.model, page.geometry, rate_hz)
     note_unseen_dots(page, mapping)
     with EAR.at_once():

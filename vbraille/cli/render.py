@@ -20,6 +20,7 @@ from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.errors import InputError
 from vbraille.reading import EndOfLine, too_fast_note
 from vbraille.recording import Recorder, new_file
+from vbraille.render import MODELS
 
 if TYPE_CHECKING:
     import argparse
@@ -39,16 +40,20 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the frames of every line asked for, and say how many."""
     if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
         raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
-    page = build_page(arguments)
-    mapping, tuning = build_show(arguments, page.model)
+    mapping, tuning = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
+    page = build_page(arguments)
     note_unseen_dots(page, mapping)
     with EAR.at_once():  # numba compiles
         build_renderer(np.zeros(1, np.uint8), page, mapping, tuning).path(np.zeros(1))
     lines = frames = 0
     too_fast: str | None = None
-    with new_file(arguments.out) as file, _Progress(plain=arguments.plain) as progress:
+    with (
+        EAR.deferred(),
+        new_file(arguments.out) as file,
+        _Progress(plain=arguments.plain) as progress,
+    ):
         recorder = Recorder(file, page.model.array, page.layout.width)
         recorder.describe(
             model=page.model,
@@ -68,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
                 t_s = (frames + np.arange(x_mm.size)) / rate_hz
                 recorder.add_frames(t_s, x_mm, row, renderer.path(x_mm))
                 frames += x_mm.size
+                EAR.heed()
             lines += 1
             too_fast = too_fast or too_fast_note(
                 _fastest(xs, rate_hz), page.model, page.geometry, tuning

@@ -1,8 +1,9 @@
 """Being told by a signal to stop: heard once, at any moment, and then no more.
 
 A signal raises `Stopped` wherever the program then is, so that what it is about
-is left in order. Where nothing has to be, and where an exception out of nowhere
-would do harm - in imports, and while numba compiles - it ends the program at once.
+is left in order. Where an exception out of nowhere would do harm it waits for a
+better place (HDF5), or ends the program at once, if nothing is open that has to
+be left in order (imports, numba's compiler).
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
-    from typing import NoReturn
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 SAID = "stopped"
@@ -39,14 +39,15 @@ class _Ear:
 
     def __init__(self) -> None:
         self.heard = False
-        self._at_once = False
+        self._at_once = self._deferred = False
         self._say_unraisable = sys.unraisablehook
 
     def listen(self) -> None:
         """Begin; signals that our parent has us ignore (nohup) stay ignored."""
-        self.heard = self._at_once = False
-        self._say_unraisable = sys.unraisablehook
-        sys.unraisablehook = self._take_unraisable
+        self.heard = self._at_once = self._deferred = False
+        if sys.unraisablehook != self._take_unraisable:
+            self._say_unraisable = sys.unraisablehook
+            sys.unraisablehook = self._take_unraisable
         for number in SIGNALS:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._stop)
@@ -65,8 +66,25 @@ class _Ear:
         finally:
             self._at_once = False
 
-    def _stop(self, _signal: int, _frame: FrameType | None) -> NoReturn:
+    @contextmanager
+    def deferred(self) -> Iterator[None]:
+        """Only `heed` stops here: what calls back from C must not meet an exception there."""
+        self._deferred = True
+        try:
+            yield
+        finally:
+            self._deferred = False
+
+    def heed(self) -> None:
+        """Stop here if a signal came."""
+        if self.heard:
+            self.close()
+            raise Stopped
+
+    def _stop(self, _signal: int, _frame: FrameType | None) -> None:
         self.heard = True
+        if self._deferred:
+            return
         self.close()
         if self._at_once:
             with suppress(OSError):

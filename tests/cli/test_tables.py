@@ -1,0 +1,34 @@
+"""``vbraille tables``, and the sentences that name the nearest of them."""
+
+from vbraille.translate import Table, list_tables
+
+
+def test_every_table_is_a_line_that_says_what_it_is(call):
+    said = call("tables")
+    assert (said.code, said.err) == (0, "")
+    lines = said.out.splitlines()
+    assert len(lines) == len(list_tables()) > 100
+    assert "fr-bfu-g2.ctb: French contracted braille, language fr, grade 2, dots unsaid" in lines
+    for line, table in zip(lines, list_tables(), strict=True):
+        assert line.startswith(f"{table.name}: ")
+        assert f"language {table.language}" in line
+
+
+def test_the_tables_of_a_language(call):
+    lines = call("tables", "--language", "fr").out.splitlines()
+    assert len(lines) >= 3
+    assert all(", language fr" in line for line in lines)
+    assert call("tables", "--language", "FR").out.splitlines() == lines
+    for line in lines:
+        Table(line.split(":")[0])
+    chinese = call("tables", "--language", "CMN_hans").out.splitlines()
+    assert chinese
+    assert all("language cmn-Hans" in line for line in chinese)
+    assert set(chinese) <= set(call("tables", "--language", "cmn").out.splitlines())
+
+
+def test_a_language_that_is_not_there_names_the_nearest(call):
+    said = call("tables", "--language", "frr")
+    assert (said.code, said.out) == (2, "")
+    assert said.err.startswith("vbraille: there is no table for language 'frr'; the nearest are")
+    assert "fr" in said.err.partition("nearest are ")[2].split(", ")
