@@ -222,8 +222,11 @@ class Document:
 
     def sha256(self) -> str:
         """SHA-256 of the bytes, in hexadecimal."""
+        digest = hashlib.sha256()
         self._stream.seek(0)
-        return hashlib.file_digest(self._stream, "sha256").hexdigest()  # pyright: ignore
+        while block := self._stream.read(BLOCK_BYTES):
+            digest.update(block)
+        return digest.hexdigest()
 
     def close(self) -> None:
         """Close the file; it is closed anyhow once the document is forgotten."""
