@@ -84,11 +84,9 @@ def test_a_hand_that_is_at_the_end_between_two_ticks_goes_on(call, text):
     text.write_text("a\n\nb\n")
     said = call("read", text, *FAST, "--rate", "2", "--echo", "text")
     assert said.code == 0
-    assert [line for line in said.out.splitlines() if line.startswith("line:")] == [
-        "line: 1",
-        "line: 2",
-    ]
-    assert said.out.splitlines()[-1].startswith("summary: lines 2,")
+    *lines, summary = of_lines(said.out)
+    assert lines == ["line: 1", "text: a", "line: 2", "text: b"]
+    assert summary.startswith("summary: lines 2,")
 
 
 def test_nothing_in_a_text_moves_the_cursor(call, text):

@@ -113,11 +113,10 @@ def _go_on(reader: Reader, hand: Hand | Recorded) -> None:
 
     It was at the end of the line between two ticks, or its recording is over.
     """
-    lines = reader.lines
-    if not isinstance(hand, Recorded):
-        reader.lndn()
-    if reader.lines == lines:
+    if isinstance(hand, Recorded):
         reader.quit()
+    else:
+        reader.go_on()
 
 
 def _mover(device: Device, hand: Hand | Recorded) -> Callable[[Line, float], None] | None:

@@ -118,13 +118,17 @@ class Reader:
         if self._line is None or x_mm is None or self.loop.paused:
             return
         if self._end.step(x_mm) and self._advance and not self._finished:
-            if not self._go(self._line.number + 1):
-                self._finish()
+            self.go_on()
         elif self._end.reached and not self._prefetched:
             # On the way back to the start there is time for it.
             self._prefetched = True
             self.layout.line(self._line.number + 1)
         self._watch_speed()
+
+    def go_on(self) -> None:
+        """Put the next line under the hand; there is none: the reading is finished."""
+        if self._line is not None and not self._go(self._line.number + 1):
+            self._finish()
 
     def press(self, key: str) -> None:
         """Do what a key stands for."""
