@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -87,14 +90,35 @@ class Sample(NamedTuple):
     x_mm: float
 
 
+class Placing(Enum):
+    """What a device waits for before it knows where its carriage is."""
+
+    DONE = 0  # nothing: it knows
+    MARK = 1  # the reader moves the carriage over the encoder's mark
+    STOP = 2  # the reader moves it to the left stop and presses a key: `Device.set_zero`
+
+
 class Device(ABC):
     """A device: `read`, `write`, `close`, and `info`. A context manager.
 
     A driver gives `info`, `read`, `_send` and `_release`; what it inherits
     keeps a bad frame from the actuators and brings them to rest before the
-    device is let go.
+    device is let go. The rest is for devices that can do more, or fail.
+
+    A device that can be lost and found (unplugged, silent) goes on by itself:
+    meanwhile `read` gives None, frames are dropped, and `take_notes` says what is.
+
+    Attributes
+    ----------
+    rested : int
+        How often the actuators went to rest otherwise than by a frame of 0, so
+        that the next frames must fade in.
+    placing : Placing
+        What it waits for before it can tell places; `read` gives None till then.
     """
 
+    rested = 0
+    placing = Placing.DONE
     _closed = False
 
     @property
@@ -119,6 +143,25 @@ class Device(ABC):
     @abstractmethod
     def _release(self) -> None:
         """Let the device go; called once, after rest was sent."""
+
+    def set_zero(self) -> None:
+        """Take it that the carriage is at the left stop now: the reader says so."""
+
+    def take_notes(self) -> Sequence[str]:
+        """What there is to say to the reader since the last call, a sentence each."""
+        return ()
+
+    def counts(self) -> Mapping[str, int]:
+        """What went wrong so far, by name: frames not sent, samples missed, corrupt messages."""
+        return {}
+
+    def follow(self, end_mm: float) -> None:
+        """Have a simulated hand read a new line, whose last dot ends there; a real hand does."""
+
+    @property
+    def followed(self) -> bool:
+        """Whether a simulated hand has come to its end; a real one never has."""
+        return False
 
     def write(self, frame: NDArray[np.float64]) -> None:
         """Send a frame.
