@@ -12,6 +12,7 @@ import pytest
 _DRIVER = '''
 import os
 import numpy as np
+from vbraille.devices.hand import Sweep
 from vbraille.devices.simulated import SimulatedDevice
 from vbraille.errors import DeviceError
 
@@ -19,13 +20,13 @@ class Logged(SimulatedDevice):
     """Writes every frame to a file; can break."""
 
     def __init__(self, address, wanted):
-        super().__init__(wanted)
+        super().__init__(wanted, hand=Sweep(150.0))
         path, _, self.fault = address.partition(",")
         self.log = open(path, "wb", buffering=0)
 
     def read(self):
         if self.frames == 300 and self.fault.isdigit():
-            os.kill(os.getpid(), int(self.fault))
+            os.kill(os.getppid(), int(self.fault))
         if self.frames >= 300 and self.fault == "gone":
             raise DeviceError("the device is gone")
         if self.frames >= 300 and self.fault == "bug":
@@ -72,7 +73,7 @@ def read(driver, texts: Path, log: Path, fault: str, *options: str):
     ],
 )
 def test_an_end_and_a_signal(driver, texts, tmp_path, fault, code, said):
-    done, frames = read(driver, texts, tmp_path / "log", fault, "--hand", "sweep:150")
+    done, frames = read(driver, texts, tmp_path / "log", fault)
     assert done.returncode == code
     assert said in done.stderr
     assert "Traceback" not in done.stderr

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from vbraille.devices import DeviceInfo, Sample
+from vbraille.devices.hand import Hand
 from vbraille.devices.motion import Motion
 from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine import Loop, ManualClock
@@ -34,8 +35,8 @@ def info(**changes) -> DeviceInfo:
 class Recording(SimulatedDevice):
     """A simulated device that keeps what it was sent."""
 
-    def __init__(self, clock: ManualClock) -> None:
-        super().__init__(info(), clock.now_ns)
+    def __init__(self, clock: ManualClock, hand: Hand | None = None) -> None:
+        super().__init__(info(), clock.now_ns, hand)
         self.sent: list[np.ndarray] = []
         self.silent = False
         self.shift_mm = 0.0
@@ -215,9 +216,9 @@ def test_speed_and_scanning_speed(clock, device):
     device.move(straight((0, -10.0), (2, 90.0), (3, 90.0), (4, -10.0)))
     loop = Loop(device, clock)
     run(loop, 1.0)
-    assert loop.speed_mm_s == pytest.approx(50, rel=0.01)
+    assert loop.velocity.mm_s == pytest.approx(50, rel=0.01)
     run(loop, 2.5)
-    assert loop.speed_mm_s == pytest.approx(-100, rel=0.01)
+    assert loop.velocity.mm_s == pytest.approx(-100, rel=0.01)
     assert loop.tally.scanning_mm_s == pytest.approx(50, rel=0.02)
 
 
@@ -229,7 +230,7 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
         if tick % 100 == 50:
             clock.advance_ns(60 * MS)
         loop.tick()
-        fastest = max(fastest, loop.speed_mm_s)
+        fastest = max(fastest, loop.velocity.mm_s)
     assert fastest == pytest.approx(50, rel=0.02)
     assert loop.tally.late > 500
 

@@ -11,19 +11,19 @@ SPAN_MM, END_MM = 10.8, 100.0
 
 def test_a_line_is_done_when_the_hand_was_at_the_end_and_is_back():
     end = EndOfLine(SPAN_MM, END_MM)
-    assert not end.step(-SPAN_MM)
-    assert not end.step(90)
-    assert not end.step(-SPAN_MM)  # back, but never at the end
-    assert not end.step(END_MM - SPAN_MM / 2)
+    places = [-SPAN_MM, 90, -SPAN_MM]  # back, but never at the end
+    assert end.find(np.array(places)) is None
+    assert not end.reached
+    assert end.find(np.array([np.nan, END_MM - SPAN_MM / 2, -SPAN_MM + 1.1])) is None
     assert end.reached
-    assert not end.step(-SPAN_MM + 1.1)
-    assert end.step(-SPAN_MM + 0.9)
+    assert end.find(np.array([np.nan, -SPAN_MM + 1.1, -SPAN_MM + 0.9, 0])) == 2
 
 
 @given(st.lists(st.floats(-SPAN_MM, END_MM), max_size=60), st.integers(1, 9))
-def test_find_is_step_for_many(places, part):
+def test_places_in_parts_are_as_places_one_by_one(places, part):
     one, many = EndOfLine(SPAN_MM, END_MM), EndOfLine(SPAN_MM, END_MM)
-    stepped = next((n for n, x_mm in enumerate(places) if one.step(x_mm)), None)
+    at = (n for n, x_mm in enumerate(places) if one.find(np.array([x_mm])) is not None)
+    stepped = next(at, None)
     found = None
     for start in range(0, len(places), part):
         at = many.find(np.array(places[start : start + part]))

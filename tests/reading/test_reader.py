@@ -5,7 +5,7 @@ import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.devices.hand import Sweep
-from vbraille.engine import Loop, ManualClock
+from vbraille.engine import LocalEngine, ManualClock
 from vbraille.page import Layout
 from vbraille.reading import COMMANDS, Echo, Reader
 from vbraille.reading.commands import BY_KEY
@@ -21,24 +21,19 @@ class Bench:
 
     def __init__(self, text=TEXT, hand=None, tuning=STRESS2.tuning, width=20, **options):
         self.clock = ManualClock()
-        self.device = Recording(self.clock)
-        self.loop = Loop(self.device, self.clock)
+        self.device = Recording(self.clock, hand)
+        self.engine = LocalEngine(self.device, self.clock)
+        self.loop = self.engine.loop
         self.said: list[str] = []
         self.layout = Layout(Book(Document.from_text(text), Table("en-ueb-g2.ctb")), width)
-
-        def move(_line, end_mm):
-            if hand is not None:
-                self.device.move(hand.read_line(-SPAN_MM, end_mm))
-
         self.reader = Reader(
             self.layout,
-            self.loop,
+            self.engine,
             model=STRESS2,
             geometry=STRESS2.geometry,
             mapping=STRESS2.mapping,
             tuning=tuning,
             say=self.said.append,
-            on_line=move,
             **options,
         )
         self.reader.start()
@@ -47,8 +42,7 @@ class Bench:
         for _ in range(int(seconds * 1000)):
             if self.reader.done:
                 return
-            self.loop.tick()
-            self.reader.step()
+            self.reader.step(self.engine.poll())
 
     def press(self, keys):
         before = len(self.said)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING
-
-import numpy as np
+from urllib.parse import urlencode
 
 from vbraille.cli.build import (
     build_page,
@@ -15,12 +14,13 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.printable import printable
-from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
-from vbraille.devices import open_device
-from vbraille.devices.hand import Recorded, parse_hand
-from vbraille.devices.simulated import SimulatedDevice
-from vbraille.engine import Loop, RealClock
+from vbraille.devices.base import Placing
+from vbraille.devices.hand import parse_hand
+from vbraille.devices.recorded import Recorded
+from vbraille.engine.engine import placing_of
+from vbraille.engine.host import Host, HostDiedError
+from vbraille.engine.ring import Flag
 from vbraille.errors import InputError
 from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
@@ -28,34 +28,35 @@ from vbraille.render import MODELS
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from vbraille.cli.build import Page
-    from vbraille.devices import Device, DeviceInfo
-    from vbraille.devices.hand import Hand
-    from vbraille.page import Line
-    from vbraille.render import Mapping, Tuning
+    from vbraille.engine import Tally
 
-_KEYS_HZ = 50
+_POLL_S = 0.02
+_PLACES = {
+    Placing.MARK: "place: move the carriage over its mark",
+    Placing.STOP: "place: move left to the stop, then press a key",
+}
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
     mapping, tuning = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
-    hand = parse_hand(arguments.hand, arguments.seed)
+    once = isinstance(parse_hand(arguments.hand, arguments.seed), Recorded)
     if arguments.advance == "key" and not (sys.stdin and sys.stdin.isatty()):
         raise InputError("--advance key needs a terminal to type at; leave it out without one")
     page = build_page(arguments)
     wanted = device_info(page.model, page.geometry, rate_hz)
     note_unseen_dots(page, mapping)
-    with EAR.at_once():
-        _warm_up(page, mapping, tuning, wanted)
-    with Keyboard() as keyboard, open_device(arguments.device, wanted) as device:
-        loop = Loop(device, RealClock(), rate_hz=rate_hz)
+    host = Host(_device(arguments), wanted, page.layout.width)
+    with Keyboard() as keyboard:
         reader = Reader(
             page.layout,
-            loop,
+            host,
             model=page.model,
             geometry=page.geometry,
             mapping=mapping,
@@ -66,68 +67,105 @@ def run(arguments: argparse.Namespace) -> int:
             advance=arguments.advance == "return",
             stay=keyboard.attached,
             echo=_echo(arguments.echo),
-            on_line=_mover(device, hand),
         )
         try:
-            _read(page, reader, keyboard, hand)
+            with host:
+                _Reading(page, reader, host, keyboard, once=once).run()
+                EAR.close()  # so that the array goes to rest
         finally:
-            EAR.close()  # so that the array goes to rest
-            loop.fade_to_rest()
-    _say(_summary(reader, loop))
+            EAR.close()
+            host.close()
+    _say(_summary(reader.lines, host.tally, rate_hz))
     return 0
 
 
-def _read(page: Page, reader: Reader, keyboard: Keyboard, hand: Hand | Recorded) -> None:
-    loop = reader.loop
-    reader.start()
-    page.say_note()
-    if keyboard.attached:
-        _say("h says the keys")
-    loop.restart_clock()
-    while not reader.done:
-        stopped = _stopped(loop.device)  # asked before the tick, which sees where it stopped
-        loop.tick()
-        reader.step()
-        if loop.tally.ticks % max(1, round(loop.rate_hz / _KEYS_HZ)) == 0:
-            for key in keyboard.pressed():
-                reader.press(key)
-            page.say_note()
-        if stopped and _stopped(loop.device) and not keyboard.attached:
-            _go_on(reader, hand)
+class _Reading:
+    """One reading: what happens between a reader, its keyboard and its host."""
+
+    def __init__(
+        self, page: Page, reader: Reader, host: Host, keyboard: Keyboard, *, once: bool
+    ) -> None:
+        self._page = page
+        self._reader = reader
+        self._host = host
+        self._keyboard = keyboard
+        self._once = once  # the hand reads no more than it has recorded
+        self._placing = Placing.DONE
+
+    def run(self) -> None:
+        """Read to the end."""
+        self._reader.start()
+        self._page.say_note()
+        if self._keyboard.attached:
+            _say("h says the keys")
+        while not self._reader.done:
+            for key in self._keyboard.pressed(_POLL_S):
+                self._press(key)
+            try:
+                ticks = self._host.poll()
+            except HostDiedError as fault:
+                self._start_again(fault)
+                continue
+            self._step(ticks)
+            self._page.say_note()
+
+    def _step(self, ticks: NDArray[np.void]) -> None:
+        for note in self._host.take_notes():
+            _say(note)
+        if not ticks.size:
+            return
+        placing = placing_of(ticks[-1])
+        if placing is not self._placing:
+            self._placing = placing
+            if placing is Placing.STOP and not self._keyboard.attached:
+                raise InputError(
+                    "the device must be told where its left stop is; read at a terminal"
+                )
+            _say(_PLACES.get(placing, "place: known"))
+        line = self._reader.lines
+        self._reader.step(ticks)
+        done = ticks["flags"][-1] & Flag.FOLLOWED and not self._keyboard.attached
+        if done and self._reader.lines == line and not self._reader.done:
+            # The hand was at the end of the line between two ticks, or its recording is over.
+            if self._once:
+                self._reader.quit()
+            elif ticks["line"][-1] == self._reader.line_number:
+                self._reader.go_on()
+
+    def _press(self, key: str) -> None:
+        if self._placing is Placing.STOP and key != "q":
+            self._host.set_zero()
+        else:
+            self._reader.press(key)
+
+    def _start_again(self, fault: HostDiedError) -> None:
+        """Say that the host is gone, and begin another when asked to.
+
+        Raises
+        ------
+        HostDiedError
+            If there is nobody to ask.
+        """
+        if not self._keyboard.attached:
+            raise fault
+        _say(f"fault: {fault}; space begins again, q stops")
+        while True:
+            keys = self._keyboard.pressed(_POLL_S)
+            if "q" in keys:
+                self._reader.quit()
+                return
+            if " " in keys:
+                break
+        self._placing = Placing.DONE
+        self._host.start()
+        _say("reading")
 
 
-def _warm_up(page: Page, mapping: Mapping, tuning: Tuning, wanted: DeviceInfo) -> None:
-    """Compile the kernels before the hand sets out, not under it."""
-    loop = Loop(SimulatedDevice(wanted), RealClock())
-    loop.show(build_renderer(np.zeros(1, np.uint8), page, mapping, tuning))
-    loop.warm_up()
-
-
-def _stopped(device: Device) -> bool:
-    """Whether a simulated hand has come to the end of its motion."""
-    return isinstance(device, SimulatedDevice) and not device.moving
-
-
-def _go_on(reader: Reader, hand: Hand | Recorded) -> None:
-    """Go on though the hand was not seen to be done.
-
-    It was at the end of the line between two ticks, or its recording is over.
-    """
-    if isinstance(hand, Recorded):
-        reader.quit()
-    else:
-        reader.go_on()
-
-
-def _mover(device: Device, hand: Hand | Recorded) -> Callable[[Line, float], None] | None:
-    """Have the simulated hand read each line; a real one needs no telling."""
-    if not isinstance(device, SimulatedDevice):
-        return None
-    if isinstance(hand, Recorded):
-        device.move(hand.motion())
-        return None
-    start_mm = -device.info.span_mm
-    return lambda _line, end_mm: device.move(hand.read_line(start_mm, end_mm))
+def _device(arguments: argparse.Namespace) -> str:
+    """Spec of the device; the simulated one is told its hand."""
+    if arguments.device.rstrip(":") != "sim":
+        return arguments.device
+    return f"sim:?{urlencode({'hand': arguments.hand, 'seed': arguments.seed})}"
 
 
 def _echo(chosen: str | None) -> Echo:
@@ -141,11 +179,10 @@ def _say(sentence: str) -> None:
     print(printable(sentence), flush=True)
 
 
-def _summary(reader: Reader, loop: Loop) -> str:
-    tally = loop.tally
-    seconds = (tally.ticks + tally.late) / loop.rate_hz
+def _summary(lines: int, tally: Tally, rate_hz: float) -> str:
+    seconds = (tally.ticks + tally.late) / rate_hz
     return (
-        f"summary: lines {reader.lines}, seconds {seconds:.1f}, "
+        f"summary: lines {lines}, seconds {seconds:.1f}, "
         f"mean scanning speed {tally.scanning_mm_s:.1f} mm/s, "
         f"ticks {tally.ticks}, late ticks {tally.late}"
     )

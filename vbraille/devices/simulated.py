@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import time
 from typing import TYPE_CHECKING
+from urllib.parse import parse_qsl
 
 import numpy as np
 
 from vbraille.devices.base import Device, DeviceInfo, Sample
+from vbraille.devices.hand import parse_hand
+from vbraille.devices.recorded import Recorded
+from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from vbraille.devices.hand import Hand
     from vbraille.devices.motion import Motion
 
 NS_PER_S = 1_000_000_000
@@ -33,6 +38,8 @@ class SimulatedDevice(Device):
         What it is to be.
     now_ns
         Its clock.
+    hand
+        What moves its carriage; `move` does, too.
 
     Attributes
     ----------
@@ -42,8 +49,15 @@ class SimulatedDevice(Device):
         Frames received.
     """
 
-    def __init__(self, info: DeviceInfo, now_ns: Callable[[], int] = time.monotonic_ns) -> None:
+    def __init__(
+        self,
+        info: DeviceInfo,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        hand: Hand | Recorded | None = None,
+    ) -> None:
         self._info = info
+        self._hand = hand
+        self._following = False
         self._now_ns = now_ns
         self.levels = np.zeros((info.rows, info.columns), np.int64)
         self.frames = 0
@@ -61,6 +75,20 @@ class SimulatedDevice(Device):
     def moving(self) -> bool:
         """Whether the hand is still on its way."""
         return (self._now_ns() - self._begun_ns) / NS_PER_S < self._t_s[-1]
+
+    def follow(self, end_mm: float) -> None:
+        """Have the hand read a new line; a recorded one sets out with the first, and goes on."""
+        if isinstance(self._hand, Recorded):
+            if not self._following:
+                self.move(self._hand.motion())
+        elif self._hand is not None:
+            self.move(self._hand.read_line(-self._info.span_mm, end_mm))
+        self._following = self._hand is not None
+
+    @property
+    def followed(self) -> bool:
+        """Whether the hand has come to its end."""
+        return self._following and not self.moving
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion, from now on; first to where that begins."""
@@ -92,6 +120,19 @@ class SimulatedDevice(Device):
         """Nothing to let go."""
 
 
-def open_simulated(_address: str, wanted: DeviceInfo) -> SimulatedDevice:
-    """Open ``sim:``: a device as the page wants it."""
-    return SimulatedDevice(wanted)
+def open_simulated(address: str, wanted: DeviceInfo) -> SimulatedDevice:
+    """Open ``sim:?hand=HAND&seed=N``: a device as the page wants it.
+
+    Raises
+    ------
+    InputError
+        If the address says anything else.
+    """
+    if not address:
+        return SimulatedDevice(wanted)
+    given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))
+    seed = given.pop("seed", "1")
+    hand = given.pop("hand", None)
+    if given or not address.startswith("?") or hand is None or not seed.isdecimal():
+        raise InputError(f"there is no device sim:{address}; give sim:?hand=HAND&seed=N, or sim")
+    return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)))

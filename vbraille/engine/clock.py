@@ -13,6 +13,10 @@ class Clock(Protocol):
         """Time since some fixed moment."""
         ...
 
+    def busy_ns(self) -> int:
+        """Time since some fixed moment that this thread has had a processor."""
+        ...
+
     def sleep_until_ns(self, deadline_ns: int) -> None:
         """Return at the deadline, or at once if it has passed."""
         ...
@@ -24,6 +28,10 @@ class RealClock:
     def now_ns(self) -> int:
         """Time since some fixed moment."""
         return time.monotonic_ns()
+
+    def busy_ns(self) -> int:
+        """Time since some fixed moment that this thread has had a processor."""
+        return time.thread_time_ns()
 
     def sleep_until_ns(self, deadline_ns: int) -> None:
         """Return at the deadline, or at once if it has passed."""
@@ -39,6 +47,10 @@ class ManualClock:
         self._now_ns = 0
 
     def now_ns(self) -> int:
+        """Time turned so far."""
+        return self._now_ns
+
+    def busy_ns(self) -> int:
         """Time turned so far."""
         return self._now_ns
 

@@ -6,19 +6,24 @@ start, a pause, rest - fades from the frame last sent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from vbraille.devices.base import Placing
+from vbraille.engine.ring import Flag
+from vbraille.engine.tally import Tally
+from vbraille.engine.velocity import Velocity
 from vbraille.errors import DeviceError
 from vbraille.render.kernels import blend
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device, Sample
+    from vbraille.devices.base import Device
     from vbraille.engine.clock import Clock
+    from vbraille.engine.ring import Ring
 
 NS_PER_S = 1_000_000_000
 FADE_S = 0.1
@@ -29,7 +34,9 @@ STILL_MM = 0.05
 # No hand moves 5 m/s: a carriage that is further within a tick was lost and found again.
 JUMP_MM_S = 5_000.0
 SILENCE_S = 0.1
-_SPEED_WINDOW = 50  # samples
+# By plain numbers: a flag of an enumeration takes a microsecond to join.
+_PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
+_PLACING = {Placing.DONE: 0, Placing.MARK: int(Flag.MARK), Placing.STOP: int(Flag.STOP)}
 
 
 class Picture(Protocol):
@@ -38,29 +45,6 @@ class Picture(Protocol):
     def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
         """Fill the frame for the array's left column at x."""
         ...
-
-
-@dataclass(slots=True)
-class Tally:
-    """What happened so far.
-
-    Parameters
-    ----------
-    ticks, late
-        Ticks done, and deadlines that passed before their tick could begin.
-    forward_mm, forward_s
-        Way to the right, and the time that it took.
-    """
-
-    ticks: int = 0
-    late: int = 0
-    forward_mm: float = 0.0
-    forward_s: float = 0.0
-
-    @property
-    def scanning_mm_s(self) -> float:
-        """Mean speed of the hand while it moved right; 0 if it never did."""
-        return self.forward_mm / self.forward_s if self.forward_s else 0.0
 
 
 class Loop:
@@ -79,13 +63,15 @@ class Loop:
         How long a change takes that the hand did not cause.
     idle_s
         How long without motion before the array goes to rest.
+    ring
+        Where to record every tick.
 
     Attributes
     ----------
     x_mm : float or None
         Where the array's left column is; None before the first sample.
-    speed_mm_s : float
-        Over the last 50 samples, positive to the right; 0 until there are as many.
+    velocity : Velocity
+        Of the hand.
     output : float64[rows, columns]
         The frame last sent.
     tally : Tally
@@ -105,6 +91,7 @@ class Loop:
         rate_hz: float = 1000.0,
         fade_s: float = FADE_S,
         idle_s: float = IDLE_S,
+        ring: Ring | None = None,
     ) -> None:
         if not 1 <= rate_hz <= 10_000:
             raise ValueError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
@@ -112,15 +99,18 @@ class Loop:
         self.clock = clock
         self.rate_hz = rate_hz
         self.x_mm: float | None = None
-        self.speed_mm_s = 0.0
+        self.velocity = Velocity()
         self.tally = Tally()
+        self._ring = ring
         shape = device.info.rows, device.info.columns
         self.output = np.zeros(shape)
         self._target = np.zeros(shape)
         self._held = np.zeros(shape)
         self._rest = np.zeros(shape)
         self._picture: Picture | None = None
+        self._line = 0
         self._paused = False
+        self._rested = device.rested
         self._shown: Picture | None = None  # what the target is of; None at rest
         self._fade_ns = int(fade_s * NS_PER_S)
         self._fading_ns = self._fade_ns
@@ -129,14 +119,13 @@ class Loop:
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
         self._moved_ns = self._sampled_ns = self._deadline_ns
+        self._device_ns = 0
         self._moved_mm = 0.0
-        self._samples = 0
-        self._places_mm = np.zeros(_SPEED_WINDOW)
-        self._times_ns = np.zeros(_SPEED_WINDOW, np.int64)
 
-    def show(self, picture: Picture | None) -> None:
-        """Put something else under the hand; it fades in. None is rest."""
+    def show(self, picture: Picture | None, line: int = 0) -> None:
+        """Put something else under the hand; it fades in. None is rest. Records tell the line."""
         self._picture = picture
+        self._line = line
 
     @property
     def paused(self) -> bool:
@@ -163,7 +152,14 @@ class Loop:
         """
         self.clock.sleep_until_ns(self._deadline_ns)
         now_ns = self.clock.now_ns()
+        busy_ns = self.clock.busy_ns()
+        lateness_ns = now_ns - self._deadline_ns
+        followed = self.device.followed  # asked before the place, which is then the last one
         self._read(now_ns)
+        if self.device.rested != self._rested:
+            self._rested = self.device.rested
+            self.output.fill(0.0)
+            self._change(now_ns, self._shown, self._fade_ns)
         picture = self._wanted(now_ns)
         if picture is not self._shown:
             fade_ns = int(PAUSE_FADE_S * NS_PER_S) if self._paused else self._fade_ns
@@ -176,11 +172,17 @@ class Loop:
         self.tally.ticks += 1
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
-        behind_ns = self.clock.now_ns() - self._deadline_ns
+        done_ns = self.clock.now_ns()
+        work_ns = done_ns - now_ns
+        if work_ns > self._period_ns and self.clock.busy_ns() - busy_ns > self._period_ns:
+            self.tally.overruns += 1
+        behind_ns = done_ns - self._deadline_ns
         if behind_ns >= self._period_ns:
             missed = behind_ns // self._period_ns
             self.tally.late += missed
             self._deadline_ns += missed * self._period_ns
+        if self._ring is not None:
+            self._record(self._ring, now_ns, lateness_ns, work_ns, followed)
 
     def warm_up(self) -> None:
         """Compile what a tick calls, so that the first is no slower than the others."""
@@ -214,6 +216,33 @@ class Loop:
             self.device.write(self.output)
         self._shown = None
 
+    def _record(
+        self, ring: Ring, now_ns: int, lateness_ns: int, work_ns: int, followed: bool
+    ) -> None:
+        flags = _PLACING[self.device.placing]
+        if self._paused:
+            flags |= _PAUSED
+        if self._silent(now_ns):
+            flags |= _SILENT
+        if followed:
+            flags |= _FOLLOWED
+        tally = self.tally
+        ring.append(
+            self.output,
+            now_ns,
+            self._device_ns,
+            lateness_ns,
+            work_ns,
+            tally.late,
+            tally.overruns,
+            self._line,
+            flags,
+            math.nan if self.x_mm is None else self.x_mm,
+            self.velocity.mm_s,
+            tally.forward_mm,
+            tally.forward_s,
+        )
+
     def _read(self, now_ns: int) -> None:
         sample = self.device.read()
         if sample is None:
@@ -227,35 +256,25 @@ class Loop:
             step_mm = x_mm - self.x_mm
             elapsed_s = max(now_ns - self._sampled_ns, self._period_ns) / NS_PER_S
             if abs(step_mm) > JUMP_MM_S * elapsed_s:
-                self._samples = 0
+                self.velocity.reset()
                 self._change(now_ns, self._shown, self._fade_ns)
             elif step_mm > 0:
                 self.tally.forward_mm += step_mm
                 self.tally.forward_s += elapsed_s
-        self._estimate_speed(sample)
+        self.velocity.add(sample.time_ns, x_mm)
+        self._device_ns = sample.time_ns
         self.x_mm = x_mm
         self._sampled_ns = now_ns
         if abs(x_mm - self._moved_mm) > STILL_MM:
             self._moved_mm, self._moved_ns = x_mm, now_ns
 
-    def _estimate_speed(self, sample: Sample) -> None:
-        """Way since the oldest of the last samples, by the device's own time."""
-        slot = self._samples % _SPEED_WINDOW
-        if self._samples >= _SPEED_WINDOW:
-            way_mm = sample.x_mm - float(self._places_mm[slot])
-            time_ns = sample.time_ns - int(self._times_ns[slot])
-            self.speed_mm_s = way_mm / time_ns * NS_PER_S if time_ns > 0 else 0.0
-        else:
-            self.speed_mm_s = 0.0
-        self._places_mm[slot] = sample.x_mm
-        self._times_ns[slot] = sample.time_ns
-        self._samples += 1
+    def _silent(self, now_ns: int) -> bool:
+        return now_ns - self._sampled_ns > SILENCE_S * NS_PER_S
 
     def _wanted(self, now_ns: int) -> Picture | None:
         """What belongs under the hand now."""
-        silent = now_ns - self._sampled_ns > SILENCE_S * NS_PER_S
         idle = now_ns - self._moved_ns > self._idle_ns
-        if self._paused or silent or idle or self.x_mm is None:
+        if self._paused or idle or self._silent(now_ns) or self.x_mm is None:
             return None
         return self._picture
 

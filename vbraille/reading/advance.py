@@ -32,12 +32,6 @@ class EndOfLine:
         self._end_mm = end_mm - span_mm / 2
         self._home_mm = HOME_MM - span_mm
 
-    def step(self, x_mm: float) -> bool:
-        """Whether the line is done, now that the array's left column is at x."""
-        if x_mm >= self._end_mm:
-            self.reached = True
-        return self.reached and x_mm <= self._home_mm
-
     def find(self, x_mm: NDArray[np.float64]) -> int | None:
         """First of these places, float64[n], at which the line is done; None if it is not yet."""
         start = 0

@@ -50,9 +50,13 @@ class Keyboard:
             with suppress(termios.error):  # the terminal is gone
                 termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._before)
 
-    def pressed(self) -> list[str]:
-        """Keys typed since the last call; arrows as "up" and "down". Never waits."""
-        if self._descriptor is None or not select.select([self._descriptor], [], [], 0)[0]:
+    def pressed(self, wait_s: float = 0.0) -> list[str]:
+        """Keys typed since the last call; arrows as "up" and "down".
+
+        If there are none, it waits so long for one.
+        """
+        watched = [] if self._descriptor is None else [self._descriptor]
+        if not select.select(watched, [], [], wait_s)[0] or self._descriptor is None:
             return []
         try:
             typed = os.read(self._descriptor, 4096)

@@ -6,6 +6,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from vbraille.engine.ring import Flag
 from vbraille.page import locate
 from vbraille.reading.advance import EndOfLine
 from vbraille.reading.commands import BY_KEY, COMMANDS
@@ -14,7 +15,10 @@ from vbraille.render.renderer import Renderer
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.engine.loop import Loop
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.engine.engine import Engine
     from vbraille.geometry import Geometry
     from vbraille.page import Layout, Line
     from vbraille.render.mappings import Mapping
@@ -42,7 +46,7 @@ class Reader:
     ----------
     layout
         The book.
-    loop
+    engine
         Drives the device.
     model, geometry, mapping, tuning
         How lines are shown.
@@ -56,8 +60,6 @@ class Reader:
         What to say of each line.
     say
         Where to say it, one thing a call.
-    on_line
-        Called with each line that comes under the hand, and its right edge.
 
     Attributes
     ----------
@@ -70,7 +72,7 @@ class Reader:
     def __init__(
         self,
         layout: Layout,
-        loop: Loop,
+        engine: Engine,
         *,
         model: Model,
         geometry: Geometry,
@@ -82,10 +84,9 @@ class Reader:
         advance: bool = True,
         stay: bool = False,
         echo: Echo = Echo.NONE,
-        on_line: Callable[[Line, float], None] | None = None,
     ) -> None:
         self.layout = layout
-        self.loop = loop
+        self.engine = engine
         self.tuning = tuning
         self.lines = 0
         self.done = False
@@ -97,12 +98,16 @@ class Reader:
         self._advance = advance
         self._stay = stay
         self._echo = echo
-        self._on_line = on_line or (lambda _line, _end_mm: None)
         self._line: Line | None = None
         self._end: EndOfLine
         self._finished = False  # said that there is no more, until a key brings another line
         self._prefetched = False
         self._too_fast_said = False
+
+    @property
+    def line_number(self) -> int:
+        """Of the line under the hand; 0 before the first."""
+        return 0 if self._line is None else self._line.number
 
     def start(self) -> None:
         """Put the first line under the hand."""
@@ -112,18 +117,20 @@ class Reader:
         else:
             self._show(line)
 
-    def step(self) -> None:
-        """Look where the hand is, after a tick."""
-        x_mm = self.loop.x_mm
-        if self._line is None or x_mm is None or self.loop.paused:
+    def step(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was in these ticks, all since the last call."""
+        if self._line is None:
             return
-        if self._end.step(x_mm) and self._advance and not self._finished:
+        ticks = ticks[(ticks["line"] == self._line.number) & (ticks["flags"] & Flag.PAUSED == 0)]
+        if not ticks.size:
+            return
+        if self._end.find(ticks["x_mm"]) is not None and self._advance and not self._finished:
             self.go_on()
         elif self._end.reached and not self._prefetched:
             # On the way back to the start there is time for it.
             self._prefetched = True
             self.layout.line(self._line.number + 1)
-        self._watch_speed()
+        self._watch_speed(float(ticks["speed_mm_s"].max()))
 
     def go_on(self) -> None:
         """Put the next line under the hand; there is none: the reading is finished."""
@@ -150,7 +157,7 @@ class Reader:
 
     def word(self) -> None:
         """Say the word under the middle of the array."""
-        line, x_mm = self._line, self.loop.x_mm
+        line, x_mm = self._line, self.engine.x_mm
         cell = None
         if line is not None and x_mm is not None:
             cell = locate(line, self._geometry, x_mm + self._model.array.span_mm / 2)
@@ -159,8 +166,8 @@ class Reader:
 
     def pause(self) -> None:
         """Rest the array at once, or go on."""
-        self.loop.paused = not self.loop.paused
-        self._say("paused" if self.loop.paused else "reading")
+        self.engine.paused = not self.engine.paused
+        self._say("paused" if self.engine.paused else "reading")
 
     def texture_up(self) -> None:
         """More texture."""
@@ -214,10 +221,9 @@ class Reader:
         self._end = EndOfLine(self._model.array.span_mm, end_mm)
         self._picture(line)
         self._say_line(line)
-        self._on_line(line, end_mm)
 
     def _picture(self, line: Line) -> None:
-        self.loop.show(
+        self.engine.show(
             Renderer(
                 line.masks,
                 array=self._model.array,
@@ -225,7 +231,9 @@ class Reader:
                 mapping=self._mapping,
                 geometry=self._geometry,
                 tuning=self.tuning,
-            )
+            ),
+            line.number,
+            self._geometry.extent_mm(len(line)),
         )
 
     def _say_line(self, line: Line) -> None:
@@ -248,10 +256,10 @@ class Reader:
         if self._line is not None:
             self._picture(self._line)
 
-    def _watch_speed(self) -> None:
+    def _watch_speed(self, speed_mm_s: float) -> None:
         if self._too_fast_said or self._end.reached:
             return
-        note = too_fast_note(self.loop.speed_mm_s, self._model, self._geometry, self.tuning)
+        note = too_fast_note(speed_mm_s, self._model, self._geometry, self.tuning)
         if note is not None:
             self._too_fast_said = True
             self._say(note)

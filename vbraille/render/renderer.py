@@ -85,6 +85,16 @@ class Renderer:
         shown = slots.ravel() >> np.arange(array.rows, dtype=np.uint16)[:, None] & 1
         self._gains = tuning.contrast * (1 - 2 * idle)[:, None] * shown
 
+    @property
+    def parameters(self) -> NDArray[np.float64]:
+        """What the kernels know of the line's shape, float64[IDLE + rows]; see `kernels`."""
+        return self._work[0, : kernels.IDLE + self.array.rows]
+
+    @property
+    def gains(self) -> NDArray[np.float64]:
+        """What the kernels know of its dots, float64[rows, 2 · (cells + 2)]."""
+        return self._gains
+
     def frame(self, x_mm: float, out: NDArray[np.floating]) -> None:
         """Fill one frame.
 

@@ -1,0 +1,173 @@
+"""What the loop is to do, in memory that another process writes.
+
+One side posts, the other looks each tick; neither waits for the other. Pictures
+go into two slots in turn, each with a checksum: a picture that is in the
+writing, or seen in the wrong order, is left for the next tick.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from zlib import crc32
+
+import numpy as np
+
+from vbraille.render import kernels
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.render.renderer import Renderer
+
+_PUBLISHED, _PAUSED, _ZEROED, _STOPPED = range(4)
+_HEADER_BYTES = 64
+_SCRATCH = 64  # places for which a kernel has room beside its parameters
+
+
+class Mailbox:
+    """Pictures and orders for a loop.
+
+    Parameters
+    ----------
+    buffer
+        Zeroed memory of `bytes_needed`, shared.
+    shape
+        Rows and columns of the array.
+    cells
+        Most cells of a line.
+    """
+
+    def __init__(self, buffer: memoryview, shape: tuple[int, int], cells: int) -> None:
+        self._words = np.frombuffer(buffer, np.int64, 4)
+        self._slots = np.frombuffer(buffer, _slot_dtype(shape, cells), 2, _HEADER_BYTES)
+
+    @staticmethod
+    def bytes_needed(shape: tuple[int, int], cells: int) -> int:
+        """Size of the buffer, a multiple of 8."""
+        return _HEADER_BYTES + 2 * _slot_dtype(shape, cells).itemsize
+
+    @property
+    def published(self) -> int:
+        """Number of the last picture posted; 0 before the first."""
+        return int(self._words[_PUBLISHED])
+
+    def post(self, picture: Renderer, line: int, end_mm: float) -> None:
+        """Post a picture of a line, and where its last dot ends.
+
+        Raises
+        ------
+        ValueError
+            If it has more cells, or another array, than the mailbox was made for.
+        """
+        number = self.published + 1
+        slot = self._slots[number % 2]
+        gains = slot["gains"]
+        used = picture.gains.shape[1]
+        if picture.gains.shape[0] != gains.shape[0] or used > gains.shape[1]:
+            raise ValueError(
+                f"a line of {picture.gains.shape} gains does not go into {gains.shape}"
+            )
+        slot["number"] = number
+        slot["line"] = line
+        slot["end_mm"] = end_mm
+        slot["parameters"] = picture.parameters
+        gains[:, :used] = picture.gains
+        gains[:, used:] = 0.0
+        slot["checksum"] = _checksum(self._slots[number % 2 : number % 2 + 1])
+        self._words[_PUBLISHED] = number
+
+    def take(self, out: PostedPicture) -> bool:
+        """Copy the last picture posted; False if it is not whole, and to be tried again."""
+        number = self.published
+        np.copyto(out.slot, self._slots[number % 2])
+        if out.number != number or out.slot["checksum"] != _checksum(out.slot.reshape(1)):
+            return False
+        out.update()
+        return True
+
+    @property
+    def paused(self) -> bool:
+        """Whether the array is to rest."""
+        return bool(self._words[_PAUSED])
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        self._words[_PAUSED] = paused
+
+    @property
+    def zeroed(self) -> int:
+        """How often the reader has said that the carriage is at the left stop."""
+        return int(self._words[_ZEROED])
+
+    def zero(self) -> None:
+        """Say so."""
+        self._words[_ZEROED] += 1
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the loop is to end."""
+        return bool(self._words[_STOPPED])
+
+    def stop(self) -> None:
+        """End the loop."""
+        self._words[_STOPPED] = 1
+
+
+class PostedPicture:
+    """A picture out of a mailbox: its own copy, in the memory that it was made with.
+
+    Parameters
+    ----------
+    shape, cells
+        As the mailbox's.
+    """
+
+    def __init__(self, shape: tuple[int, int], cells: int) -> None:
+        rows, columns = shape
+        self.slot = np.zeros((), _slot_dtype(shape, cells))
+        self._work = np.zeros((3, max(_SCRATCH, columns, kernels.IDLE + rows)))
+        self._work[0, kernels.COLUMNS] = columns
+        self._parameters = self._work[0, : kernels.IDLE + rows]
+        self._gains = self.slot["gains"]
+
+    @property
+    def line(self) -> int:
+        """Number of its line."""
+        return int(self.slot["line"])
+
+    @property
+    def end_mm(self) -> float:
+        """Where its last dot ends."""
+        return float(self.slot["end_mm"])
+
+    @property
+    def number(self) -> int:
+        """How many were posted with it."""
+        return int(self.slot["number"])
+
+    def update(self) -> None:
+        """Have the kernel see what was copied in."""
+        np.copyto(self._parameters, self.slot["parameters"])
+
+    def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
+        """Fill the frame for the array's left column at x."""
+        kernels.frame(self._work, self._gains, x_mm, out)
+
+
+def _slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
+    rows, _ = shape
+    return np.dtype(
+        [
+            ("checksum", "<i8"),
+            ("number", "<i8"),
+            ("line", "<i8"),
+            ("end_mm", "<f8"),
+            ("parameters", "<f8", (kernels.IDLE + rows,)),
+            ("gains", "<f8", (rows, 2 * (cells + 2))),
+        ]
+    )
+
+
+def _checksum(slots: NDArray[np.void]) -> int:
+    """Of the one slot in an array, but for its own place."""
+    return crc32(slots.view(np.uint8)[8:].tobytes())

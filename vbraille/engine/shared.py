@@ -1,0 +1,69 @@
+"""The memory that a host process and its parent share: a mailbox and a ring.
+
+Not `multiprocessing.shared_memory`: whoever attaches to that by name destroys
+it when it exits. This has no name; a descriptor is inherited.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from dataclasses import dataclass
+
+from vbraille.engine.mailbox import Mailbox
+from vbraille.engine.ring import Ring
+
+RING_S = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much there is to share.
+
+    Parameters
+    ----------
+    rows, columns
+        Of the array.
+    cells
+        Most cells of a line.
+    ticks
+        That the ring holds.
+    """
+
+    rows: int
+    columns: int
+    cells: int
+    ticks: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.rows, self.columns
+
+    @property
+    def mailbox_bytes(self) -> int:
+        """Where the ring begins."""
+        return Mailbox.bytes_needed(self.shape, self.cells)
+
+    @property
+    def total_bytes(self) -> int:
+        """Size of the memory."""
+        return self.mailbox_bytes + Ring.bytes_needed(self.shape, self.ticks)
+
+
+def create(extent: Extent) -> int:
+    """Make the memory; its descriptor."""
+    descriptor = os.memfd_create("vbraille")
+    os.ftruncate(descriptor, extent.total_bytes)
+    return descriptor
+
+
+def attach(descriptor: int, extent: Extent) -> memoryview:
+    """The memory of a descriptor, which may be closed then."""
+    return memoryview(mmap.mmap(descriptor, extent.total_bytes))
+
+
+def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
+    """The two that are in it."""
+    mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.shape, extent.cells)
+    return mailbox, Ring(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)
