@@ -1,6 +1,5 @@
 """Whatever ends a reading, the actuators fade to rest: seen by a device in a real process."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -9,47 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-_DRIVER = '''
-import os
-import numpy as np
-from vbraille.devices.hand import Sweep
-from vbraille.devices.simulated import SimulatedDevice
-from vbraille.errors import DeviceError
-
-class Logged(SimulatedDevice):
-    """Writes every frame to a file; can break."""
-
-    def __init__(self, address, wanted):
-        super().__init__(wanted, hand=Sweep(150.0))
-        path, _, self.fault = address.partition(",")
-        self.log = open(path, "wb", buffering=0)
-
-    def read(self):
-        if self.frames == 300 and self.fault.isdigit():
-            os.kill(os.getppid(), int(self.fault))
-        if self.frames >= 300 and self.fault == "gone":
-            raise DeviceError("the device is gone")
-        if self.frames >= 300 and self.fault == "bug":
-            raise ZeroDivisionError("a bug")
-        return super().read()
-
-    def _send(self, frame):
-        if self.frames >= 300 and self.fault == "gone":
-            raise DeviceError("the device is gone")
-        super()._send(frame)
-        self.log.write(frame.tobytes())
-'''
+from tests import drivers
 
 
 @pytest.fixture
 def driver(tmp_path) -> dict[str, str]:
     """Environment of a process that knows the device kind ``logged``."""
-    package = tmp_path / "logged-1.dist-info"
-    package.mkdir()
-    (package / "METADATA").write_text("Name: logged\nVersion: 1\n")
-    (package / "entry_points.txt").write_text("[vbraille.devices]\nlogged = logged:Logged\n")
-    (tmp_path / "logged.py").write_text(_DRIVER)
-    return {**os.environ, "PYTHONPATH": str(tmp_path)}
+    return drivers.install(tmp_path)
 
 
 def read(driver, texts: Path, log: Path, fault: str, *options: str):

@@ -5,14 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
+
+import numpy as np
 
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -179,7 +181,7 @@ class Device(ABC):
         """
         if self._closed:
             raise DeviceError(f"{self.info.name} is closed")
-        if frame.shape != (self.info.rows, self.info.columns):
+        if frame.shape != self._shape:
             raise DeviceError(
                 f"{self.info.name} has {self.info.rows} × {self.info.columns} actuators; "
                 f"the frame has shape {frame.shape}"
@@ -188,11 +190,13 @@ class Device(ABC):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
         self._send(frame)
 
+    @cached_property
+    def _shape(self) -> tuple[int, int]:
+        return self.info.rows, self.info.columns
+
     def rest(self) -> None:
         """Send every actuator to rest at once."""
-        import numpy as np
-
-        self.write(np.zeros((self.info.rows, self.info.columns)))
+        self.write(np.zeros(self._shape))
 
     def close(self) -> None:
         """Bring every actuator to rest, then let the device go. Further calls do nothing."""

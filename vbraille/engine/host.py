@@ -52,12 +52,15 @@ class Host:
         The last tick polled.
     counts : dict[str, int]
         What went wrong with the device, by name; known after `close`.
+    lost : int
+        Ticks that were never polled: the parent was away for too long.
     """
 
     def __init__(self, device: str, wanted: DeviceInfo, cells: int) -> None:
         ticks = round(shared.RING_S * wanted.rate_hz)
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
+        self.lost = 0
         self._device = device
         self._wanted = wanted
         self._extent = shared.Extent(wanted.rows, wanted.columns, cells, ticks)
@@ -71,6 +74,7 @@ class Host:
         self._fault: VbrailleError | None = None
         self._before = Tally()
         self._lost_before = 0
+        self._paused = False
 
     def start(self) -> None:
         """Start the process, and wait until it has opened the device; again after its death.
@@ -84,11 +88,13 @@ class Host:
         if self.newest is not None:
             self._before, self._lost_before = self.tally, self.lost
         self._info = self._fault = self.newest = None
+        self._paused = False
         self._heard = b""
         descriptor = shared.create(self._extent)
         try:
-            memory = shared.attach(descriptor, self._extent)
-            self._mailbox, self._ring = shared.divide(memory, self._extent)
+            self._mailbox, self._ring = shared.divide(
+                shared.attach(descriptor, self._extent), self._extent
+            )
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "vbraille.engine.hosted", str(descriptor)],
                 stdin=subprocess.PIPE,
@@ -131,11 +137,6 @@ class Host:
         return self._before if self.newest is None else self._before + Tally.of(self.newest)
 
     @property
-    def lost(self) -> int:
-        """Ticks that were never polled: the parent was away for too long."""
-        return self._lost_before + self._ring.lost
-
-    @property
     def x_mm(self) -> float | None:
         """Where the array's left column was at the last poll; None before it is known."""
         return place_of(self.newest)
@@ -143,11 +144,11 @@ class Host:
     @property
     def paused(self) -> bool:
         """Whether the array is to rest."""
-        return self._mailbox.paused
+        return self._paused
 
     @paused.setter
     def paused(self, paused: bool) -> None:
-        self._mailbox.paused = paused
+        self._paused = self._mailbox.paused = paused
 
     def show(self, picture: Renderer, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
@@ -168,6 +169,7 @@ class Host:
         """
         alive = self._hear()
         ticks = self._ring.drain()
+        self.lost = self._lost_before + self._ring.lost
         if ticks.size:
             self.newest = ticks[-1]
         if not alive and not ticks.size:
@@ -195,6 +197,7 @@ class Host:
         if process.stdout is not None:
             process.stdout.close()
         self._process = None
+        del self._mailbox, self._ring  # whose memory holds a descriptor
 
     def __enter__(self) -> Self:
         try:

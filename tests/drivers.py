@@ -1,0 +1,51 @@
+"""A driver of another package: a device in memory that logs its frames and can break."""
+
+import os
+from pathlib import Path
+
+_MODULE = '''
+import os
+import numpy as np
+from vbraille.devices.hand import Sweep
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.errors import DeviceError
+
+class Logged(SimulatedDevice):
+    """Writes every frame to a file; can break."""
+
+    def __init__(self, address, wanted):
+        super().__init__(wanted, hand=Sweep(150.0))
+        path, _, self.fault = address.partition(",")
+        self.log = open(path, "wb", buffering=0)
+
+    def read(self):
+        if self.frames == 300 and self.fault.isdigit():
+            os.kill(os.getppid(), int(self.fault))
+        if self.frames >= 300 and self.fault == "gone":
+            raise DeviceError("the device is gone")
+        if self.frames >= 300 and self.fault == "bug":
+            raise ZeroDivisionError("a bug")
+        return super().read()
+
+    def _send(self, frame):
+        if self.frames >= 300 and self.fault == "gone":
+            raise DeviceError("the device is gone")
+        super()._send(frame)
+        self.log.write(frame.tobytes())
+
+    def take_notes(self):
+        return ["three hundred frames"] if self.frames == 300 else []
+
+    def counts(self):
+        return {"frames": self.frames}
+'''
+
+
+def install(folder: Path) -> dict[str, str]:
+    """Install it there as the device kind ``logged``; the environment of programs that know it."""
+    package = folder / "logged-1.dist-info"
+    package.mkdir()
+    (package / "METADATA").write_text("Name: logged\nVersion: 1\n")
+    (package / "entry_points.txt").write_text("[vbraille.devices]\nlogged = logged:Logged\n")
+    (folder / "logged.py").write_text(_MODULE)
+    return {**os.environ, "PYTHONPATH": str(folder)}

@@ -1,0 +1,153 @@
+"""The host in its own process, whose parent and whose device may fail."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests import drivers
+from tests.engine.test_loop import info, picture
+from vbraille.engine.host import Host, HostDiedError
+from vbraille.engine.ring import Flag
+from vbraille.errors import DeviceError, InputError
+
+PATIENCE_S = 60.0
+
+
+def until(host, enough):
+    """Poll until there is enough; all records."""
+    ticks = [host.poll()]
+    end = time.monotonic() + PATIENCE_S
+    while not enough(ticks[-1]):
+        assert time.monotonic() < end
+        select.select([], [], [], 0.01)
+        ticks.append(host.poll())
+    return np.concatenate(ticks)
+
+
+def lasting(ticks):
+    """Until so many ticks are done."""
+    return lambda new: new.size and new["tick"][-1] >= ticks
+
+
+def descriptors():
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def test_a_life():
+    """Start, a line, a pause, a death, another start, an end: with one process, for its time."""
+    before = descriptors()
+    with Host("sim:?hand=sweep:100", info(), 26) as host:
+        line = picture(mapping="sheared")
+        host.show(line, 7, 100.0)
+        ticks = until(host, lasting(400))
+        assert host.info == info()
+        assert ticks["tick"].tolist() == list(range(ticks.size))
+        assert host.lost == 0
+        assert ticks["line"][-1] == 7
+        assert (np.diff(ticks["time_ns"]) > 0).all()
+        want = np.zeros((6, 10))
+        line.frame(float(ticks["x_mm"][-1]), want)
+        assert want.any()
+        np.testing.assert_array_equal(ticks["frame"][-1], want.astype(np.float32))
+
+        host.paused = True
+        until(host, lambda new: new.size and not new["frame"][-1].any())
+        assert host.newest["flags"] & Flag.PAUSED
+        host.paused = False
+
+        done = host.tally.ticks
+        os.kill(host.process_id, signal.SIGKILL)
+        with pytest.raises(HostDiedError, match="signal 9"):
+            until(host, lambda _new: False)
+        host.start()
+        ticks = until(host, lasting(300))
+        assert ticks["tick"][0] == 0
+        assert ticks["line"][-1] == 7
+        assert ticks["frame"][-1].any()
+        assert host.tally.ticks >= done + 300
+        process = host.process_id
+    assert host.process_id is None
+    with pytest.raises(ProcessLookupError):
+        os.kill(process, 0)
+    assert descriptors() == before
+
+
+def test_notes_counts_and_the_device_s_fault(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", drivers.install(tmp_path)["PYTHONPATH"])
+    notes = []
+    with Host(f"logged:{tmp_path / 'log'},gone", info(), 26) as host:
+        with pytest.raises(DeviceError, match="the device is gone"):
+            until(host, lambda _new: notes.extend(host.take_notes()))
+        notes += host.take_notes()
+    assert "three hundred frames" in notes
+    assert host.counts == {"frames": 300}
+
+
+def test_a_device_that_cannot_be_opened():
+    before = descriptors()
+    with pytest.raises(InputError, match="no device kind 'nothing'"):
+        Host("nothing:", info(), 26).__enter__()
+    assert descriptors() == before
+
+
+_PARENT = """
+import sys, time
+from tests.engine.test_host import info, picture
+from vbraille.engine.host import Host
+with Host(sys.argv[1], info(), 26) as host:
+    host.show(picture(mapping="sheared"), 1, 250.0)
+    while host.tally.ticks < 400:
+        time.sleep(0.01)
+        host.poll()
+    print(host.process_id, flush=True)
+    time.sleep(600)
+"""
+
+
+def test_a_killed_parent_leaves_no_host_and_no_actuator_deflected(tmp_path):
+    log = tmp_path / "log"
+    folder = drivers.install(tmp_path)["PYTHONPATH"]
+    environment = {**os.environ, "PYTHONPATH": f"{folder}:."}
+    parent = subprocess.Popen(
+        [sys.executable, "-c", _PARENT, f"logged:{log}"],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    with parent:
+        host = os.pidfd_open(int(parent.stdout.readline()))
+        try:
+            parent.kill()
+            assert select.select([host], [], [], PATIENCE_S)[0], "the host goes on without a parent"
+        finally:
+            os.close(host)
+    frames = np.fromfile(log).reshape(-1, 6, 10)
+    assert frames.max() == 1.0
+    assert not frames[-1].any()
+    row = frames[:, 0].max(axis=1)  # off the dots it stands at full swing
+    down = row[np.flatnonzero(row == 1.0)[-1] :]
+    assert ((down > 0.02) & (down < 0.98)).any()
+
+
+def test_without_the_right_to_real_time_a_sentence_says_how_to_get_it():
+    script = (
+        "import os, resource\n"
+        "from vbraille.engine.realtime import go_real_time\n"
+        "resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))\n"
+        "resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
+        "if os.geteuid() == 0: os.setuid(65534)\n"
+        "print(go_real_time())\n"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", script], check=True, capture_output=True, text=True
+    ).stdout
+    assert said.startswith("timing: no real-time priority and no locked memory, so that")
+    assert "/etc/security/limits.d" in said
+    assert said.count("\n") == 1

@@ -1,0 +1,100 @@
+"""The ring: every record once and whole, or counted as lost."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from vbraille.engine.ring import Flag, Ring
+
+SHAPE = (2, 3)
+
+
+def pair(size):
+    """Both ends over the same memory."""
+    memory = memoryview(bytearray(Ring.bytes_needed(SHAPE, size)))
+    return Ring(memory, SHAPE, size), Ring(memory, SHAPE, size)
+
+
+def append(ring, n):
+    fields = (10 * n, 20 * n, 3, 4, 5, 6, 7, int(Flag.PAUSED), n / 2, -n / 4, 8.0, 9.0)
+    ring.append(np.full(SHAPE, n / 1024), *fields)
+
+
+def test_a_record_has_every_field_in_its_place():
+    writer, reader = pair(8)
+    append(writer, 0)
+    append(writer, 1)
+    writer.publish()
+    tick = reader.drain()[1]
+    want = {
+        "tick": 1, "time_ns": 10, "device_ns": 20, "lateness_ns": 3, "work_ns": 4, "late": 5,
+        "overruns": 6, "line": 7, "flags": 1, "x_mm": 0.5, "speed_mm_s": -0.25,
+        "forward_mm": 8.0, "forward_s": 9.0,
+    }  # fmt: skip
+    assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want
+    np.testing.assert_array_equal(tick["frame"], np.full(SHAPE, 1 / 1024, np.float32))
+
+
+def test_a_record_is_seen_a_tick_later_or_when_published():
+    writer, reader = pair(8)
+    append(writer, 0)
+    assert reader.drain().size == 0
+    append(writer, 1)
+    assert reader.drain()["tick"].tolist() == [0]
+    writer.publish()
+    assert reader.drain()["tick"].tolist() == [1]
+    assert reader.drain().size == 0
+
+
+@pytest.mark.parametrize("parts", [(3, 5, 1, 7, 8), (8,) * 9, (1,) * 40])
+def test_drained_in_time_no_tick_is_lost(parts):
+    writer, reader = pair(9)
+    seen, n = [], 0
+    for part in parts:
+        for _ in range(part):
+            append(writer, n)
+            n += 1
+        writer.publish()
+        seen += reader.drain()["tick"].tolist()
+    assert seen == list(range(n))
+    assert reader.lost == 0
+
+
+def test_what_was_overwritten_is_counted():
+    writer, reader = pair(8)
+    for n in range(20):
+        append(writer, n)
+    writer.publish()
+    ticks = reader.drain()["tick"].tolist()
+    # The oldest place may be in the writing.
+    assert ticks == list(range(13, 20))
+    assert reader.lost == 13
+    append(writer, 20)
+    writer.publish()
+    assert reader.drain()["tick"].tolist() == [20]
+    assert reader.lost == 13
+
+
+def test_beside_a_writer_that_does_not_wait_records_are_whole_and_counted():
+    writer, reader = pair(64)
+    count = 30_000
+
+    def write():
+        for n in range(count):
+            append(writer, n)
+        writer.publish()
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    seen = []
+    while thread.is_alive():
+        seen.append(reader.drain())
+    thread.join()
+    seen.append(reader.drain())
+    ticks = np.concatenate(seen)
+    assert ticks.size + reader.lost == count
+    assert (np.diff(ticks["tick"]) > 0).all()
+    np.testing.assert_array_equal(ticks["time_ns"], 10 * ticks["tick"])
+    frames = ticks["frame"].reshape(-1, 6)
+    np.testing.assert_array_equal(frames, np.repeat(ticks["tick"][:, None] / 1024, 6, axis=1))
