@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.printable import printable
-from vbraille.devices import DeviceInfo
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
@@ -19,9 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.page import Line
-
-LEVELS = 1024  # 10 bits, as the source's devices take
-COUNTS_PER_MM = 200.0  # 5 µm a count: at full texture 4 % of the swing
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,23 +172,6 @@ def check_rate(rate_hz: float) -> float:
     if not 1 <= rate_hz <= 10_000:
         raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
     return rate_hz
-
-
-def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
-    """Device that the page is laid out for; a simulated one is just so."""
-    array = model.array
-    return DeviceInfo(
-        name=f"simulated {model.title}",
-        rows=array.rows,
-        columns=array.columns,
-        column_pitch_mm=array.column_pitch_mm,
-        row_pitch_mm=array.row_pitch_mm,
-        levels=LEVELS,
-        rest_side=model.rest_side,
-        travel_mm=geometry.travel_mm,
-        counts_per_mm=COUNTS_PER_MM,
-        rate_hz=rate_hz,
-    )
 
 
 def note_unseen_dots(page: Page, mapping: Mapping) -> None:

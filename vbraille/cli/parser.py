@@ -57,7 +57,9 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     read = command("read", "Read a text on a device, line after line")
     _text_options(read)
     _show_options(read)
-    read.add_argument("--device", default="sim", metavar="SPEC", help="sim (default)")
+    read.add_argument(
+        "--device", default="sim", metavar="SPEC", help="sim (default), serial:/dev/ttyACM0, …"
+    )
     read.add_argument(
         "--advance",
         choices=("return", "key"),
@@ -100,6 +102,10 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     plot.add_argument("--letter", help="mapping: the letter shown (z)")
     plot.set_defaults(model=None)  # the one that the source drew the figure for
 
+    _simulate_options(command("simulate", "Be a device, at a port that a program can read on"))
+
+    _device_options(command("device", "Say which devices there are, and try one"))
+
     tables = command("tables", "List the braille tables there are")
     tables.add_argument("--language", metavar="TAG", help="only of this language, such as fr")
 
@@ -108,6 +114,20 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         if isinstance(value, list):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
     return arguments
+
+
+def _device_options(parser: argparse.ArgumentParser) -> None:
+    actions = parser.add_subparsers(
+        dest="action", required=True, metavar="ACTION", parser_class=_Parser
+    )
+    actions.add_parser("list", help="the serial ports, with names and ids")
+    for name, text in (
+        ("info", "what a device says of itself"),
+        ("check", "swing each actuator, hold the rate, measure the round trip, and judge"),
+    ):
+        action = actions.add_parser(name, help=text, description=f"{text.capitalize()}.")
+        action.add_argument("spec", metavar="SPEC", help="serial:/dev/ttyACM0, …")
+        action.add_argument("--model", choices=("stress2", "vbd"), help="that it must be")
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
@@ -163,6 +183,43 @@ def _hand_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rate", type=_number, default=1000.0, metavar="HZ", help="frames a second (1000)"
     )
+
+
+def _simulate_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--model", choices=("stress2", "vbd"), default="stress2", help="the display (stress2)"
+    )
+    _hand_options(parser)
+    parser.set_defaults(rate=1000)
+    parser.add_argument("--link", metavar="PATH", help="a link to its port, to be made and removed")
+    parser.add_argument(
+        "--encoder",
+        choices=("absolute", "index", "incremental"),
+        default="absolute",
+        help="what it knows of its carriage's place when it starts: all (default), "
+        "nothing before its mark, nothing",
+    )
+    parser.add_argument("--travel", type=_number, metavar="MM", help="of the carriage (300)")
+    for name in ("drop", "corrupt"):
+        parser.add_argument(
+            f"--{name}", type=_number, default=0.0, metavar="0…1", help=f"messages it {name}s"
+        )
+    for name, text in (
+        ("stall", "do nothing for so long every second, such as 200ms"),
+        ("unplug-every", "be unplugged after so long, such as 5s; needs --link"),
+    ):
+        parser.add_argument(f"--{name}", type=_duration, default=0.0, metavar="DURATION", help=text)
+
+
+def _duration(text: str) -> float:
+    """Seconds of a duration such as 200ms or 5s."""
+    found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)(ms|s)", text)
+    seconds = float(found[1]) / (1000 if found[2] == "ms" else 1) if found else 0.0
+    if not 0.001 <= seconds <= 3600:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no duration from 1ms to 3600s, such as 200ms or 5s"
+        )
+    return seconds
 
 
 def _number(text: str) -> float:

@@ -10,11 +10,11 @@ from vbraille.cli.build import (
     build_page,
     build_show,
     check_rate,
-    device_info,
     note_unseen_dots,
 )
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
+from vbraille.cli.wanted import device_info
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded

@@ -117,10 +117,14 @@ class Device(ABC):
         that the next frames must fade in.
     placing : Placing
         What it waits for before it can tell places; `read` gives None till then.
+    acknowledged_ns : int or None
+        How long after the last frame was written the device said that it has it;
+        None as long as it did not.
     """
 
     rested = 0
     placing = Placing.DONE
+    acknowledged_ns: int | None = None
     _closed = False
 
     @property

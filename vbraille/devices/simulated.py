@@ -120,14 +120,16 @@ class SimulatedDevice(Device):
         """Nothing to let go."""
 
 
-def open_simulated(address: str, wanted: DeviceInfo) -> SimulatedDevice:
+def open_simulated(address: str, wanted: DeviceInfo | None) -> SimulatedDevice:
     """Open ``sim:?hand=HAND&seed=N``: a device as the page wants it.
 
     Raises
     ------
     InputError
-        If the address says anything else.
+        If the address says anything else, or no device is wanted.
     """
+    if wanted is None:
+        raise InputError("a simulated device is made for a model; say which, with --model")
     if not address:
         return SimulatedDevice(wanted)
     given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))

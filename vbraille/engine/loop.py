@@ -42,7 +42,7 @@ _PLACING = {Placing.DONE: 0, Placing.MARK: int(Flag.MARK), Placing.STOP: int(Fla
 class Picture(Protocol):
     """What is under the hand: a frame for every place."""
 
-    def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
+    def frame(self, x_mm: float, out: NDArray[np.float64], /) -> None:
         """Fill the frame for the array's left column at x."""
         ...
 

@@ -6,6 +6,7 @@ import ctypes
 import gc
 import os
 import resource
+from contextlib import suppress
 
 # Above other programs, below the kernel's own threads (50).
 PRIORITY = 40
@@ -27,6 +28,7 @@ def go_real_time() -> str | None:
     gc.collect()
     gc.freeze()
     gc.disable()
+    _keep_awake()
     refused = []
     try:
         # Threads that a driver starts are not first in line: RESET_ON_FORK.
@@ -39,6 +41,13 @@ def go_real_time() -> str | None:
     if not refused:
         return None
     return f"timing: {' and '.join(refused)}, so that ticks may come late; {HOW}"
+
+
+def _keep_awake() -> None:
+    """Keep processors out of the sleep that takes them long to wake from, until we end."""
+    with suppress(OSError):
+        descriptor = os.open("/dev/cpu_dma_latency", os.O_WRONLY)
+        os.write(descriptor, bytes(4))  # µs; it holds as long as the descriptor is open
 
 
 def _lock_memory() -> bool:

@@ -1,0 +1,234 @@
+"""``vbraille simulate``, a real process at a real pseudo-terminal."""
+
+import os
+import re
+import select
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli import program
+from vbraille.devices.messages import Encoder, Frame, Hello, Info, State, Watchdog
+from vbraille.devices.wire import Decoder, Levels, encode
+
+PATIENCE_S = 30.0
+
+
+class Host:
+    """A host at a port, while what the device prints is read, too."""
+
+    def __init__(self, device, path):
+        self.device = device
+        self.descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        self.decoder = Decoder()
+        self.heard = []
+        self.sequence = 0
+
+    def close(self):
+        os.close(self.descriptor)
+
+    def say(self, message):
+        line = encode(message)
+        assert os.write(self.descriptor, line) == len(line)
+
+    def show(self):
+        info = self.of(Info)[0]
+        levels = np.full(info.rows * info.columns, 512)
+        self.sequence += 1
+        self.say(Frame(self.sequence, Levels(levels.size, info.top_level).pack(levels)))
+
+    def until(self, found, step=lambda: None):
+        """Hear until something comes true, doing something every few milliseconds."""
+        end = time.monotonic() + PATIENCE_S
+        while not found():
+            assert time.monotonic() < end
+            step()
+            if select.select([self.descriptor], [], [], 0.005)[0]:
+                self.heard += self.decoder.feed(os.read(self.descriptor, 65_536))
+
+    def greet(self):
+        """Say HELLO until it is answered."""
+        asked = [0.0]
+
+        def ask():
+            if time.monotonic() > asked[0]:
+                asked[0] = time.monotonic() + 0.25
+                self.say(Hello())
+
+        self.until(lambda: self.of(Info) and self.of(State), ask)
+
+    def gaps(self):
+        """How far the sequences of neighbouring STATEs are apart."""
+        sequences = [state.sequence for state in self.of(State)]
+        return [later - earlier for earlier, later in pairwise(sequences)]
+
+    def of(self, kind):
+        return [message for message in self.heard if isinstance(message, kind)]
+
+
+class Simulated:
+    """The process, and what it has printed."""
+
+    def __init__(self, *arguments):
+        self.process = program.start("simulate", *arguments)
+        os.set_blocking(self.process.stdout.fileno(), False)
+        self._printed = b""
+
+    @property
+    def printed(self):
+        """Lines so far."""
+        while chunk := self.process.stdout.read():
+            self._printed += chunk
+        return self._printed.decode().splitlines()
+
+    def until(self, pattern):
+        """Wait for a line; the first that matches."""
+        end = time.monotonic() + PATIENCE_S
+        while True:
+            for line in self.printed:
+                if re.fullmatch(pattern, line):
+                    return line
+            assert time.monotonic() < end, f"{pattern} was not printed, but {self.printed}"
+            assert self.process.poll() is None, self.process.stderr.read()
+            time.sleep(0.005)
+
+    def end(self, number=signal.SIGTERM):
+        """Stop it by a signal; its summary."""
+        self.process.send_signal(number)
+        assert self.process.wait(PATIENCE_S) == 0
+        assert self.process.stderr.read() == b""
+        found = re.fullmatch(
+            r"summary: seconds ([\d.]+), frames (\d+), dropped (\d+), trips (\d+), "
+            r"states sent (\d+), states dropped (\d+)",
+            self.printed[-1],
+        )
+        names = ("seconds", "frames", "dropped", "trips", "sent", "lost")
+        return dict(zip(names, map(float, found.groups()), strict=True))
+
+
+@contextmanager
+def simulated(*arguments):
+    device = Simulated(*arguments)
+    try:
+        yield device
+    finally:
+        device.process.kill()
+        device.process.wait()
+        device.process.stdout.close()
+        device.process.stderr.close()
+
+
+@contextmanager
+def host_of(device, path):
+    host = Host(device, path)
+    try:
+        yield host
+    finally:
+        host.close()
+
+
+def test_a_host_reads_on_it(tmp_path):
+    link = tmp_path / "vb0"
+    link.symlink_to("/nowhere")
+    options = ("--model", "stress2", "--hand", "sweep:500", "--link", link, "--travel", "80")
+    with simulated(*options, "--rate", "500", "--encoder", "index") as device:
+        device.until(f"link: {link}")
+        assert device.printed == [f"port: {link.readlink()}", f"link: {link}"]
+        with host_of(device, link) as host:
+            host.greet()
+            (info,) = host.of(Info)
+            assert (info.rows, info.columns, info.rate_hz) == (6, 10, 500)
+            assert (info.travel_um, info.encoder) == (80_000, Encoder.INDEX)
+            assert host.of(Watchdog) == [Watchdog(0, 0)]
+            host.until(lambda: host.of(State)[-1].placed)
+            stop = info.left_stop_count
+            host.until(lambda: host.of(State)[-1].count == stop)
+            host.until(lambda: host.of(State)[-1].count > stop + 2000, host.show)
+            assert host.of(State)[-1].frame_sequence > 0
+            host.until(lambda: len(host.of(Watchdog)) > 1)
+            line = device.until(r"watchdog: trip \d+, at rest [\d.]+ ms after the last frame")
+        assert 70 <= float(re.search(r"rest ([\d.]+) ms", line)[1]) <= 74  # it ticks every 2 ms
+        summary = device.end()
+        assert "greeted by a host" in device.printed
+    assert not os.path.lexists(link)
+    assert summary["frames"] == host.sequence
+    assert summary["trips"] >= 1
+    assert summary["sent"] > 20
+    assert summary["dropped"] == 0
+
+
+def test_it_misbehaves_when_told_to():
+    options = ("--model=vbd", "--drop=0.2", "--corrupt=0.2", "--stall=0.2s", "--seed=5")
+    with simulated(*options, "--rate=200") as device:
+        port = device.until("port: .*").removeprefix("port: ")
+        with host_of(device, port) as host:
+            host.greet()
+            assert host.of(Info)[0].columns == 12
+            host.until(lambda: host.sequence == 100, host.show)
+            host.until(lambda: sum(host.decoder.dropped.values()) > 5)
+            host.until(lambda: any(gap > 25 for gap in host.gaps()))
+        summary = device.end(signal.SIGINT)
+    assert 40 < summary["frames"] < 90
+    assert summary["dropped"] > 5
+    assert summary["lost"] > 25
+
+
+def test_it_is_unplugged_and_comes_back(tmp_path):
+    link = tmp_path / "vb0"
+    with simulated("--unplug-every=1.5s", "--rate=200", "--link", link) as device:
+        device.until("port: .*")
+        with host_of(device, link) as host:
+            host.greet()
+            device.until("unplugged")
+            with pytest.raises(OSError, match="Input/output error"):
+                os.write(host.descriptor, b"\0")
+        device.until("plugged in again: .*")
+        with host_of(device, link) as host:
+            host.greet()
+        device.end(signal.SIGHUP)
+    assert not os.path.lexists(link)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--rate=20", "rate is 20 Hz; it must be 50 to 10000 Hz, and whole"),
+        ("--rate=100.5", "rate is 100.5 Hz; it must be 50 to 10000 Hz, and whole"),
+        ("--rate=nan", "rate is nan Hz; it must be 50 to 10000 Hz, and whole"),
+        ("--travel=0", "travel is 0 mm; it must be 1 to 10000 mm"),
+        ("--hand=fast", "there is no hand 'fast'; give sweep:SPEED in mm/s"),
+        ("--drop=1.5", "drop is 1.5; it must be 0 to 1"),
+        ("--corrupt=nan", "corrupt is nan; it must be 0 to 1"),
+        ("--stall=200", "'200' is no duration from 1ms to 3600s, such as 200ms or 5s"),
+        ("--stall=0s", "'0s' is no duration"),
+        ("--unplug-every=5h --link=x", "'5h' is no duration"),
+        ("--unplug-every=5s", "--unplug-every needs --link, for the port has a new name"),
+        ("--encoder=odd", "argument --encoder: invalid choice: 'odd'"),
+        ("--link=none/vb0", "no link can be made at none/vb0: No such file or directory; choose"),
+        ("--link=text", "text is there, and no link; choose another name for --link"),
+    ],
+)
+def test_what_it_cannot_be_is_said_in_a_sentence(call, tmp_path, monkeypatch, options, said):
+    monkeypatch.chdir(tmp_path)
+    Path("text").write_text("kept")
+    done = call("simulate", *options.split())
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err
+    assert done.err.count("\n") == 1
+    assert Path("text").read_text() == "kept"
+    assert list(tmp_path.iterdir()) == [tmp_path / "text"]
+
+
+def test_it_loads_nothing_heavy():
+    code = "import sys, vbraille.cli.simulate; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert "vbraille.devices.simulator" in loaded
+    assert not loaded & {"numba", "louis", "matplotlib", "h5py", "serial"}

@@ -1,0 +1,102 @@
+"""The driver in docs/drivers.md: complete, under 60 lines, and it works as printed."""
+
+import re
+import socket
+import struct
+import threading
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vbraille.devices.conformance import CHECKS
+from vbraille.errors import InputError
+
+PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"
+
+
+def printed(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE.read_text(), re.MULTILINE | re.DOTALL)
+
+
+class Peer:
+    """What answers in the device's place: a state for every frame, and one to begin with."""
+
+    def __init__(self):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.frames = []
+        self.thread = threading.Thread(target=self._answer)
+
+    def _answer(self):
+        while True:
+            frame, host = self.socket.recvfrom(4096)
+            if not frame:
+                return
+            self.frames.append(frame)
+            state = struct.pack("<QI", 1000 * len(self.frames), 100 * len(self.frames))
+            self.socket.sendto(state, host)
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.socket.sendto(b"", self.socket.getsockname())
+        self.thread.join()
+        self.socket.close()
+
+
+@pytest.fixture
+def driver():
+    module = types.ModuleType("latero")
+    exec(compile(printed("python")[0], str(PAGE), "exec"), module.__dict__)
+    return module
+
+
+@pytest.fixture
+def peer():
+    with Peer() as peer:
+        yield peer
+
+
+@pytest.fixture
+def address(peer):
+    return "127.0.0.1:{1}".format(*peer.socket.getsockname())
+
+
+@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
+def test_it_conforms(driver, address, check):
+    check(lambda: driver.open_latero(address, None))
+
+
+def test_it_has_under_60_lines():
+    assert len(printed("python")[0].splitlines()) < 60
+
+
+def test_what_it_sends_and_reads(driver, peer, address):
+    with driver.open_latero(address, None) as device:
+        device.write(np.linspace(0, 1, 60).reshape(6, 10))
+        sample = None
+        while sample is None:
+            sample = device.read()
+        assert sample.time_ns == 1_000_000
+        assert sample.x_mm == pytest.approx(0.5 - 10.8)
+        assert peer.frames[0] == np.rint(np.linspace(0, 255, 60)).astype(np.uint8).tobytes()
+
+
+def test_an_address_that_is_none(driver):
+    with pytest.raises(InputError, match="latero:HOST:PORT"):
+        driver.open_latero("nowhere", None)
+
+
+def test_the_entry_point_and_the_checks_are_as_printed(driver, address):
+    name, target = re.search(r'^(\w+) = "(.+)"$', printed("toml")[0], re.MULTILINE).groups()
+    assert (name, target) == ("latero", "latero:open_latero")
+    test = printed("python")[1].replace('"127.0.0.1", 8900', "*ADDRESS")
+    host, port = address.split(":")
+    scope = {**driver.__dict__, "ADDRESS": (host, int(port))}
+    exec(compile(test, str(PAGE), "exec"), scope)
+    for check in CHECKS:
+        scope["test_latero"](check)

@@ -1,0 +1,31 @@
+"""The device that a page is laid out for; a simulated one is just so."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.devices import DeviceInfo
+
+if TYPE_CHECKING:
+    from vbraille.geometry import Geometry
+    from vbraille.render import Model
+
+LEVELS = 1024  # 10 bits, as the source's devices take
+COUNTS_PER_MM = 200.0  # 5 µm a count: at full texture 4 % of the swing
+
+
+def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
+    """Device that the page is laid out for; a simulated one is just so."""
+    array = model.array
+    return DeviceInfo(
+        name=f"simulated {model.title}",
+        rows=array.rows,
+        columns=array.columns,
+        column_pitch_mm=array.column_pitch_mm,
+        row_pitch_mm=array.row_pitch_mm,
+        levels=LEVELS,
+        rest_side=model.rest_side,
+        travel_mm=geometry.travel_mm,
+        counts_per_mm=COUNTS_PER_MM,
+        rate_hz=rate_hz,
+    )

@@ -1,0 +1,301 @@
+"""A simulated controller: what a device does with bytes and time, without I/O.
+
+It is the minimal firmware of `docs/wire-protocol.md`. Its timer is hardware: what was
+due between two ticks happened when it was due, even if whoever calls `tick` is late.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille import __version__
+from vbraille.devices.messages import (
+    FAULTY,
+    NOTICES,
+    PLACED,
+    RAMP_MS,
+    RESTING,
+    VERSION,
+    WATCHDOG_MS,
+    CountSign,
+    Encoder,
+    Error,
+    Frame,
+    Hello,
+    Info,
+    Rest,
+    RestSide,
+    State,
+    Watchdog,
+)
+from vbraille.devices.wire import Decoder, Levels, encode
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.devices.base import DeviceInfo
+    from vbraille.devices.wire import Event
+
+WATCHDOG_US: Final = WATCHDOG_MS * 1000
+RAMP_US: Final = RAMP_MS * 1000
+# Where an index encoder has its mark; halfway on a carriage that hardly goes so far.
+MARK_MM: Final = 10.0
+# What an encoder that does not know its place is wrong by: anything but 0 in any number of bits.
+ASTRAY: Final = 12_345
+# Counts before a described encoder wraps, so that it does so on the way: 100 mm of 5 µm.
+BEFORE_WRAP: Final = 20_000
+_U16, _U32 = 0xFFFF, 0xFFFF_FFFF
+
+
+def describe(info: DeviceInfo, encoder: Encoder) -> Info:
+    """INFO of a device whose actuators are all alike, and whose encoder wraps on the way.
+
+    Raises
+    ------
+    ValueError
+        If the wire has no room for a number.
+    """
+    actuators = info.rows * info.columns
+    counts = round(info.travel_mm * info.counts_per_mm)
+    count_bits = min(max(24, counts.bit_length() + 1), 32)  # the travel is below half the range
+    return Info(
+        version=VERSION,
+        rows=info.rows,
+        columns=info.columns,
+        column_pitch_nm=round(info.column_pitch_mm * 1e6),
+        row_pitch_nm=round(info.row_pitch_mm * 1e6),
+        rest_side=RestSide[info.rest_side.upper()],
+        top_level=info.levels - 1,
+        rate_hz=round(info.rate_hz),
+        largest_slew_per_s=0,
+        travel_um=round(info.travel_mm * 1e3),
+        encoder=encoder,
+        counts_per_m=round(info.counts_per_mm * 1e3),
+        count_sign=CountSign.RIGHTWARD,
+        count_bits=count_bits,
+        left_stop_count=0 if encoder is Encoder.INCREMENTAL else (1 << count_bits) - BEFORE_WRAP,
+        name=info.name,
+        firmware=__version__,
+        inverted=bytes(actuators),
+        gain=b"\xff" * actuators,
+        enabled=b"\1" * actuators,
+    )
+
+
+class Controller:
+    """A device's controller, from its start.
+
+    Its clock is the caller's: plain microseconds that do not wrap, and do not go back.
+
+    Parameters
+    ----------
+    info
+        What it is.
+
+    Attributes
+    ----------
+    buttons : int
+        Bit 0 is the first button; 1 while it is pressed.
+    force_mn : int | None
+        Of the finger on the array.
+    levels : uint16[rows · columns]
+        Where each actuator stands.
+    at_rest : bool
+        Whether they have come to rest, and no FRAME has been taken since.
+    greeted, faulty, placed : bool
+        Whether a host of its version said HELLO; an ERROR stands; counts are true.
+    greetings, trips, frames : int
+        HELLOs of its version; of the watchdog; FRAMEs taken.
+    last_frame_us : int
+        When the last FRAME was taken; 0 before the first.
+    rest_after_us : int | None
+        How long after that the actuators were at rest, the last time that they went there.
+    """
+
+    def __init__(self, info: Info) -> None:
+        self.info = info
+        self.buttons = 0
+        self.force_mn: int | None = None
+        self.greeted = self.faulty = False
+        self.placed = info.encoder is Encoder.ABSOLUTE
+        self.greetings = self.trips = self.frames = 0
+        self.last_frame_us = 0
+        self.rest_after_us: int | None = None
+        self._packing = Levels(info.rows * info.columns, info.top_level)
+        self._rest = np.frombuffer(info.inverted, np.uint8).astype(np.uint16) * info.top_level
+        self.levels: NDArray[np.uint16] = self._rest
+        self.at_rest = True
+        self._ramp_us: int | None = None  # when the ramp began
+        self._ramp_from = self.levels
+        self._decoder = Decoder()
+        self._misfits = 0
+        self._armed = self._tripped = False
+        self._now_us = 0
+        self._sequence = self._frame_sequence = 0
+        self._timer_us: int | None = None  # when its timer ticked first
+        self._way_mm: float | None = None
+        self._astray = 0 if self.placed else ASTRAY
+
+    @property
+    def dropped(self) -> int:
+        """Frames received that came to nothing."""
+        return sum(self._decoder.dropped.values()) + self._misfits
+
+    @property
+    def mark_mm(self) -> float:
+        """Way from the left stop to the mark of an index encoder."""
+        return min(MARK_MM, self.info.travel_um / 2000)
+
+    def receive(self, chunk: bytes, now_us: int) -> bytes:
+        """Take bytes of the host's; what goes back to it."""
+        self._now_us = now_us
+        answers = [self._take(event) for event in self._decoder.feed(chunk)]
+        return b"".join(answers)
+
+    def tick(self, now_us: int, way_mm: float) -> bytes:
+        """Do what a controller does `rate_hz` times a second; what goes to the host.
+
+        Parameters
+        ----------
+        now_us
+            Its clock.
+        way_mm
+            Of the carriage, from the left stop.
+        """
+        self._now_us = now_us
+        if self._timer_us is None:
+            self._timer_us = now_us
+        said = self._watch() if self._armed else b""
+        if self._ramp_us is not None:
+            self._step_ramp(self._ramp_us)
+        self._sequence = (self._sequence + 1) & _U16
+        count = self._count(way_mm)
+        return said + self._state(count) if self.greeted else b""
+
+    def skip(self, ticks: int) -> None:
+        """Have missed ticks, and their STATEs dropped."""
+        self._sequence = (self._sequence + ticks) & _U16
+
+    def fault(self, code: int, text: str) -> bytes:
+        """Have something wrong: an ERROR, or from 128 on a notice; what goes to the host.
+
+        Raises
+        ------
+        ValueError
+            If the code or the text is none for the wire.
+        """
+        said = encode(Error(code, text))
+        if code < NOTICES:
+            self.faulty = True
+            self._go_to_rest()
+        return said if self.greeted else b""
+
+    def hang_up(self) -> None:
+        """Have the line taken away, not the power: silent until HELLO, and all else goes on."""
+        self.greeted = False
+        dropped = self._decoder.dropped
+        self._decoder = Decoder()  # what was begun to be received is gone
+        self._decoder.dropped = dropped
+
+    def _take(self, event: Event) -> bytes:
+        match event:
+            case Frame():
+                return self._take_frame(event)
+            case Hello():
+                self.faulty = False
+                self._go_to_rest()
+                self.greeted = event.version == VERSION
+                self.greetings += self.greeted
+                return encode(self.info) + self._watchdog()
+            case Rest():
+                self._go_to_rest()
+            case _:  # a device's
+                self._misfits += 1
+        return b""
+
+    def _take_frame(self, frame: Frame) -> bytes:
+        if not self.greeted or self.faulty:
+            return b""
+        try:
+            self.levels = self._packing.unpack(frame.packed)
+        except ValueError:
+            self._misfits += 1
+            return b""
+        self._ramp_us = None
+        self.at_rest = False
+        self.frames += 1
+        self._frame_sequence = frame.sequence
+        self.last_frame_us = self._now_us
+        self._armed = True
+        if not self._tripped:
+            return b""
+        self._tripped = False
+        return self._watchdog()
+
+    def _go_to_rest(self) -> None:
+        self._armed = self._tripped = False
+        self._start_ramp(self._now_us)
+
+    def _watch(self) -> bytes:
+        """Trip if the time is up."""
+        if self._now_us - self.last_frame_us < WATCHDOG_US:
+            return b""
+        self._armed, self._tripped = False, True
+        self.trips += 1
+        self._start_ramp(self._due(self.last_frame_us + WATCHDOG_US))
+        return self._watchdog()
+
+    def _start_ramp(self, begun_us: int) -> None:
+        # A ramp on its way goes on: begun anew, it would take longer than the watchdog promises.
+        if not self.at_rest and self._ramp_us is None:
+            self._ramp_us = begun_us
+            self._ramp_from = self.levels
+
+    def _step_ramp(self, begun_us: int) -> None:
+        done = (self._now_us - begun_us) / RAMP_US
+        if done < 1:
+            way = self._rest - self._ramp_from.astype(np.float64)
+            self.levels = np.rint(self._ramp_from + done * way).astype(np.uint16)
+            return
+        self.levels = self._rest
+        self.at_rest = True
+        self._ramp_us = None
+        self.rest_after_us = self._due(begun_us + RAMP_US) - self.last_frame_us
+
+    def _due(self, due_us: int) -> int:
+        """When the timer saw to what was due: at its first tick from then on."""
+        first_us, rate_hz = self._timer_us or 0, self.info.rate_hz
+        ticks = -(-(due_us - first_us) * rate_hz // 1_000_000)
+        return min(first_us + round(ticks * 1_000_000 / rate_hz), self._now_us)
+
+    def _count(self, way_mm: float) -> int:
+        """Count of the encoder at a place; an index may be passed on the way there."""
+        info = self.info
+        if info.encoder is Encoder.INDEX and not self.placed and self._way_mm is not None:
+            low_mm, high_mm = sorted((self._way_mm, way_mm))
+            if low_mm <= self.mark_mm <= high_mm:
+                self.placed, self._astray = True, 0
+        self._way_mm = way_mm
+        counts = info.count_sign * round(way_mm * info.counts_per_m / 1000)
+        return (info.left_stop_count + self._astray + counts) & ((1 << info.count_bits) - 1)
+
+    def _state(self, count: int) -> bytes:
+        flags = PLACED * self.placed | FAULTY * self.faulty
+        if self.at_rest or self._ramp_us is not None:
+            flags |= RESTING
+        return encode(
+            State(
+                sequence=self._sequence,
+                time_us=self._now_us & _U32,
+                count=count,
+                frame_sequence=self._frame_sequence,
+                flags=flags,
+                buttons=self.buttons,
+                force_mn=self.force_mn,
+            )
+        )
+
+    def _watchdog(self) -> bytes:
+        return encode(Watchdog(self.trips & _U32, self.dropped & _U32))

@@ -1,0 +1,136 @@
+"""The device's end of a pseudo-terminal, which a host opens as a serial port."""
+
+from __future__ import annotations
+
+import os
+import tty
+from contextlib import suppress
+from pathlib import Path
+
+from vbraille.errors import InputError
+
+_CHUNK = 65_536
+
+
+class Link:
+    """A symbolic link to a port, so that a port has the same name whichever it is.
+
+    Parameters
+    ----------
+    path
+        Where; another link there is replaced.
+    """
+
+    def __init__(self, path: str) -> None:
+        self.path = Path(path)
+        self._target: str | None = None
+
+    def point(self, target: str) -> None:
+        """Point it at a port.
+
+        Raises
+        ------
+        InputError
+            If there is something else in its place, or no link can be made there.
+        """
+        if os.path.lexists(self.path) and not self.path.is_symlink():
+            raise InputError(f"{self.path} is there, and no link; choose another name for --link")
+        begun = self.path.with_name(f".{self.path.name}.{os.getpid()}")
+        try:
+            begun.symlink_to(target)
+            begun.replace(self.path)
+        except OSError as error:
+            with suppress(OSError):
+                begun.unlink()
+            raise InputError(
+                f"no link can be made at {self.path}: {error.strerror}; "
+                f"choose another place for --link"
+            ) from None
+        self._target = target
+
+    def remove(self) -> None:
+        """Remove it, unless it has become somebody else's."""
+        with suppress(OSError):
+            if self._target is not None and self.path.readlink() == Path(self._target):
+                self.path.unlink()
+
+
+class Port:
+    """A pseudo-terminal, plugged in until `unplug`. It never waits.
+
+    Parameters
+    ----------
+    link
+        What points at it while it is plugged in.
+
+    Raises
+    ------
+    InputError
+        If the link cannot be made.
+    """
+
+    def __init__(self, link: Link | None = None) -> None:
+        self._link = link
+        self._master: int | None = None
+        self._slave: int | None = None
+        self._left = b""  # of a message that was written in part
+        self.path = ""
+        self.plug()
+
+    @property
+    def descriptor(self) -> int | None:
+        """To select on; None while it is unplugged."""
+        return self._master
+
+    def plug(self) -> None:
+        """Be there, perhaps by another path than before."""
+        # The host's end is kept open here: the line must not hang up each time a host leaves.
+        self._master, self._slave = os.openpty()
+        self.path = os.ttyname(self._slave)
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self._left = b""
+        if self._link is not None:
+            try:
+                self._link.point(self.path)
+            except InputError:
+                self.unplug()
+                raise
+
+    def unplug(self) -> None:
+        """Hang up, and be no more."""
+        if self._link is not None:
+            self._link.remove()
+        for descriptor in (self._master, self._slave):
+            if descriptor is not None:
+                os.close(descriptor)
+        self._master = self._slave = None
+
+    def read(self) -> bytes:
+        """What there is."""
+        if self._master is None:
+            return b""
+        try:
+            return os.read(self._master, _CHUNK)
+        except BlockingIOError:
+            return b""
+
+    def send(self, message: bytes) -> bool:
+        """Send a message whole, or not at all; whether it is on its way."""
+        if self._left:
+            self._left = self._left[self._write(self._left) :]
+        if self._left:
+            return False
+        written = self._write(message)
+        if not written:
+            return False
+        self._left = message[written:]
+        return True
+
+    def _write(self, message: bytes) -> int:
+        if self._master is None:
+            return 0
+        try:
+            return os.write(self._master, message)
+        except BlockingIOError:
+            return 0

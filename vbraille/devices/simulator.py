@@ -1,0 +1,261 @@
+"""A device made of software: a controller at a pseudo-terminal, a hand, and what goes wrong.
+
+simulator = Simulator(info, parse_hand("device"), Port(), say=print)
+simulator.run(stopped=lambda: False)
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import select
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.carriage import Carriage
+from vbraille.devices.firmware import Controller
+from vbraille.devices.messages import Encoder
+from vbraille.devices.wire import DELIMITER, MOST_FRAME_BYTES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.devices.hand import Hand
+    from vbraille.devices.messages import Info
+    from vbraille.devices.pty import Port
+    from vbraille.devices.recorded import Recorded
+
+NS_PER_S: Final = 1_000_000_000
+# Between stalls, and how long it is unplugged.
+STALL_EVERY_S: Final = 1.0
+UNPLUGGED_S: Final = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Faults:
+    """How the device misbehaves.
+
+    Parameters
+    ----------
+    drop, corrupt
+        Chance of each message, either way, to be lost, or to have a bit turned over.
+    stall_s
+        How long it does nothing, `STALL_EVERY_S` after it last did so; 0 is never.
+        Its watchdog and its ramp, being hardware, go on.
+    unplug_every_s
+        How long it is plugged in before it is unplugged for `UNPLUGGED_S`; 0 is for ever.
+    seed
+        Of these chances.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    drop: float = 0.0
+    corrupt: float = 0.0
+    stall_s: float = 0.0
+    unplug_every_s: float = 0.0
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("drop", "corrupt"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 to 1")
+        for name in ("stall_s", "unplug_every_s"):
+            if not 0 <= getattr(self, name) < math.inf:
+                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 or more")
+
+
+class Spoiler:
+    """Loses and corrupts messages."""
+
+    def __init__(self, faults: Faults) -> None:
+        self._faults = faults
+        self._random = random.Random(faults.seed)
+        self._spoils = faults.drop > 0 or faults.corrupt > 0
+        self._begun = b""
+
+    def spoil(self, message: bytes) -> bytes:
+        """What becomes of a message; nothing if it is lost."""
+        if not self._spoils or message == DELIMITER:
+            return message
+        lost, corrupted = self._random.random(), self._random.random()
+        if lost < self._faults.drop:
+            return b""
+        if corrupted < self._faults.corrupt:
+            spoilt = bytearray(message)
+            spoilt[self._random.randrange(len(spoilt))] ^= 1 << self._random.randrange(8)
+            return bytes(spoilt)
+        return message
+
+    def spoil_stream(self, chunk: bytes) -> bytes:
+        """What becomes of bytes; a message is held back until it has come whole."""
+        if not self._spoils:
+            return chunk
+        *messages, begun = split(self._begun + chunk)
+        # What has no end is no message, and must not be held for ever.
+        self._begun, passed = (begun, b"") if len(begun) <= MOST_FRAME_BYTES else (b"", begun)
+        return b"".join(map(self.spoil, messages)) + passed
+
+    def forget(self) -> None:
+        """Forget what has begun to come."""
+        self._begun = b""
+
+
+def split(chunk: bytes) -> list[bytes]:
+    """Messages, each with its delimiter, and what is begun after them, perhaps nothing."""
+    *messages, begun = chunk.split(DELIMITER)
+    return [*(message + DELIMITER for message in messages), begun]
+
+
+class Simulator:
+    """A device at a port, in real time.
+
+    Parameters
+    ----------
+    info
+        What it is.
+    hand
+        What moves its carriage.
+    port
+        Where a host finds it.
+    say
+        Told what happens, a sentence each.
+    faults
+        How it misbehaves.
+
+    Attributes
+    ----------
+    controller : Controller
+        What it is driven by.
+    states_sent, states_dropped : int
+        Of those that were due since it was greeted.
+    """
+
+    def __init__(
+        self,
+        info: Info,
+        hand: Hand | Recorded,
+        port: Port,
+        *,
+        say: Callable[[str], None],
+        faults: Faults | None = None,
+    ) -> None:
+        self.controller = Controller(info)
+        self.states_sent = self.states_dropped = 0
+        span_mm = (info.columns - 1) * info.column_pitch_nm / 1e6
+        self._carriage = Carriage(hand, span_mm, info.travel_um / 1000)
+        self._port = port
+        self._say = say
+        self._faults = faults or Faults()
+        self._spoiler = Spoiler(self._faults)
+        self._begun_ns = time.monotonic_ns()
+        self._greetings = self._frames = self._trips = 0
+        self._tripped_at: int | None = None  # FRAMEs taken when it tripped
+        self._stalled = False
+        self._turn_us = round(STALL_EVERY_S * 1e6)  # when it stalls, or goes on
+        self._plug_us = round(self._faults.unplug_every_s * 1e6)  # when it is unplugged, or back
+
+    @property
+    def now_us(self) -> int:
+        """Its clock."""
+        return (time.monotonic_ns() - self._begun_ns) // 1000
+
+    def run(self, stopped: Callable[[], bool]) -> None:
+        """Be a device until told to stop; a late tick is skipped, not chased.
+
+        Raises
+        ------
+        InputError
+            If the port's link cannot be made again.
+        """
+        period_ns = NS_PER_S / self.controller.info.rate_hz
+        begun_ns, tick = time.monotonic_ns(), 0
+        while not stopped():
+            tick += 1
+            late_ns = self._listen_until(begun_ns + tick * period_ns)
+            missed = int(late_ns // period_ns)
+            if missed:
+                tick += missed
+                self.controller.skip(missed)
+                self.states_dropped += missed * self.controller.greeted
+            self._tick()
+
+    def _listen_until(self, deadline_ns: float) -> float:
+        """Take what the host sends until a time, at least once; how late it is then."""
+        while True:
+            left_s = max(deadline_ns - time.monotonic_ns(), 0.0) / NS_PER_S
+            port = self._port.descriptor
+            if self._stalled or port is None:
+                time.sleep(left_s)
+            elif select.select((port,), (), (), left_s)[0]:
+                self._take(self._spoiler.spoil_stream(self._port.read()))
+            late_ns = time.monotonic_ns() - deadline_ns
+            if late_ns >= 0:
+                return late_ns
+
+    def _take(self, chunk: bytes) -> None:
+        now_us, controller = self.now_us, self.controller
+        for answer in split(controller.receive(chunk, now_us))[:-1]:
+            self._send(answer)
+        if controller.greetings != self._greetings:
+            self._greetings, self._frames = controller.greetings, controller.frames
+            self._say("greeted by a host")
+            if controller.info.encoder is Encoder.INCREMENTAL:
+                self._carriage.go_back(now_us)
+            elif not controller.placed:
+                self._carriage.cross(controller.mark_mm, now_us)
+        elif controller.frames != self._frames:
+            self._frames = controller.frames
+            self._carriage.set_out()
+
+    def _tick(self) -> None:
+        now_us, controller = self.now_us, self.controller
+        *messages, _ = split(controller.tick(now_us, self._carriage.way_mm(now_us)))
+        if messages:  # the last is STATE
+            sent = [self._send(message) for message in messages][-1]
+            self.states_sent += sent
+            self.states_dropped += not sent
+        self._report_watchdog()
+        if self._faults.stall_s and now_us >= self._turn_us:
+            self._stalled = not self._stalled
+            turn_s = self._faults.stall_s if self._stalled else STALL_EVERY_S
+            self._turn_us = now_us + round(turn_s * 1e6)
+        if self._faults.unplug_every_s and now_us >= self._plug_us:
+            self._plug(now_us)
+
+    def _send(self, message: bytes) -> bool:
+        spoilt = b"" if self._stalled else self._spoiler.spoil(message)
+        return bool(spoilt) and self._port.send(spoilt)
+
+    def _report_watchdog(self) -> None:
+        controller = self.controller
+        if controller.trips != self._trips:
+            self._trips, self._tripped_at = controller.trips, controller.frames
+        if self._tripped_at is None:
+            return
+        if controller.frames != self._tripped_at:
+            self._say(f"watchdog: trip {self._trips}, and a frame before it was at rest")
+            self._tripped_at = None
+        elif controller.at_rest and controller.rest_after_us is not None:
+            after_ms = controller.rest_after_us / 1000
+            self._say(
+                f"watchdog: trip {self._trips}, at rest {after_ms:.1f} ms after the last frame"
+            )
+            self._tripped_at = None
+
+    def _plug(self, now_us: int) -> None:
+        """Unplug it, or plug it in again."""
+        if self._port.descriptor is None:
+            self._port.plug()
+            self._say(f"plugged in again: {self._port.path}")
+            self._plug_us = now_us + round(self._faults.unplug_every_s * 1e6)
+        else:
+            self._port.unplug()
+            self.controller.hang_up()
+            self._spoiler.forget()
+            self._say("unplugged")
+            self._plug_us = now_us + round(UNPLUGGED_S * 1e6)

@@ -1,0 +1,125 @@
+"""What a builder wants to know of a device: its actuators, its rate, its round trip."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.engine.engine import LocalEngine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.devices import Device
+    from vbraille.engine.clock import Clock
+
+NS_PER_S = 1_000_000_000
+SWING_S = 0.25  # of one actuator, out and back
+_PATIENCE_S = 0.25  # with a frame that is never acknowledged
+_LOOK_NS = 50_000
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """How a rate was held.
+
+    Parameters
+    ----------
+    ticks, late
+        Done, and missed.
+    work_us
+        Read, render and write: median and 99 %.
+    """
+
+    ticks: int
+    late: int
+    work_us: tuple[float, float]
+
+
+def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
+    """Swing one actuator after the other, out and back without a jump; rows and columns from 0.
+
+    Each is yielded before it swings, so that it can be said.
+
+    Raises
+    ------
+    DeviceError
+        If the device is gone.
+    """
+    info = device.info
+    steps = round(SWING_S * info.rate_hz)
+    frame = np.zeros((info.rows, info.columns))
+    for row, column in np.ndindex(frame.shape):
+        yield row, column
+        due_ns = clock.now_ns()
+        for step in range(1, steps + 1):
+            frame[row, column] = math.sin(math.pi * step / steps) ** 2 if step < steps else 0.0
+            due_ns += round(NS_PER_S / info.rate_hz)
+            clock.sleep_until_ns(due_ns)
+            device.read()
+            device.write(frame)
+
+
+class _Breath:
+    """A picture that swells and sinks with each frame, wherever the carriage is."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._step = 2 * math.pi / rate_hz
+        self._phase = 0.0
+
+    def frame(self, _x_mm: float, out: NDArray[np.float64]) -> None:
+        self._phase += self._step
+        out.fill(0.5 - 0.5 * math.cos(self._phase))
+
+
+def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
+    """Drive the device at its rate for so long.
+
+    Raises
+    ------
+    DeviceError
+        If the device is gone.
+    """
+    rate_hz = device.info.rate_hz
+    engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
+    engine.loop.show(_Breath(rate_hz))
+    engine.loop.warm_up()
+    engine.loop.restart_clock()
+    work_us = []
+    while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
+        work_us.append(engine.poll()["work_ns"] / 1e3)
+    engine.loop.fade_to_rest()
+    median, most = np.percentile(np.concatenate(work_us), (50, 99))
+    return Rate(engine.tally.ticks, engine.tally.late, (float(median), float(most)))
+
+
+def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float64]:
+    """Time from a frame until the device has said that it has it, in ms, one by one.
+
+    Returns
+    -------
+    float64[n]
+        As many as were acknowledged; none if the device does not do that.
+
+    Raises
+    ------
+    DeviceError
+        If the device is gone.
+    """
+    frame = np.zeros((device.info.rows, device.info.columns))
+    taken = []
+    for _ in range(count):
+        device.write(frame)
+        give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
+        while device.acknowledged_ns is None and clock.now_ns() < give_up_ns:
+            clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
+            device.read()
+        if device.acknowledged_ns is None:
+            break
+        taken.append(device.acknowledged_ns / 1e6)
+    return np.array(taken)
