@@ -24,6 +24,9 @@ test: .venv/tests
 	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render
 
 bench: .venv/tests
+	@command -v cyclictest >/dev/null || { set -e; \
+	  echo 'Installing from Debian: rt-tests (cyclictest, which the engine is measured against)'; \
+	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq rt-tests; }
 	$(BIN)/python -m tests.benchmarks
 
 format: .venv/tests

@@ -1,8 +1,13 @@
-"""Print the README's table of speeds."""
+"""Print the README's table of speeds, or the parts of it that are named."""
 
-from tests.benchmarks import bench_render, bench_text
+import sys
+from importlib import import_module
 
+PARTS = ("render", "text", "wire", "engine", "faults")
+
+if unknown := set(sys.argv[1:]) - set(PARTS):
+    sys.exit(f"there is no benchmark {', '.join(sorted(unknown))}; there is {', '.join(PARTS)}")
 print("| what | bar | got |\n|---|---|---|")
-for module in (bench_render, bench_text):
-    for result in module.run():
+for part in sys.argv[1:] or PARTS:
+    for result in import_module(f"tests.benchmarks.bench_{part}").run():
         print(result.row(), flush=True)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tests.benchmarks import round_trip
 from tests.benchmarks.timing import Result, vbraille
 from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 BLOCKS = 12
 BLOCK_S = 5.0
 LONG_S = 600.0
+ROUND_TRIP_S = 60.0
 _SETTLED_S = 30.0
 # Longer than any lateness: beyond it cyclictest only counts.
 _HISTOGRAM_US = 100_000
@@ -51,6 +53,7 @@ def run() -> Iterator[Result]:
     if shutil.which("cyclictest") is None:
         raise SystemExit("the engine is measured against cyclictest; apt-get install rt-tests")
     yield from _lateness()
+    yield _round_trip()
     yield from _long_run()
 
 
@@ -155,6 +158,24 @@ def simulator(*options: str) -> Iterator[tuple[str, subprocess.Popen]]:
                 yield f"serial:{link}", process
             finally:
                 process.terminate()
+
+
+def _round_trip() -> Result:
+    with tempfile.TemporaryDirectory() as folder:
+        link = str(Path(folder) / "vb0")
+        command = [sys.executable, "-m", "tests.benchmarks.round_trip", link, str(ROUND_TRIP_S)]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as device:
+            assert device.stdout is not None
+            device.stdout.readline()
+            with Host(f"serial:{link}", round_trip.INFO, 1) as host:
+                host.show(round_trip.dot(), 1, 20.0)
+                _, median, high = map(float, device.stdout.readline().split())
+    return Result(
+        "position at the device to the frame for it back at the device, p50 and p99",
+        "≤ 1.0 ms, ≤ 2 ms",
+        f"{median:.2f} ms, {high:.2f} ms",
+        median <= 1.0 and high <= 2.0,
+    )
 
 
 def _long_run() -> Iterator[Result]:

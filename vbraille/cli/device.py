@@ -12,7 +12,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
 from vbraille.devices import open_device
 from vbraille.devices.base import Placing
-from vbraille.engine.checkup import hold_rate, round_trips_ms, swing_each
+from vbraille.engine.checkup import hold_rate, round_trips_ms, swing_each, warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError
@@ -35,6 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
     """List, describe or check."""
     if arguments.action == "list":
         return _list()
+    if arguments.action == "check":
+        with EAR.at_once():
+            warm_up()
     with open_device(arguments.spec, _wanted(arguments)) as device:
         _describe(device.info)
         if arguments.action == "info":

@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
             _say(f"port: {port.path}")
             if arguments.link is not None:
                 _say(f"link: {arguments.link}")
-            _go_real_time()
+            go_real_time()
             simulator.run(stopped=lambda: EAR.heard)
         finally:
             port.unplug()
@@ -73,7 +73,8 @@ def _info(arguments: argparse.Namespace) -> Info:
         raise InputError(str(error)) from None
 
 
-def _go_real_time() -> None:
+def go_real_time() -> None:
+    """Be scheduled before the host, if the system allows it."""
     with suppress(OSError):
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
     gc.collect()

@@ -1,7 +1,7 @@
 """Device specs, ``KIND:ADDRESS``, to devices.
 
 A kind is an entry point in the group ``vbraille.devices``: a function that takes
-the address and the `DeviceInfo` that the page was laid out for, and gives an
+the address and the `DeviceInfo` that the page was laid out for, or None, and gives an
 opened `vbraille.devices.Device`. Packages of other builders join the same way.
 """
 
@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from vbraille.devices.base import Device, DeviceInfo
 
 GROUP = "vbraille.devices"
+# By how much a device's pitch may differ from the page's.
+PITCH_TOLERANCE = 0.01
 
 
-def open_device(spec: str, wanted: DeviceInfo) -> Device:
+def open_device(spec: str, wanted: DeviceInfo | None) -> Device:
     """Open the device of a spec.
 
     Parameters
@@ -26,12 +28,12 @@ def open_device(spec: str, wanted: DeviceInfo) -> Device:
     spec
         ``sim`` or ``KIND:ADDRESS``.
     wanted
-        The actuators and the travel that the page was laid out for.
+        The actuators and the travel that the page was laid out for; None if any will do.
 
     Raises
     ------
     InputError
-        If there is no such kind, or the device has other actuators.
+        If there is no such kind, or the device has other actuators or is too slow.
     DeviceError
         If it cannot be opened.
     """
@@ -41,11 +43,34 @@ def open_device(spec: str, wanted: DeviceInfo) -> Device:
         kinds = ", ".join(sorted(entry_points(group=GROUP).names))
         raise InputError(f"there is no device kind {kind!r}; there is {kinds}")
     device = next(iter(found)).load()(address, wanted)
-    info = device.info
+    if wanted is not None:
+        try:
+            _check_fit(device.info, wanted)
+        except InputError:
+            device.close()
+            raise
+    return device
+
+
+def _check_fit(info: DeviceInfo, wanted: DeviceInfo) -> None:
+    """Raise InputError if a device is another than the page and the loop are made for."""
     if (info.rows, info.columns) != (wanted.rows, wanted.columns):
-        device.close()
         raise InputError(
             f"{info.name} has {info.rows} × {info.columns} actuators and the page is for "
             f"{wanted.rows} × {wanted.columns}; choose another --model or --device"
         )
-    return device
+    for what, lines, pitch_mm, wanted_mm in (
+        ("columns", info.columns, info.column_pitch_mm, wanted.column_pitch_mm),
+        ("rows", info.rows, info.row_pitch_mm, wanted.row_pitch_mm),
+    ):
+        # One row or column has no pitch.
+        if lines > 1 and abs(pitch_mm - wanted_mm) > PITCH_TOLERANCE * wanted_mm:
+            raise InputError(
+                f"the {what} of {info.name} are {pitch_mm:g} mm apart and the page is for "
+                f"{wanted_mm:g} mm; choose another --model or --device"
+            )
+    if info.rate_hz < wanted.rate_hz:
+        raise InputError(
+            f"{info.name} is made for {info.rate_hz:g} frames a second and {wanted.rate_hz:g} "
+            f"are asked for; choose --rate {info.rate_hz:g} or less"
+        )

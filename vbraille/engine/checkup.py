@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.engine.engine import LocalEngine
+from vbraille.render import kernels
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,6 +66,12 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
             device.write(frame)
 
 
+def warm_up() -> None:
+    """Compile what `hold_rate` calls, before there is a device whose watchdog could trip."""
+    out = np.zeros((1, 1))
+    kernels.blend(out, out, 0.0, out)
+
+
 class _Breath:
     """A picture that swells and sinks with each frame, wherever the carriage is."""
 
@@ -88,7 +95,6 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     rate_hz = device.info.rate_hz
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
     engine.loop.show(_Breath(rate_hz))
-    engine.loop.warm_up()
     engine.loop.restart_clock()
     work_us = []
     while engine.tally.ticks + engine.tally.late < seconds * rate_hz:

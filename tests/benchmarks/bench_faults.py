@@ -1,0 +1,166 @@
+"""Cables pulled and processes killed: what the actuators do, by the controller's clock."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.benchmarks.bench_engine import INFO, line, simulator
+from tests.benchmarks.timing import Result
+from vbraille.engine.host import Host
+from vbraille.engine.ring import Flag
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    import numpy as np
+
+TIMES = 50
+UNPLUGS = 100
+LIMIT_MS = 71.0
+BACK_S = 1.0
+_PATIENCE_S = 30.0
+
+# Says when the actuators have come to rest, and how long after the last frame that was valid.
+_CONTROLLER = """
+import sys
+from tests.benchmarks.bench_engine import INFO
+from vbraille.cli.simulate import go_real_time
+from vbraille.devices.firmware import describe
+from vbraille.devices.hand import Sweep
+from vbraille.devices.messages import Encoder
+from vbraille.devices.pty import Link, Port
+from vbraille.devices.simulator import Simulator
+simulator = Simulator(
+    describe(INFO, Encoder.ABSOLUTE), Sweep(60.0), Port(Link(sys.argv[1])), say=lambda _: None
+)
+controller, seen = simulator.controller, 0
+def stopped():
+    global seen
+    if controller.at_rest and controller.frames != seen:
+        seen = controller.frames
+        print(controller.rest_after_us / 1000, flush=True)
+    return False
+print("ready", flush=True)
+go_real_time()
+simulator.run(stopped)
+"""
+_PARENT = """
+import sys, time
+from tests.benchmarks.bench_faults import reading
+with reading(sys.argv[1]) as host:
+    print(host.process_id, flush=True)
+    time.sleep(600)
+"""
+
+
+def run() -> Iterator[Result]:
+    yield _unplugged()
+    with tempfile.TemporaryDirectory() as folder:
+        link = str(Path(folder) / "vb0")
+        with subprocess.Popen(
+            [sys.executable, "-c", _CONTROLLER, link], stdout=subprocess.PIPE, text=True
+        ) as controller:
+            assert controller.stdout is not None
+            controller.stdout.readline()
+
+            def rested_ms() -> float:
+                assert select.select([controller.stdout], [], [], _PATIENCE_S)[0]
+                return float(controller.stdout.readline())
+
+            try:
+                for who, kill in (("host", _host), ("parent", _parent), ("both", _both)):
+                    taken = [kill(f"serial:{link}", rested_ms) for _ in range(TIMES)]
+                    yield Result(
+                        f"kill -9 of {who}, {TIMES} times: last valid frame to rest, at most",
+                        f"≤ {LIMIT_MS:g} ms",
+                        f"{max(taken):.1f} ms",
+                        max(taken) <= LIMIT_MS,
+                    )
+            finally:
+                controller.kill()
+
+
+@contextmanager
+def reading(spec: str) -> Iterator[Host]:
+    """A host with actuators off their rest."""
+    with Host(spec, INFO, 26) as host:
+        host.show(line(), 1, 280.0)
+        _until(host, lambda ticks: bool(ticks["frame"][-1].any()) and ticks["tick"][-1] > 300)
+        yield host
+
+
+def _until(host: Host, enough: Callable[[np.ndarray], bool]) -> None:
+    end_s = time.monotonic() + _PATIENCE_S
+    while True:
+        ticks = host.poll()
+        if ticks.size and enough(ticks):
+            return
+        assert time.monotonic() < end_s
+        time.sleep(0.005)
+
+
+def _host(spec: str, rested_ms: Callable[[], float]) -> float:
+    with reading(spec) as host:
+        assert host.process_id is not None
+        os.kill(host.process_id, signal.SIGKILL)
+        return rested_ms()
+
+
+def _parent(spec: str, rested_ms: Callable[[], float], both: bool = False) -> float:
+    command = [sys.executable, "-c", _PARENT, spec]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        host = int(parent.stdout.readline())
+        ended = os.pidfd_open(host)
+        if both:
+            os.kill(host, signal.SIGKILL)
+        parent.kill()
+        taken = rested_ms()
+        assert select.select([ended], [], [], _PATIENCE_S)[0]
+        os.close(ended)
+        return taken
+
+
+def _both(spec: str, rested_ms: Callable[[], float]) -> float:
+    return _parent(spec, rested_ms, both=True)
+
+
+def _unplugged() -> Result:
+    back_s: list[float] = []
+    with simulator("--unplug-every", "0.7s") as (spec, device), reading(spec) as host:
+        assert device.stdout is not None
+        begun = _descriptors(host)
+        for said in device.stdout:
+            if not said.startswith("plugged in again"):
+                continue
+            plugged_s = time.monotonic()
+            host.poll()
+            _until(
+                host,
+                lambda ticks: (
+                    not ticks["flags"][-1] & Flag.SILENT and bool(ticks["frame"][-1].any())
+                ),
+            )
+            back_s.append(time.monotonic() - plugged_s)
+            if len(back_s) == UNPLUGS:
+                break
+        leaked = _descriptors(host) - begun
+    return Result(
+        f"unplugged and plugged in again, {UNPLUGS} times: reading again after, at most",
+        f"≤ {BACK_S:g} s, no descriptor leaked",
+        f"{max(back_s):.2f} s, {leaked} leaked",
+        max(back_s) <= BACK_S and leaked <= 0,
+    )
+
+
+def _descriptors(host: Host) -> int:
+    return len(list(Path(f"/proc/{host.process_id}/fd").iterdir()))

@@ -1,0 +1,178 @@
+"""Reading on a device at a serial line: the whole path, pseudo-terminal and processes included."""
+
+import os
+import re
+import signal
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.cli import program
+from tests.cli.program import Terminal
+
+TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
+
+
+@pytest.fixture
+def text(tmp_path):
+    path = tmp_path / "text.txt"
+    path.write_text(TEXT)
+    return path
+
+
+@contextmanager
+def simulated(tmp_path, *options):
+    """A simulated device; the spec by which it is read on, and its process."""
+    link = tmp_path / "vb0"
+    process = program.start("simulate", "--link", link, "--hand", "sweep:400", *options, text=True)
+    try:
+        while not process.stdout.readline().startswith("link: "):
+            assert process.poll() is None
+        yield f"serial:{link}", process
+    finally:
+        process.terminate()
+        process.communicate()
+
+
+def lines(said):
+    return [line for line in said.splitlines() if line.startswith("line:")]
+
+
+def host_of(terminal):
+    """Process of the loop: the child of the program at a terminal."""
+    pid = terminal.process.pid
+    return int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+
+
+def test_a_text_is_read_to_its_end(tmp_path, text):
+    with simulated(tmp_path) as (spec, device):
+        done = program.run("read", text, "--device", spec)
+        assert done.returncode == 0, done.stderr
+        assert lines(done.stdout) == ["line: 1", "line: 2", "line: 3"]
+        assert done.stdout.splitlines()[-1].startswith("summary: lines 3,")
+        device.send_signal(signal.SIGTERM)
+        told = device.communicate()[0]
+    assert "greeted by a host" in told
+    assert int(re.search(r"frames (\d+)", told)[1]) > 1000
+    assert "Traceback" not in done.stderr
+
+
+def test_an_unplugged_device_is_read_on_in_place_when_it_is_back(tmp_path, text):
+    with simulated(tmp_path, "--unplug-every", "1s") as (spec, device):
+        done = program.run("read", text, "--device", spec)
+        assert done.returncode == 0, done.stderr
+        assert lines(done.stdout) == ["line: 1", "line: 2", "line: 3"]
+        device.send_signal(signal.SIGTERM)
+        told = device.communicate()[0]
+    assert "plugged in again" in told
+    assert "device: unplugged; plug it in again and reading goes on" in done.stdout
+    assert "device: back" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+def test_a_device_is_shown_its_left_stop_by_a_key(tmp_path, text):
+    with (
+        simulated(tmp_path, "--encoder", "incremental") as (spec, _),
+        Terminal("read", text, "--device", spec, "--echo", "text") as terminal,
+    ):
+        terminal.until("place: move left to the stop, then press a key")
+        terminal.type("x")
+        terminal.until("place: known")
+        terminal.until("line: 2")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_a_device_that_has_passed_its_mark_is_read_on(tmp_path, text):
+    with simulated(tmp_path, "--encoder", "index") as (spec, _):
+        done = program.run("read", text, "--device", spec, "--lines", "1-2")
+    assert done.returncode == 0
+    assert lines(done.stdout) == ["line: 1", "line: 2"]
+
+
+def test_without_a_terminal_nobody_can_show_the_left_stop(tmp_path, text):
+    with simulated(tmp_path, "--encoder", "incremental") as (spec, _):
+        done = program.run("read", text, "--device", spec)
+    assert done.returncode == 2
+    assert "left stop" in done.stderr
+    assert "read at a terminal" in done.stderr
+
+
+def test_a_host_that_dies_is_said_and_begun_again_when_asked(text):
+    arguments = ("--hand", "sweep:5", "--echo", "text")
+    with Terminal("read", text, *arguments) as terminal:
+        terminal.until("h says the keys")
+        os.kill(host_of(terminal), signal.SIGKILL)
+        terminal.until(
+            r"fault: the process that drives the device has ended \(killed by signal 9\)"
+        )
+        terminal.type(" ")
+        terminal.until("reading")
+        terminal.type("n")
+        terminal.until("line: 2")
+        terminal.type("q")
+        assert terminal.end() == 0
+    assert "summary: lines 2," in terminal.printed
+
+
+def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
+    process = program.start("read", text, "--hand", "sweep:5", text=True)
+    process.stdout.readline()
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    os.kill(int(children.read_text().split()[0]), signal.SIGKILL)
+    said = process.communicate(timeout=program.PATIENCE_S)[1]
+    assert process.returncode == 1
+    assert said.splitlines()[-1] == (
+        "vbraille: the process that drives the device has ended (killed by signal 9)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
+        (("--rate", "2000"), "choose --rate 1000 or less"),
+    ],
+)
+def test_a_device_that_does_not_fit_the_page(tmp_path, text, options, sentence):
+    with simulated(tmp_path) as (spec, _):
+        done = program.run("read", text, "--device", spec, *options)
+    assert done.returncode == 2
+    assert sentence in done.stderr
+    assert len(done.stderr.splitlines()) == 2  # the line's width, and the sentence
+
+
+def test_a_port_that_is_not_there(text):
+    done = program.run("read", text, "--device", "serial:/dev/nothing")
+    assert done.returncode == 2
+    assert "there is no port /dev/nothing" in done.stderr
+
+
+def test_device_info_and_check(tmp_path):
+    with simulated(tmp_path, "--model", "vbd") as (spec, _):
+        told = program.run("device", "info", spec)
+        assert told.returncode == 0
+        assert told.stdout.splitlines()[:2] == ["name: simulated VBD", "actuators: 1 row of 12"]
+        other = program.run("device", "info", spec, "--model", "stress2")
+        assert other.returncode == 2
+        checked = program.run("device", "check", spec)
+    said = checked.stdout.splitlines()
+    swung = [line for line in said if line.startswith("actuator: ")]
+    assert swung == [f"actuator: row 1, column {n}" for n in range(1, 13)]
+    assert re.search(r"^rate: 1000 Hz, \d+ of \d+ ticks late$", checked.stdout, re.MULTILINE)
+    assert re.search(r"^round trip: median \d+\.\d\d ms, ", checked.stdout, re.MULTILINE)
+    assert "corrupt" in checked.stdout or "bad CRC: 0" in checked.stdout
+    # The machine at hand may stall: what the verdict is, is not tested; that there is one, is.
+    assert said[-1].startswith("verdict: ")
+    assert checked.returncode == (0 if said[-1] == "verdict: fit to be read on" else 1)
+
+
+def test_device_list_and_a_simulated_device_without_a_model():
+    listed = program.run("device", "list")
+    assert listed.returncode == 0
+    assert all(line.startswith("port: ") for line in listed.stdout.splitlines())
+    assert listed.stdout
+    done = program.run("device", "info", "sim")
+    assert done.returncode == 2
+    assert "--model" in done.stderr

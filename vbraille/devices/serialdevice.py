@@ -1,0 +1,299 @@
+"""A device on a serial line, by docs/wire-protocol.md.
+
+The conversation is here: silence, loss and return, and what is said
+of them. `openserial` begins it. Its parts are `serialport` (bytes), `wire`
+(messages), `place` (counts to mm) and `drive` (deflections to levels).
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from enum import Enum, auto
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille.devices.base import Device, Sample
+from vbraille.devices.delivery import Delivery
+from vbraille.devices.drive import Drive
+from vbraille.devices.greeting import HELLO, info_of
+from vbraille.devices.messages import (
+    HELLO_PERIOD_MS,
+    LOST_MS,
+    NOTICES,
+    SILENCE_MS,
+    WATCHDOG_MS,
+    Error,
+    Info,
+    Rest,
+    State,
+    Watchdog,
+)
+from vbraille.devices.place import DeviceTime, Place
+from vbraille.devices.serialport import DRAIN_MS
+from vbraille.devices.wire import DELIMITER, OtherVersion, encode, unwrap
+from vbraille.errors import DeviceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.devices.base import DeviceInfo
+    from vbraille.devices.greeting import Greeted
+    from vbraille.devices.serialport import SerialPort
+    from vbraille.devices.wire import Event
+
+# Frames without anything to feel for so long, and there is nothing to show: no gap between words.
+IDLE_MS: Final = 5000
+_NS_PER_MS = 1_000_000
+_REST = encode(Rest())
+_U16 = 0xFFFF
+
+
+class _Link(Enum):
+    GREETING = auto()  # HELLO was sent, or is due; INFO has not come
+    LIVE = auto()
+    SILENT = auto()  # STATE is missing, but not for long enough to begin again
+    STRANGER = auto()  # what came back is another device: nothing is said to it
+    GONE = auto()
+
+
+class SerialDevice(Device):
+    """A device that has answered the handshake.
+
+    Parameters
+    ----------
+    port
+        Its line.
+    greeted
+        What it answered.
+    now_ns, pause
+        The host's clock, and how to wait for so many seconds.
+    """
+
+    def __init__(
+        self,
+        port: SerialPort,
+        greeted: Greeted,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        pause: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._port = port
+        self._now_ns = now_ns
+        self._pause = pause
+        self._decoder = greeted.decoder
+        self._info = info_of(greeted.info)
+        self._notes: list[str] = []
+        self._time = DeviceTime()
+        self._away = False  # since a note said so, until another says that it is back
+        self._sequence = 0  # of the last FRAME
+        self._sent_ns: int | None = None  # when the one was that is not acknowledged
+        self._unsent = self._missed = self._trips_before = self._reconnections = 0
+        self._losses = port.losses
+        self._delivery = Delivery()
+        self._begin(greeted.info, now_ns())
+        self._take(greeted.events, now_ns())
+
+    @property
+    def info(self) -> DeviceInfo:
+        """What the device said of itself first."""
+        return self._info
+
+    def set_zero(self) -> None:
+        """Take it that the carriage is at the left stop now: the reader says so."""
+        self._place.set_zero()
+        self.placing = self._place.placing
+
+    def take_notes(self) -> Sequence[str]:
+        """What there is to say to the reader since the last call."""
+        notes, self._notes = self._notes, []
+        return notes
+
+    def counts(self) -> Mapping[str, int]:
+        """What went wrong so far."""
+        return {
+            "frames not sent": self._unsent + self._port.lost,
+            "states missed": self._missed,
+            "watchdog trips": self._trips_before + self._delivery.trips,
+            "reconnections": self._reconnections,
+            **{str(kind): number for kind, number in self._decoder.dropped.items()},
+        }
+
+    def read(self) -> Sample | None:
+        """Newest sample since the last call, or None; never waits.
+
+        Raises
+        ------
+        DeviceError
+            If the device says that it cannot go on.
+        """
+        now_ns = self._now_ns()
+        chunk = self._port.read()
+        if self._port.losses != self._losses:
+            self._losses = self._port.losses
+            self._link = _Link.GONE
+            self._note_away("device: unplugged; plug it in again and reading goes on")
+        if self._port.gone:
+            return None
+        if self._link is _Link.GONE:
+            self._decoder.feed(DELIMITER)  # what was begun will not be ended
+            self._greet(now_ns)
+        sample = self._take(self._decoder.feed(chunk), now_ns) if chunk else None
+        self._mind_silence(now_ns)
+        return sample
+
+    def _take(self, events: Sequence[Event], now_ns: int) -> Sample | None:
+        sample = None
+        for event in events:
+            if isinstance(event, State):
+                if self._link in (_Link.LIVE, _Link.SILENT):
+                    sample = self._take_state(event, now_ns)
+            elif isinstance(event, Info | OtherVersion):
+                if self._link is _Link.GREETING and self._asked:
+                    self._take_info(event, now_ns)
+            elif self._link not in (_Link.LIVE, _Link.SILENT):
+                pass  # of an earlier conversation
+            elif isinstance(event, Watchdog):
+                self._delivered(self._delivery.take_watchdog(event, now_ns), now_ns)
+            elif isinstance(event, Error):
+                if event.code < NOTICES:
+                    raise DeviceError(f"{self._info.name}: {event.text or f'error {event.code}'}")
+                self._notes.append(f"device: {event.text or f'notice {event.code}'}")
+        return sample
+
+    def _take_state(self, state: State, now_ns: int) -> Sample | None:
+        self._heard_ns = now_ns
+        if self._link is _Link.SILENT:
+            self._link = _Link.LIVE
+            self.rested += 1
+        if self._away:
+            self._away = False
+            self._notes.append("device: back")
+        if state.faulty:  # its ERROR, which says why, was lost
+            raise DeviceError(f"{self._info.name} has a fault; switch it off and on, and try again")
+        if self._state_sequence is not None:
+            gap = unwrap(state.sequence, self._state_sequence, 16) - self._state_sequence - 1
+            self._missed += max(gap, 0)
+        self._state_sequence = state.sequence
+        self._delivered(self._delivery.take_state(state, now_ns), now_ns)
+        if self._sent_ns is not None and state.frame_sequence == self._sequence:
+            self.acknowledged_ns = now_ns - self._sent_ns
+            self._sent_ns = None
+        x_mm = self._place.x_mm(state)
+        self.placing = self._place.placing
+        time_ns = self._time.ns(state.time_us, now_ns)
+        return None if x_mm is None else Sample(time_ns, x_mm)
+
+    def _take_info(self, info: Info | OtherVersion, now_ns: int) -> None:
+        if isinstance(info, OtherVersion):
+            found = f"a device of version {info.version} of the protocol"
+        elif replace(info_of(info), name=self._info.name) != self._info:
+            found = f"another device, {info.name},"
+        else:
+            self._reconnections += 1
+            self.rested += 1
+            self._begin(info, now_ns)
+            return
+        self._link = _Link.STRANGER
+        self._away = True
+        self._notes.append(
+            f"device: {found} came back; plug in {self._info.name} again and reading goes on"
+        )
+
+    def _begin(self, info: Info, now_ns: int) -> None:
+        """Begin a conversation; the device is at rest."""
+        self._link = _Link.LIVE
+        self._asked = False
+        self._heard_ns = now_ns
+        self._state_sequence: int | None = None
+        self._place = Place(info)
+        self.placing = self._place.placing
+        self._time.restart()
+        self._drive = Drive(info, now_ns)
+        self._trips_before += self._delivery.trips
+        self._delivery = Delivery()
+        self._rest_frame = np.zeros((info.rows, info.columns))
+        self._idle(now_ns)
+
+    def _idle(self, now_ns: int) -> None:
+        """No FRAME is owed any more: the device is at rest, or told to go there."""
+        self._drive.rested(now_ns)
+        self._felt_ns = now_ns  # when a frame last had anything to feel
+        self._resting = False  # for want of anything to feel
+        self._told = False  # to rest, because it is silent
+        self._delivery.idle()
+
+    def _greet(self, now_ns: int) -> None:
+        """Begin to ask who is there."""
+        self._link = _Link.GREETING
+        self._asked = False
+        self._hello_ns = now_ns
+
+    def _mind_silence(self, now_ns: int) -> None:
+        silent_ns = now_ns - self._heard_ns
+        if self._link is _Link.LIVE and silent_ns >= SILENCE_MS * _NS_PER_MS:
+            self._link = _Link.SILENT
+            self._idle(now_ns)
+            self._note_away("device: silent, and sent to rest; reading goes on once it speaks")
+        if self._link is _Link.SILENT:
+            self._told = self._told or self._port.write(_REST)
+            if silent_ns >= LOST_MS * _NS_PER_MS:
+                self._greet(now_ns)
+        if self._link is _Link.GREETING and now_ns >= self._hello_ns and self._port.write(HELLO):
+            self._asked = True
+            self._hello_ns = now_ns + HELLO_PERIOD_MS * _NS_PER_MS
+
+    def _delivered(self, fades_in: bool, now_ns: int) -> None:
+        if not fades_in:
+            return
+        self.rested += 1
+        if self._delivery.held:
+            self._drive.rested(now_ns)
+            self._notes.append(
+                f"device: no frame reached it for {WATCHDOG_MS} ms, so it went to rest; "
+                f"reading goes on"
+            )
+
+    def _note_away(self, note: str) -> None:
+        if not self._away:
+            self._notes.append(note)
+        self._away = True
+
+    def _send(self, frame: NDArray[np.float64]) -> None:
+        self.acknowledged_ns = self._sent_ns = None
+        now_ns = self._now_ns()
+        if self._link is not _Link.LIVE or not self._place.known:
+            self._drive.rested(now_ns)
+            return
+        if self._delivery.held:
+            frame = self._rest_frame
+        elif frame.any():
+            if self._resting:
+                self._idle(now_ns)
+            self._felt_ns = now_ns
+        elif self._resting:
+            return
+        elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS and not self._drive.behind:
+            if self._port.write(_REST):
+                self._idle(now_ns)
+                self._resting = True
+            return
+        sequence = (self._sequence + 1) & _U16
+        if not self._port.write(self._drive.frame(sequence, frame, now_ns)):
+            self._unsent += not self._port.gone
+            return
+        self._sequence, self._sent_ns = sequence, now_ns
+        self._drive.sent(now_ns)
+        self._delivery.sent(sequence, now_ns)
+
+    def _release(self) -> None:
+        try:
+            if self._link is not _Link.STRANGER:
+                for _ in range(DRAIN_MS):
+                    if self._port.write(_REST) or self._port.gone:
+                        break
+                    self._pause(0.001)
+        finally:
+            self._port.close(self._pause)
