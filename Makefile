@@ -21,7 +21,7 @@ test: .venv/tests
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --warnings
 	$(BIN)/pytest -n 2 --cov --cov-branch --cov-report=term
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \

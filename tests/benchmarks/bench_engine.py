@@ -37,14 +37,11 @@ _SETTLED_S = 30.0
 # Longer than any lateness: beyond it cyclictest only counts.
 _HISTOGRAM_US = 100_000
 _TRANSLATE = """
+from vbraille.page import Layout
 from vbraille.translate import Book, Document, Table
-book = Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb"))
 while True:
-    for n in range(40):
-        book.document.paragraph(n)
-        book.table.translate("All work and no play makes Jack a dull boy, said the translator.")
+    list(Layout(Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb")), 26).lines())
 """
-_SPIN = "while True: pass"
 
 INFO = device_info(STRESS2, STRESS2.geometry, 1000.0)
 

@@ -1,6 +1,9 @@
+import numpy as np
 import pytest
 
 from tests.engine.test_loop import info
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.errors import DeviceError
 
 
 @pytest.mark.parametrize(
@@ -23,3 +26,19 @@ def test_info_checks_itself(field, value):
 
 def test_span():
     assert info().span_mm == pytest.approx(10.8)
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32, np.float16])
+@pytest.mark.parametrize("bad", [1.001, 1.8, -0.001, -0.0001, np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_no_kind_of_frame_takes_a_bad_deflection_to_the_actuators(kind, bad, order):
+    device = SimulatedDevice(info())
+    good = np.full((6, 10), 0.5, kind, order)
+    good[0, 0], good[5, 9], good[3, 3] = 0.0, 1.0, -0.0
+    device.write(good)
+    for at in np.ndindex(good.shape):
+        frame = good.copy(order)
+        frame[at] = bad
+        with pytest.raises(DeviceError, match="not in"):
+            device.write(frame)
+    assert device.frames == 1

@@ -206,7 +206,7 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
         )
     for name, text in (
         ("stall", "do nothing for so long every second, such as 200ms"),
-        ("unplug-every", "be unplugged after so long, such as 5s; needs --link"),
+        ("unplug-every", "be unplugged so long after each greeting, such as 5s; needs --link"),
     ):
         parser.add_argument(f"--{name}", type=_duration, default=0.0, metavar="DURATION", help=text)
 

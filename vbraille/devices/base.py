@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from enum import Enum
+from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
 
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
+
+_DOUBLE = np.dtype(np.float64)
+_ONE = int(np.array(1.0).view(np.uint64))
+_largest = np.maximum.reduce
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +96,7 @@ class Sample(NamedTuple):
     x_mm: float
 
 
-class Placing(Enum):
+class Placing(IntEnum):
     """What a device waits for before it knows where its carriage is."""
 
     DONE = 0  # nothing: it knows
@@ -190,7 +194,7 @@ class Device(ABC):
                 f"{self.info.name} has {self.info.rows} × {self.info.columns} actuators; "
                 f"the frame has shape {frame.shape}"
             )
-        if not (frame.min() >= 0.0 and frame.max() <= 1.0):  # a NaN fails both
+        if not _in_range(frame):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
         self._send(frame)
 
@@ -217,3 +221,13 @@ class Device(ABC):
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _in_range(frame: NDArray[np.float64]) -> bool:
+    """Whether all of a frame is in [0, 1]."""
+    # The bits of such a double are a number from 0 to those of 1.0; a sign, an infinity and a NaN
+    # make it larger. So one look is enough, in a third of the time.
+    usual = frame.dtype is _DOUBLE and frame.flags.c_contiguous
+    if usual and _largest(frame.view(np.uint64), axis=None) <= _ONE:
+        return True
+    return bool(frame.min() >= 0.0 and frame.max() <= 1.0)

@@ -42,6 +42,11 @@ class Fixed:
     # Whether a value is something else in the message than on the wire.
     converts = True
 
+    @property
+    def any(self) -> bool:
+        """Whether all that its bytes can say is in range."""
+        return False
+
     def raw(self, value: Any) -> int:
         """Value as it is on the wire."""
         return value
@@ -72,6 +77,11 @@ class Number(Fixed):
     unit: str = ""
     converts = False
 
+    @property
+    def any(self) -> bool:
+        """Whether all that its bytes can say is in range; of a signed number never said."""
+        return self.low == 0 and self.high == 256 ** Struct(self.code).size - 1
+
     def check(self, name: str, value: int, _message: Message) -> None:
         """From `low` to `high`."""
         if not self.low <= value <= self.high:
@@ -85,6 +95,16 @@ class OptionalNumber(Number):
 
     none: int = 0
     converts = True
+
+    @property
+    def any(self) -> bool:
+        """Whether all that its bytes can say is in range, or none."""
+        half = 128 * 256 ** (Struct(self.code).size - 1)
+        return self.code.islower() and (self.none, self.low, self.high) == (
+            -half,
+            1 - half,
+            half - 1,
+        )
 
     def raw(self, value: int | None) -> int:
         """`none` for None."""

@@ -148,7 +148,7 @@ class SerialDevice(Device):
         sample = None
         for event in events:
             if isinstance(event, State):
-                if self._link in (_Link.LIVE, _Link.SILENT):
+                if self._link is _Link.LIVE or self._link is _Link.SILENT:
                     sample = self._take_state(event, now_ns)
             elif isinstance(event, Info | OtherVersion):
                 if self._link is _Link.GREETING and self._asked:
@@ -267,21 +267,23 @@ class SerialDevice(Device):
         if self._link is not _Link.LIVE or not self._place.known:
             self._drive.rested(now_ns)
             return
-        if self._delivery.held:
-            frame = self._rest_frame
-        elif frame.any():
+        held = self._delivery.held
+        felt = self._drive.fill(self._rest_frame if held else frame, now_ns)
+        if held:
+            pass
+        elif felt:
             if self._resting:
                 self._idle(now_ns)
             self._felt_ns = now_ns
         elif self._resting:
             return
-        elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS and not self._drive.behind:
+        elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS:
             if self._port.write(_REST):
                 self._idle(now_ns)
                 self._resting = True
             return
         sequence = (self._sequence + 1) & _U16
-        if not self._port.write(self._drive.frame(sequence, frame, now_ns)):
+        if not self._port.write(self._drive.frame(sequence)):
             self._unsent += not self._port.gone
             return
         self._sequence, self._sent_ns = sequence, now_ns

@@ -44,7 +44,7 @@ class Faults:
         How long it does nothing, `STALL_EVERY_S` after it last did so; 0 is never.
         Its watchdog and its ramp, being hardware, go on.
     unplug_every_s
-        How long it is plugged in before it is unplugged for `UNPLUGGED_S`; 0 is for ever.
+        How long after a greeting it is unplugged, for `UNPLUGGED_S`; 0 is never.
     seed
         Of these chances.
 
@@ -157,7 +157,7 @@ class Simulator:
         self._tripped_at: int | None = None  # FRAMEs taken when it tripped
         self._stalled = False
         self._turn_us = round(STALL_EVERY_S * 1e6)  # when it stalls, or goes on
-        self._plug_us = round(self._faults.unplug_every_s * 1e6)  # when it is unplugged, or back
+        self._plug_us = 0  # when it is unplugged, or back
 
     @property
     def now_us(self) -> int:
@@ -203,6 +203,7 @@ class Simulator:
             self._send(answer)
         if controller.greetings != self._greetings:
             self._greetings, self._frames = controller.greetings, controller.frames
+            self._plug_us = now_us + round(self._faults.unplug_every_s * 1e6)
             self._say("greeted by a host")
             if controller.info.encoder is Encoder.INCREMENTAL:
                 self._carriage.go_back(now_us)
@@ -224,7 +225,12 @@ class Simulator:
             self._stalled = not self._stalled
             turn_s = self._faults.stall_s if self._stalled else STALL_EVERY_S
             self._turn_us = now_us + round(turn_s * 1e6)
-        if self._faults.unplug_every_s and now_us >= self._plug_us:
+        plugged = self._port.descriptor is not None
+        if (
+            self._faults.unplug_every_s
+            and now_us >= self._plug_us
+            and (controller.greeted or not plugged)
+        ):
             self._plug(now_us)
 
     def _send(self, message: bytes) -> bool:
@@ -252,7 +258,6 @@ class Simulator:
         if self._port.descriptor is None:
             self._port.plug()
             self._say(f"plugged in again: {self._port.path}")
-            self._plug_us = now_us + round(self._faults.unplug_every_s * 1e6)
         else:
             self._port.unplug()
             self.controller.hang_up()

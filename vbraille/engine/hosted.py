@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from vbraille.engine.mailbox import Mailbox
 
 _WARM_TICKS = 200
+_REHEARSED_TICKS = 50
 
 
 class Hosted:
@@ -103,6 +104,13 @@ def warm_up(info: DeviceInfo, extent: shared.Extent) -> None:
         loop.fade_to_rest()
 
 
+def rehearse(device: Device, rate_hz: float) -> None:
+    """Call once all that a driver does in a tick; the array rests meanwhile."""
+    loop = Loop(device, RealClock(), rate_hz=rate_hz)
+    for _ in range(_REHEARSED_TICKS):
+        loop.tick()
+
+
 def answer(**said: Any) -> None:
     """Say something to the parent; what it has no room for is lost."""
     with suppress(OSError):
@@ -123,10 +131,12 @@ def run(config: dict[str, Any], descriptor: int) -> None:
     os.close(descriptor)
     warm_up(wanted, extent)
     with open_device(config["device"], wanted) as device:
+        note = go_real_time()
+        rehearse(device, wanted.rate_hz)
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, extent, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
-        answer(ready=asdict(device.info), note=go_real_time())
+        answer(ready=asdict(device.info), note=note)
         os.set_blocking(sys.stdout.fileno(), False)
         try:
             loop.restart_clock()

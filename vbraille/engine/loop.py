@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from vbraille.devices.base import Placing
 from vbraille.engine.ring import Flag
 from vbraille.engine.tally import Tally
 from vbraille.engine.velocity import Velocity
@@ -36,7 +35,7 @@ JUMP_MM_S = 5_000.0
 SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
 _PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
-_PLACING = {Placing.DONE: 0, Placing.MARK: int(Flag.MARK), Placing.STOP: int(Flag.STOP)}
+_PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
 class Picture(Protocol):
@@ -164,11 +163,7 @@ class Loop:
         if picture is not self._shown:
             fade_ns = int(PAUSE_FADE_S * NS_PER_S) if self._paused else self._fade_ns
             self._change(now_ns, picture, fade_ns)
-        if picture is not None and self.x_mm is not None:
-            picture.frame(self.x_mm, self._target)
-        else:
-            self._target.fill(0.0)
-        self._write(now_ns)
+        self._write(now_ns, picture)
         self.tally.ticks += 1
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
@@ -284,11 +279,15 @@ class Loop:
         self._fading_ns = fade_ns
         self._faded_from_ns = now_ns
 
-    def _write(self, now_ns: int) -> None:
+    def _write(self, now_ns: int, picture: Picture | None) -> None:
         # The first tick of a change still sends what was there, the last one all of the new.
         since_ns = now_ns - self._faded_from_ns
-        if since_ns < self._fading_ns:
-            blend(self._held, self._target, since_ns / self._fading_ns, self.output)
+        fading = since_ns < self._fading_ns
+        out = self._target if fading else self.output
+        if picture is not None and self.x_mm is not None:
+            picture.frame(self.x_mm, out)
         else:
-            np.copyto(self.output, self._target)
+            out.fill(0.0)
+        if fading:
+            blend(self._held, out, since_ns / self._fading_ns, self.output)
         self.device.write(self.output)

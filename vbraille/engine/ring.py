@@ -73,7 +73,7 @@ class Ring:
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
         self.lost = 0
         self._size = size
-        self._published = np.frombuffer(buffer, np.int64, 1)
+        self._published = buffer[:_HEADER_BYTES].cast("q")
         self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
         self._frames = self._records["frame"]
         self._bytes = buffer[_HEADER_BYTES:]
@@ -100,11 +100,11 @@ class Ring:
 
     def drain(self) -> NDArray[np.void]:
         """Records since the last call, oldest first; `tick_dtype`[n]."""
-        end = int(self._published[0])
+        end = self._published[0]
         first = max(self._drained, end - self._size)
         ticks = self._records[np.arange(first, end) % self._size]
         # The slot after the last published one may be in the writing.
-        whole = max(first, int(self._published[0]) + 1 - self._size)
+        whole = max(first, self._published[0] + 1 - self._size)
         self.lost += min(whole, end) - self._drained
         self._drained = end
         return ticks[whole - first :]
