@@ -10,6 +10,9 @@ import pytest
 from tests.conftest import SEED
 from vbraille.translate import list_tables
 
+# Coverage would double their time, and others cover what these do.
+pytestmark = pytest.mark.no_cover
+
 PARTS = range(4)
 PATIENCE_S = 10.0
 CONTROLS = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f]")
@@ -79,7 +82,7 @@ ENCODINGS = sorted({*encodings.aliases.aliases.values(), "undefined", "idna", "u
 
 def test_any_bytes_as_a_text(call, text, rng):
     read = 0
-    for _ in range(500):
+    for _ in range(400):
         text.write_bytes(content(rng))
         options = ["--format", pick(rng, ["text", "unicode", "brf", "dots"])]
         if rng.random() < 0.4:
@@ -89,7 +92,7 @@ def test_any_bytes_as_a_text(call, text, rng):
         if rng.random() < 0.3:
             options += ["--travel", pick(rng, ["18", "40", "10000"])]
         read += check(call, "page", text, *options).code == 0
-    assert 100 < read < 500
+    assert 80 < read < 400
 
 
 # Of each option some values that can be used.
@@ -135,13 +138,17 @@ OPTIONS = {
 }
 
 
+# A reading starts a process: some are enough.
+COMMANDS = [*["page"] * 9, *["render"] * 6, *["tables"] * 3, "read"]
+
+
 def test_any_values_of_options(call, tmp_path, text, rng):
     text.write_text("one two\n\nthree\n")
     hand = tmp_path / "hand.csv"
     hand.write_text("0,-10\n0.005,5\n")  # a reading that takes no time
     done = 0
     for _ in range(250):
-        command = pick(rng, ["page", "page", "page", "render", "render", "read", "tables"])
+        command = pick(rng, COMMANDS)
         arguments = [command]
         if command != "tables":
             arguments += [text if rng.random() < 0.95 else pick(rng, ODD)]

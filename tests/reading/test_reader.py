@@ -22,7 +22,7 @@ class Bench:
     def __init__(self, text=TEXT, hand=None, tuning=STRESS2.tuning, width=20, **options):
         self.clock = ManualClock()
         self.device = Recording(self.clock, hand)
-        self.engine = LocalEngine(self.device, self.clock)
+        self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
         self.loop = self.engine.loop
         self.said: list[str] = []
         self.layout = Layout(Book(Document.from_text(text), Table("en-ueb-g2.ctb")), width)
@@ -39,7 +39,7 @@ class Bench:
         self.reader.start()
 
     def run(self, seconds=60.0):
-        for _ in range(int(seconds * 1000)):
+        for _ in range(int(seconds * 100)):
             if self.reader.done:
                 return
             self.reader.step(self.engine.poll())

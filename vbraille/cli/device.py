@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices import Device, DeviceInfo
 
-_RATE_S = 5.0
+_RATE_S = 3.0
 _ROUND_TRIPS = 500
 # More is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
 _MOST_ROUND_TRIP_MS = 4.0

@@ -240,7 +240,8 @@ class Host:
         """Why there is no host any more."""
         assert self._process is not None
         code = self._process.wait()
-        if self._fault is not None:
-            return self._fault
+        fault, self._fault = self._fault, None  # kept, it would keep all that raises it
+        if fault is not None:
+            return fault
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         return HostDiedError(f"the process that drives the device has ended ({how})")

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from vbraille.engine.mailbox import Mailbox
 
 _WARM_TICKS = 200
-_REHEARSED_TICKS = 50
+_REHEARSAL_S = 0.05
 
 
 class Hosted:
@@ -107,7 +107,7 @@ def warm_up(info: DeviceInfo, extent: shared.Extent) -> None:
 def rehearse(device: Device, rate_hz: float) -> None:
     """Call once all that a driver does in a tick; the array rests meanwhile."""
     loop = Loop(device, RealClock(), rate_hz=rate_hz)
-    for _ in range(_REHEARSED_TICKS):
+    for _ in range(max(2, round(_REHEARSAL_S * rate_hz))):
         loop.tick()
 
 
