@@ -605,11 +605,11 @@ def test_sequences_count_on_and_wrap(bench):
     sequences = [event.sequence for event in made.sent if isinstance(event, Frame)]
     assert sequences == list(range(1, len(sequences) + 1))
     device._sequence = 65_530  # as if so many had been sent
-    made.sent.clear()
     made.run(device, 20, frame)
     sequences = [event.sequence for event in made.sent if isinstance(event, Frame)]
+    sequences = sequences[sequences.index(65_531) :]
     assert sequences[:8] == [65_531, 65_532, 65_533, 65_534, 65_535, 0, 1, 2]
-    assert set(np.diff(sequences[8:])) == {1}
+    assert set(np.diff(sequences[5:])) == {1}
     device.close()
 
 
