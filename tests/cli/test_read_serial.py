@@ -71,6 +71,15 @@ def test_an_unplugged_device_is_read_on_in_place_when_it_is_back(tmp_path, text)
     assert "Traceback" not in done.stderr
 
 
+def test_what_was_lost_on_the_line_is_said_at_the_end(tmp_path, text):
+    with simulated(tmp_path, "--drop", "0.05", "--corrupt", "0.05") as (spec, _):
+        done = program.run("read", text, "--device", spec, "--lines", "1")
+    assert done.returncode == 0, done.stderr
+    said = done.stdout.splitlines()
+    assert said[-1].startswith("summary: lines 1,")
+    assert re.fullmatch(r"device: (frames not sent \d+, )?states missed \d+, .*bad .*", said[-2])
+
+
 def test_a_device_is_shown_its_left_stop_by_a_key(tmp_path, text):
     with (
         simulated(tmp_path, "--encoder", "incremental") as (spec, _),

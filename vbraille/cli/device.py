@@ -28,6 +28,7 @@ _ROUND_TRIPS = 500
 # More is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
 _MOST_ROUND_TRIP_MS = 4.0
 _MOST_LATE = 0.01  # of all ticks
+_MOST_FAULTS = 50  # of a kind: 1 % of some 5000 ticks
 _MARK_S = 60.0
 
 
@@ -135,7 +136,7 @@ def _faults(device: Device) -> list[str]:
     counts = device.counts()
     for name, count in counts.items():
         _say(f"{name}: {count}")
-    return [f"{name}: {count}" for name, count in counts.items() if count]
+    return [f"{name}: {count}" for name, count in counts.items() if count > _MOST_FAULTS]
 
 
 def _say(sentence: str) -> None:

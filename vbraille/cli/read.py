@@ -75,6 +75,9 @@ def run(arguments: argparse.Namespace) -> int:
         finally:
             EAR.close()
             host.close()
+    faults = ", ".join(f"{name} {count}" for name, count in host.counts.items() if count)
+    if faults:
+        _say(f"device: {faults}")
     _say(_summary(reader.lines, host.tally, rate_hz))
     return 0
 
