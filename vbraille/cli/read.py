@@ -69,11 +69,10 @@ def run(arguments: argparse.Namespace) -> int:
             echo=_echo(arguments.echo),
         )
         try:
-            with host:
-                _Reading(page, reader, host, keyboard, once=once).run()
-                EAR.close()  # so that the array goes to rest
+            host.start()
+            _Reading(page, reader, host, keyboard, once=once).run()
         finally:
-            EAR.close()
+            EAR.close()  # so that the array goes to rest
             host.close()
     faults = ", ".join(f"{name} {count}" for name, count in host.counts.items() if count)
     if faults:
