@@ -17,7 +17,7 @@ def pair(size):
 
 
 def append(ring, n):
-    fields = (10 * n, 20 * n, 3, 4, 5, 6, 7, int(Flag.PAUSED), n / 2, -n / 4, 8.0, 9.0)
+    fields = (10 * n, 20 * n, 3, 4, 5, 6, 7, int(Flag.PAUSED), n / 2, -n / 4, 8.0, 9.0, 0.5)
     ring.append(np.full(SHAPE, n / 1024), *fields)
 
 
@@ -30,7 +30,7 @@ def test_a_record_has_every_field_in_its_place():
     want = {
         "tick": 1, "time_ns": 10, "device_ns": 20, "lateness_ns": 3, "work_ns": 4, "late": 5,
         "overruns": 6, "line": 7, "flags": 1, "x_mm": 0.5, "speed_mm_s": -0.25,
-        "forward_mm": 8.0, "forward_s": 9.0,
+        "forward_mm": 8.0, "forward_s": 9.0, "share": 0.5,
     }  # fmt: skip
     assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want
     np.testing.assert_array_equal(tick["frame"], np.full(SHAPE, 1 / 1024, np.float32))

@@ -35,6 +35,7 @@ JUMP_MM_S = 5_000.0
 SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
 _PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
+_RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
@@ -114,6 +115,8 @@ class Loop:
         self._fade_ns = int(fade_s * NS_PER_S)
         self._fading_ns = self._fade_ns
         self._faded_from_ns = clock.now_ns() - self._fade_ns
+        self._share = 1.0
+        self._happened = 0  # flags of what this tick began with
         self._idle_ns = int(idle_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
@@ -154,10 +157,12 @@ class Loop:
         busy_ns = self.clock.busy_ns()
         lateness_ns = now_ns - self._deadline_ns
         followed = self.device.followed  # asked before the place, which is then the last one
+        self._happened = 0
         self._read(now_ns)
         if self.device.rested != self._rested:
             self._rested = self.device.rested
             self.output.fill(0.0)
+            self._happened |= _RESTED
             self._change(now_ns, self._shown, self._fade_ns)
         picture = self._wanted(now_ns)
         if picture is not self._shown:
@@ -214,7 +219,9 @@ class Loop:
     def _record(
         self, ring: Ring, now_ns: int, lateness_ns: int, work_ns: int, followed: bool
     ) -> None:
-        flags = _PLACING[self.device.placing]
+        flags = _PLACING[self.device.placing] | self._happened
+        if self._shown is None:
+            flags |= _RESTING
         if self._paused:
             flags |= _PAUSED
         if self._silent(now_ns):
@@ -236,6 +243,7 @@ class Loop:
             self.velocity.mm_s,
             tally.forward_mm,
             tally.forward_s,
+            self._share,
         )
 
     def _read(self, now_ns: int) -> None:
@@ -276,6 +284,7 @@ class Loop:
     def _change(self, now_ns: int, picture: Picture | None, fade_ns: int) -> None:
         np.copyto(self._held, self.output)
         self._shown = picture
+        self._happened |= _CHANGED
         self._fading_ns = fade_ns
         self._faded_from_ns = now_ns
 
@@ -288,6 +297,7 @@ class Loop:
             picture.frame(self.x_mm, out)
         else:
             out.fill(0.0)
+        self._share = since_ns / self._fading_ns if fading else 1.0
         if fading:
-            blend(self._held, out, since_ns / self._fading_ns, self.output)
+            blend(self._held, out, self._share, self.output)
         self.device.write(self.output)

@@ -33,8 +33,9 @@ _FIELDS = (
     ("speed_mm_s", "<f8"),
     ("forward_mm", "<f8"),  # way to the right so far, and the time that it took
     ("forward_s", "<f8"),
+    ("share", "<f8"),  # how much of a change has faded in: 1 is all
 )
-_PACK = struct.Struct("<9q4d").pack_into
+_PACK = struct.Struct("<9q5d").pack_into
 
 
 class Flag(IntFlag):
@@ -45,6 +46,9 @@ class Flag(IntFlag):
     FOLLOWED = 4  # a simulated hand has come to its end
     MARK = 8  # the device waits for its mark
     STOP = 16  # the device waits to be told that it is at the left stop
+    RESTING = 32  # nothing is shown, whatever the line
+    CHANGED = 64  # a fade begins here, from the frame before
+    RESTED = 128  # the device had gone to rest by itself: the frame before was rest
 
 
 def tick_dtype(shape: tuple[int, int]) -> np.dtype:
