@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import info, straight
+from vbraille.devices.hand import Sweep
 from vbraille.devices.simulated import APPROACH_MM_S, SimulatedDevice
 from vbraille.engine import ManualClock
 
@@ -53,6 +54,41 @@ def test_the_carriage_stops_at_its_ends(clock, device):
         clock.advance_ns(1_000_000)
     assert max(places) == pytest.approx(300 - SPAN_MM)
     assert min(places) == pytest.approx(-SPAN_MM)
+
+
+@pytest.mark.parametrize(
+    ("columns", "counts_per_mm"), [(10, 200.0), (1, 1.0)], ids=["fine", "coarse"]
+)
+def test_many_places_at_once_are_those_read_one_by_one(clock, columns, counts_per_mm):
+    simulated = info(columns=columns, counts_per_mm=counts_per_mm)
+    device = SimulatedDevice(simulated, clock.now_ns, Sweep(32.0))
+    clock.advance_ns(123_456)
+    device.follow(320.0)
+    # By halves of a coarse count, and beyond both ends of the travel.
+    home = -simulated.span_mm
+    device.move(straight((0, home), (10, home + 320), (12, -30), (13, 20)))
+    times_ns = clock.now_ns() + np.arange(1000) * 15_625_000
+    places, followed = device.places_mm(times_ns), device.followed_at(times_ns)
+    assert 0 < followed.sum() < 1000
+    for n in range(1000):
+        assert device.read().x_mm == places[n]
+        assert device.followed == followed[n]
+        clock.advance_ns(15_625_000)
+
+
+def test_a_hand_that_follows_nothing_has_not_come_to_its_end(device):
+    assert not device.followed_at(np.arange(3)).any()
+
+
+def test_a_motion_goes_on_by_another_clock(clock, device):
+    device.move(straight((0, -SPAN_MM), (1, -SPAN_MM + 10)))
+    clock.advance_ns(500_000_000)
+    other = ManualClock()
+    device.go_by(other.now_ns)
+    clock.advance_ns(500_000_000)
+    assert device.read() == (0, pytest.approx(-SPAN_MM + 5))
+    other.advance_ns(250_000_000)
+    assert device.read() == (250_000_000, pytest.approx(-SPAN_MM + 7.5))
 
 
 def test_levels_are_as_coarse_as_it_says():

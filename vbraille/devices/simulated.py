@@ -72,6 +72,16 @@ class SimulatedDevice(Device):
         return self._info
 
     @property
+    def hand(self) -> Hand | Recorded | None:
+        """What moves its carriage."""
+        return self._hand
+
+    def go_by(self, now_ns: Callable[[], int]) -> None:
+        """Live by another clock from now on; a motion goes on from where it has come to."""
+        self._begun_ns += now_ns() - self._now_ns()
+        self._now_ns = now_ns
+
+    @property
     def moving(self) -> bool:
         """Whether the hand is still on its way."""
         return (self._now_ns() - self._begun_ns) / NS_PER_S < self._t_s[-1]
@@ -89,6 +99,11 @@ class SimulatedDevice(Device):
     def followed(self) -> bool:
         """Whether the hand has come to its end."""
         return self._following and not self.moving
+
+    def followed_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """What `followed` is at times of its clock, if nothing else comes between; bool[n]."""
+        moving = (times_ns - self._begun_ns) / NS_PER_S < self._t_s[-1]
+        return ~moving & self._following
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion, from now on; first to where that begins."""
@@ -108,6 +123,14 @@ class SimulatedDevice(Device):
         way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
         return Sample(now_ns, counts / info.counts_per_mm - info.span_mm)
+
+    def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Where `read` finds it at times of its clock if nothing comes between; float64[n]."""
+        # Said twice: for the one place of a `read`, arrays would take several times as long.
+        info = self._info
+        hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm)
+        way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
+        return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm
 
     def _hand_mm(self, now_ns: int) -> float:
         return float(np.interp((now_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.engine.ring import Flag
 from vbraille.page import locate
-from vbraille.reading.advance import EndOfLine
+from vbraille.engine.advance import EndOfLine
 from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.render.renderer import Renderer
 

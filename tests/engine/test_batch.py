@@ -1,0 +1,296 @@
+"""Ticks by the block are the loop's: whatever is done, at whatever tick, in blocks of any size."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.engine.test_loop import straight
+from vbraille.devices import DeviceInfo
+from vbraille.devices.hand import parse_hand
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.engine import LocalEngine, ManualClock
+from vbraille.engine.batch import BatchEngine
+from vbraille.engine.ring import Flag, tick_dtype
+from vbraille.errors import DeviceError, InputError
+from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
+from vbraille.render.renderer import Renderer
+
+SHEARED = replace(STRESS2, mapping=MAPPINGS["sheared"])  # some of its rows are idle at 1
+LINE_MM = 12.0
+EXACT = ("tick", "time_ns", "device_ns", "lateness_ns", "work_ns", "late", "overruns", "line")
+EXACT += ("flags", "x_mm", "share")
+
+
+def device(model, hand, now_ns=time.monotonic_ns):
+    array = model.array
+    info = DeviceInfo(
+        name="test",
+        rows=array.rows,
+        columns=array.columns,
+        column_pitch_mm=array.column_pitch_mm,
+        row_pitch_mm=1.8,
+        levels=1024,
+        rest_side=model.rest_side,
+        travel_mm=300.0,
+        counts_per_mm=200.0,
+        rate_hz=1000.0,
+    )
+    return SimulatedDevice(info, now_ns, hand if hand is None else parse_hand(hand, 7))
+
+
+def picture(model, masks, tuning):
+    return Renderer(
+        np.array(masks, np.uint8),
+        array=model.array,
+        profile=model.profile,
+        mapping=model.mapping,
+        geometry=model.geometry,
+        tuning=tuning,
+    )
+
+
+def batch(model=STRESS2, hand="sweep:60", **how):
+    return BatchEngine(device(model, hand), **how)
+
+
+def full(model=STRESS2, **tuning):
+    return picture(model, [63] * 8, Tuning(**tuning))
+
+
+def run(engine, script, ticks):
+    """Do what a script says before some ticks; the records of so many ticks or a few more."""
+    script, blocks, done = list(script), [], 0
+    while done < ticks:
+        while script and script[0][0] <= done:
+            _, act = script.pop(0)
+            act(engine)
+        blocks.append(engine.poll())
+        done += blocks[-1].size
+    return np.concatenate(blocks)
+
+
+def show(shown, line):
+    return lambda engine: engine.show(shown, line, LINE_MM)
+
+
+def pause(paused):
+    def act(engine):
+        engine.paused = paused
+
+    return act
+
+
+def acted_at(engine, script, ticks):
+    """The same as `run`, and the script with the ticks at which blocks let it happen."""
+    times = []
+
+    def noted(act):
+        def note(engine):
+            times.append((engine.tally.ticks, act))
+            act(engine)
+
+        return note
+
+    return run(engine, [(at, noted(act)) for at, act in script], ticks), times
+
+
+def assert_same(model, hand, got, script, rate_hz):
+    clock = ManualClock()
+    loop = LocalEngine(device(model, hand, clock.now_ns), clock, rate_hz=rate_hz)
+    want = run(loop, script, got.size)
+    assert got.dtype == want.dtype == tick_dtype(model.array.shape)
+    for field in EXACT:
+        np.testing.assert_array_equal(got[field], want[field], field)
+    for field in ("speed_mm_s", "forward_mm", "forward_s"):
+        np.testing.assert_allclose(got[field], want[field], rtol=0, atol=1e-9, err_msg=field)
+    np.testing.assert_allclose(got["frame"], want["frame"], rtol=0, atol=1e-6)
+
+
+def anything(model, seed, ticks):
+    """Lines, tunings and pauses at any ticks, many of them in the middle of a fade."""
+    random = np.random.default_rng(seed)
+    line, tuning, masks = 1, Tuning(), [63, 21, 42]
+    script = [(int(random.integers(5)), show(picture(model, masks, tuning), line))]
+    at = 0
+    while at < ticks:
+        at += int(random.choice([1, 3, 15, 70, 250]))
+        what = random.choice(["line", "tuning", "pause", "go on"], p=[0.2, 0.4, 0.15, 0.25])
+        if what in ("pause", "go on"):
+            script.append((at, pause(what == "pause")))
+            continue
+        if what == "line":
+            line, masks = line + 1, random.integers(0, 256, 6)
+        tuning = Tuning(texture=random.random(), contrast=random.random())
+        script.append((at, show(picture(model, masks, tuning), line)))
+    return script
+
+
+HANDS = "sweep:90", "device", "fluent"
+MODELS = {"vbd": VBD, "stress2": STRESS2, "sheared": SHEARED}
+POLLS = (1000.0, 1), (300.0, 17), (200.0, 110)
+
+
+@pytest.mark.parametrize("hand", range(3), ids=HANDS)
+@pytest.mark.parametrize("model", range(3), ids=MODELS)
+def test_it_gives_the_loop_s_records(hand, model):
+    """Each with each, as far as nine cases go."""
+    seed = 3 * hand + model
+    rate_hz, poll_ticks = POLLS[(hand + model) % 3]
+    hand, model = HANDS[hand], list(MODELS.values())[model]
+    engine = batch(model, hand, rate_hz=rate_hz, poll_ticks=poll_ticks)
+    got, script = acted_at(engine, anything(model, seed, 1200), 1200)
+    assert_same(model, hand, got, script, rate_hz)
+    flags = np.bitwise_or.reduce(got["flags"])
+    assert flags & Flag.PAUSED
+    assert flags & Flag.CHANGED
+    assert len(np.unique(got["share"])) > 5
+    assert got["frame"].min() >= 0
+    assert 0.3 < got["frame"].max() <= 1
+
+
+@pytest.mark.parametrize("rate_hz", [2.0, 40.0])
+def test_slow_ticks_are_the_loop_s_too(rate_hz):
+    script = [(0, show(full(), 1))]
+    got = run(batch(rate_hz=rate_hz, poll_ticks=30), script, 90)
+    assert_same(STRESS2, "sweep:60", got, script, rate_hz)
+
+
+def test_the_size_of_a_block_does_not_matter():
+    # Where actions fall is the same for all: at multiples of all sizes, no hand done before.
+    script = [
+        (0, show(full(SHEARED), 1)),
+        (240, show(full(SHEARED, contrast=0.3), 1)),
+        (300, pause(True)),
+        (360, pause(False)),
+        (420, show(full(SHEARED, texture=1.0), 2)),
+    ]
+    polled = [run(batch(SHEARED, "sweep:5", poll_ticks=n), script, 1200) for n in (1, 12, 60)]
+    for ticks in polled[1:]:
+        for field in ticks.dtype.names:
+            atol = 1e-6 if field == "frame" else 1e-9
+            np.testing.assert_allclose(ticks[field], polled[0][field], rtol=0, atol=atol)
+
+
+@pytest.mark.parametrize("poll_ticks", [90, 1500])
+def test_it_rests_when_the_hand_stands_still(poll_ticks):
+    engine = batch(SHEARED, rate_hz=200, poll_ticks=poll_ticks)
+    got, script = acted_at(engine, [(0, show(full(SHEARED), 1)), (1450, show(full(), 2))], 2000)
+    assert_same(SHEARED, "sweep:60", got, script, 200)
+    resting = got["flags"] & Flag.RESTING != 0
+    # The hand is back after 0.4 s or so, goes to rest 5 s later, and then reads line 2.
+    assert not resting[:1000].any()
+    assert resting[1120:1450].all()
+    assert not got["frame"][1120:1450].any()
+    assert not resting[script[1][0] :][:50].any()
+
+
+def test_unpausing_counts_as_motion():
+    script = [(0, show(full(SHEARED), 1)), (900, pause(True)), (990, pause(False))]
+    got, script = acted_at(batch(SHEARED, rate_hz=200, poll_ticks=90), script, 2500)
+    assert_same(SHEARED, "sweep:60", got, script, 200)
+    last_mm = np.flatnonzero(np.diff(got["x_mm"]))[-1]
+    resting = np.flatnonzero(got["flags"] & (Flag.RESTING | Flag.PAUSED) == Flag.RESTING)
+    unpaused = next(at for at, _ in reversed(script))
+    assert unpaused > last_mm + 400
+    assert resting[0] == unpaused + 1000  # 5 s after the tick before
+
+
+def creep(mm_s):
+    return straight((0, 0), (20, 20 * mm_s))
+
+
+@pytest.mark.parametrize(
+    ("motion", "rests"),
+    [
+        # 0.05 mm in 5 s is motion, less is none, though every count of the encoder is seen.
+        (creep(0.004), True),
+        (creep(0.012), False),
+        # Going to rest and waking again in the middle of a block, from frames of that block.
+        (straight((0, 0), (1, 6.3), (8, 6.3), (9, 12), (20, 12)), True),
+        (straight((0, 0), (1, 6.3), (6.06, 6.3), (6.1, 10), (20, 12)), True),
+    ],
+    ids=["creeping", "moving", "stopping", "fading"],
+)
+@pytest.mark.parametrize("poll_ticks", [37, 1500])
+def test_stillness_is_the_loop_s(motion, rests, poll_ticks):
+    engine = batch(SHEARED, rate_hz=100, poll_ticks=poll_ticks)
+    clock = ManualClock()
+    loop_device = device(SHEARED, "sweep:60", clock.now_ns)
+    loop = LocalEngine(loop_device, clock, rate_hz=100)
+    records = []
+    for each, moved in ((engine, engine.device), (loop, loop_device)):
+        each.show(full(SHEARED), 1, LINE_MM)
+        moved.move(motion)
+        records.append(run(each, [], 1500)[:1500])
+    got, want = records
+    for field in EXACT:
+        np.testing.assert_array_equal(got[field], want[field], field)
+    np.testing.assert_allclose(got["frame"], want["frame"], rtol=0, atol=1e-6)
+    assert (got["flags"][:1200] & Flag.RESTING).any() == rests
+
+
+def test_a_poll_is_over_when_the_hand_is_done():
+    engine = batch(poll_ticks=700)
+    assert engine.poll().size == 700  # nothing under way
+    for line in (1, 2):
+        engine.show(full(), line, LINE_MM)
+        blocks = [engine.poll()]
+        while not blocks[-1]["flags"][-1] & Flag.FOLLOWED:
+            blocks.append(engine.poll())
+        followed = np.concatenate(blocks)["flags"] & Flag.FOLLOWED != 0
+        assert followed.sum() == 1
+        assert [block.size for block in blocks[:-1]] == [700] * (len(blocks) - 1)
+        assert blocks[-1].size < 700
+        assert engine.newest is not None
+        assert engine.newest["tick"] == engine.tally.ticks - 1
+        assert engine.x_mm == pytest.approx(-10.8, abs=1 / 200)
+    assert engine.poll().size == 700  # done since long
+
+
+def test_it_says_what_a_host_says():
+    engine = batch(poll_ticks=1500)
+    assert engine.x_mm is None
+    assert engine.newest is None
+    with engine:
+        engine.start()
+        assert not engine.paused
+        engine.show(full(), 1, LINE_MM)
+        ticks = engine.poll()
+        engine.set_zero()
+    assert engine.info.columns == 10
+    assert (engine.lost, engine.counts, list(engine.take_notes())) == (0, {}, [])
+    assert engine.newest is not None
+    assert engine.newest["tick"] == ticks["tick"][-1]
+    assert engine.tally.ticks == ticks.size
+    assert engine.tally.forward_mm == pytest.approx(LINE_MM + 10.8, abs=0.1)
+    assert engine.tally.scanning_mm_s == pytest.approx(60, rel=0.02)
+    assert engine.device.frames == 1
+    want = np.rint(ticks["frame"][-1].astype(float) * 1023)
+    np.testing.assert_array_equal(engine.device.levels, want)
+
+
+def test_a_device_that_is_closed_takes_no_frames():
+    engine = batch()
+    engine.device.close()
+    with pytest.raises(DeviceError, match="closed"):
+        engine.poll()
+
+
+@pytest.mark.parametrize("hand", [None, "recorded"])
+def test_it_needs_a_hand_that_reads_lines(hand, tmp_path):
+    if hand is not None:
+        path = tmp_path / "hand.csv"
+        path.write_text("0,0\n0.1,1\n")
+        hand = f"recorded:{path}"
+    with pytest.raises(InputError, match="--fast needs a hand that reads lines"):
+        batch(hand=hand)
+
+
+def test_bounds():
+    for rate_hz in (0, 20_000, float("nan")):
+        with pytest.raises(ValueError, match="1 to 10000"):
+            batch(rate_hz=rate_hz)
+    with pytest.raises(ValueError, match="1 or more"):
+        batch(poll_ticks=0)
