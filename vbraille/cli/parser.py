@@ -106,6 +106,8 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
     _device_options(command("device", "Say which devices there are, and try one"))
 
+    _session_options(command("session", "Run legibility sessions, and keep every answer"))
+
     tables = command("tables", "List the braille tables there are")
     tables.add_argument("--language", metavar="TAG", help="only of this language, such as fr")
 
@@ -128,6 +130,99 @@ def _device_options(parser: argparse.ArgumentParser) -> None:
         action = actions.add_parser(name, help=text, description=f"{text.capitalize()}.")
         action.add_argument("spec", metavar="SPEC", help="serial:/dev/ttyACM0, …")
         action.add_argument("--model", choices=("stress2", "vbd"), help="that it must be")
+
+
+def _session_options(parser: argparse.ArgumentParser) -> None:
+    actions = parser.add_subparsers(
+        dest="action", required=True, metavar="ACTION", parser_class=_Parser
+    )
+
+    def action(name: str, text: str) -> argparse.ArgumentParser:
+        return actions.add_parser(name, help=text, description=f"{text.capitalize()}.")
+
+    protocols = action("protocols", "what there is; with a name, its file, to be copied and edited")
+    protocols.add_argument("name", nargs="?", metavar="NAME", help="print this one's TOML")
+
+    plan = action("plan", "print the whole order of a session")
+    _plan_options(plan)
+    plan.add_argument("--brf", action="store_true", help="the strings as ASCII braille, to emboss")
+
+    run = action("run", "run a session; one line an event, help says what to type")
+    _plan_options(run)
+    run.add_argument("--out", metavar="DIR", help="its directory (PARTICIPANT-PROTOCOL-TIME)")
+    _conduct_options(run)
+    run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
+    run.add_argument("--rate", type=_number, metavar="HZ", help="frames a second (1000)")
+    run.add_argument(
+        "--field",
+        action=_Pairs,
+        default={},
+        metavar="NAME=VALUE",
+        help="what the protocol asks about the participant; may be given again",
+    )
+
+    resume = action("resume", "go on with a session, at the next trial of the same order")
+    resume.add_argument("folder", metavar="DIR", help="the session's directory")
+    _conduct_options(resume)
+
+    export = action("export", "make tables of a session")
+    export.add_argument("folder", metavar="DIR", help="the session's directory")
+    export.add_argument(
+        "--out", metavar="FILE|DIR", help="trials as CSV (default: printed); with --bids, a dataset"
+    )
+    export.add_argument(
+        "--bids", action="store_true", help="*_beh.tsv with its sidecar, traces as *_physio.tsv.gz"
+    )
+
+    check = action("check", "see whether every file of a session is whole and consistent")
+    check.add_argument("folder", metavar="DIR", help="the session's directory")
+
+
+def _plan_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("protocol", metavar="PROTOCOL", help="a name, or a file such as mine.toml")
+    parser.add_argument("--participant", required=True, metavar="P07", help="a pseudonym")
+    parser.add_argument("--seed", type=_seed, metavar="N", help="of the order (drawn, and said)")
+    parser.add_argument(
+        "--order",
+        type=_whole,
+        metavar="N",
+        help="of the balanced orders (by the number in the participant's name)",
+    )
+    parser.add_argument("--texture", type=_number, metavar="0…1", help="where no condition sets it")
+    parser.add_argument("--contrast", type=_number, metavar="0…1", help="where no condition does")
+
+
+def _conduct_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--device", metavar="SPEC", help="sim (default), serial:/dev/ttyACM0, …")
+    parser.add_argument(
+        "--answers",
+        metavar="SOURCE",
+        help="typed (default), a file with a line for each trial, simulated[:NOISE]",
+    )
+    parser.add_argument("--hand", metavar="HAND", help="of the simulated device (device)")
+    parser.add_argument("--fast", action="store_true", help="simulated: as fast as the machine can")
+    parser.add_argument(
+        "--sound",
+        choices=("auto", "tones", "bell", "none"),
+        default="auto",
+        help="how the participant hears signals (auto: tones if there is an audio output)",
+    )
+
+
+class _Pairs(argparse.Action):
+    """Options NAME=VALUE, gathered."""
+
+    def __call__(
+        self,
+        _parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[object] | None,
+        _option: str | None = None,
+    ) -> None:
+        name, equals, value = str(values).partition("=")
+        if not equals or not name:
+            raise argparse.ArgumentError(self, f"{values!r} is not NAME=VALUE")
+        setattr(namespace, self.dest, {**getattr(namespace, self.dest), name: value})
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING
-from urllib.parse import urlencode
 
 from vbraille.cli.build import (
     build_page,
@@ -14,7 +13,7 @@ from vbraille.cli.build import (
 )
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info
+from vbraille.cli.wanted import device_info, device_spec
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded
@@ -52,7 +51,9 @@ def run(arguments: argparse.Namespace) -> int:
     page = build_page(arguments)
     wanted = device_info(page.model, page.geometry, rate_hz)
     note_unseen_dots(page, mapping)
-    host = Host(_device(arguments), wanted, page.layout.width)
+    host = Host(
+        device_spec(arguments.device, arguments.hand, arguments.seed), wanted, page.layout.width
+    )
     with Keyboard() as keyboard:
         reader = Reader(
             page.layout,
@@ -161,13 +162,6 @@ class _Reading:
         self._placing = Placing.DONE
         self._host.start()
         _say("reading")
-
-
-def _device(arguments: argparse.Namespace) -> str:
-    """Spec of the device; the simulated one is told its hand."""
-    if arguments.device.rstrip(":") != "sim":
-        return arguments.device
-    return f"sim:?{urlencode({'hand': arguments.hand, 'seed': arguments.seed})}"
 
 
 def _echo(chosen: str | None) -> Echo:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from urllib.parse import urlencode
 
 from vbraille.devices import DeviceInfo
 
@@ -29,3 +30,10 @@ def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
         counts_per_mm=COUNTS_PER_MM,
         rate_hz=rate_hz,
     )
+
+
+def device_spec(device: str, hand: str, seed: int) -> str:
+    """Spec of a device; the simulated one is told its hand."""
+    if device.rstrip(":") != "sim":
+        return device
+    return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"

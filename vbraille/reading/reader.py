@@ -6,9 +6,9 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from vbraille.engine.advance import EndOfLine
 from vbraille.engine.ring import Flag
 from vbraille.page import locate
-from vbraille.engine.advance import EndOfLine
 from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.render.renderer import Renderer
 

@@ -1,0 +1,139 @@
+"""Sessions in this process, as fast as the machine can, with an experimenter of a few lines."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from vbraille.devices import open_device
+from vbraille.devices.base import DeviceInfo
+from vbraille.engine.batch import BatchEngine
+from vbraille.sessions.answers import Simulated
+from vbraille.sessions.console import Console
+from vbraille.sessions.course import Course
+from vbraille.sessions.journal import Journal
+from vbraille.sessions.plan import make_plan
+from vbraille.sessions.progress import Progress
+from vbraille.sessions.protocol import parse_protocol
+from vbraille.sessions.record import create, load, versions
+from vbraille.sessions.showing import OnDevice
+
+MINI = """
+format = 1
+name = "mini"
+title = "Four characters between delimiters"
+source = "ours"
+model = "vbd"
+[keys]
+l = "1"
+[design]
+kind = "combinations"
+characters = ["a", "c", "4", "0"]
+length = 1
+before = "c"
+after = "c"
+"""
+COMPARED = """
+format = 1
+name = "widths"
+title = "Two widths"
+source = "ours"
+model = "vbd"
+[design]
+kind = "choice"
+parameter = "dot_width_mm"
+values = [1.0, 2.0]
+string = "a"
+"""
+
+
+@dataclass
+class Person:
+    """Types each line when what was said last matches its pattern."""
+
+    script: list
+    typed: bool = True
+    felt: bool = False
+    said: list = field(default_factory=list)
+    seen: int = 0
+
+    def lines(self, _wait_s):
+        if not self.script:
+            return None
+        pattern, line = self.script[0]
+        new = self.said[self.seen :]
+        for n, sentence in enumerate(new, self.seen):
+            if re.search(pattern, sentence):
+                self.seen = n + 1
+                self.script.pop(0)
+                return [line]
+        assert len(self.said) < 2000, f"{pattern!r} is never said: {self.said[-20:]}"
+        return []
+
+    def next(self, *_):
+        return None
+
+
+@dataclass
+class Sat:
+    """What came of a sitting."""
+
+    said: list
+    events: list
+    played: list
+    record: object
+    progress: object
+
+
+class Session:
+    """A session on the disk, sat at once or several times."""
+
+    def __init__(self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150"):
+        self.folder = folder
+        self.protocol = parse_protocol(toml, "test")
+        self.plan = make_plan(self.protocol, participant, seed)
+        self.hand = hand
+        head = {
+            "format": 1, "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
+            "hand": hand, "device": "sim", "versions": versions(),
+        }  # fmt: skip
+        create(folder, self.protocol, self.plan, head)
+
+    def sit(self, *script, engine=None, noise=None):
+        """Run it: by a person who types these lines, else by a simulated reader."""
+        said, played = [], []
+        person = Person(list(script), said=said)
+        answers = person if script else Simulated(self.protocol, self.plan.seed, noise or 0.0)
+        model, display = self.protocol.model, None
+        if self.protocol.medium == "device":
+            array = model.array
+            info = DeviceInfo(
+                "test", array.rows, array.columns, array.column_pitch_mm, array.row_pitch_mm,
+                1024, model.rest_side, 300.0, 200.0, 1000.0,
+            )  # fmt: skip
+            device = open_device(f"sim:?hand={self.hand}&seed=1", info)
+            engine = engine or BatchEngine(device, poll_ticks=100)
+            engine.start()
+            display = OnDevice(engine, self.protocol, self.folder, keeps=not script)
+        record = load(self.folder)
+        with Journal(self.folder) as journal:
+            torn = journal.set_torn_aside()
+            progress = Progress(self.plan, journal.told.events)
+            course = Course(
+                self.protocol, self.plan, journal, progress, display, waits=answers.typed,
+                corrects=answers.typed, say=said.append, play=played.append,
+                real=display is None,
+            )  # fmt: skip
+            try:
+                course.start(why="test", torn_bytes=torn)
+                Console(course, answers, say=said.append, real=False).run()
+            finally:
+                if display is not None:
+                    display.close()
+        record = load(self.folder)
+        progress = Progress(self.plan, record.told.events)
+        return Sat(said, record.told.events, played, record, progress)
+
+
+def of(events, name):
+    """Events of a kind."""
+    return [event for event in events if event["event"] == name]

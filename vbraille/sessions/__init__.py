@@ -1,0 +1,1 @@
+"""Legibility sessions: protocols, trials, the journal, traces."""

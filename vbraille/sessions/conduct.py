@@ -1,0 +1,172 @@
+"""How a session is conducted: its pace, its sounds, and what is asked before it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+# Of protocols, conditions and fields: they become columns of tables and parts of file names.
+NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
+LONGEST_LINE = 200
+
+
+def check_name(what: str, name: str) -> None:
+    """Check the name of a condition or field.
+
+    Raises
+    ------
+    ValueError
+        If it has other characters than `NAME`.
+    """
+    if not NAME.fullmatch(name):
+        raise ValueError(
+            f"{what} is {name!r}; it must be 1 to 40 letters a to z, digits, hyphens or underscores"
+        )
+
+
+def check_line(what: str, text: str) -> None:
+    """Check a line that people read.
+
+    Raises
+    ------
+    ValueError
+        If it is empty or too long.
+    """
+    if not 1 <= len(text.strip()) <= LONGEST_LINE:
+        raise ValueError(
+            f"{what} has {len(text.strip())} characters; it must have 1 to {LONGEST_LINE}"
+        )
+
+
+def check_range(what: str, value: float | None, low: float, high: float, unit: str = "") -> None:
+    """Check a number that may be left out.
+
+    Raises
+    ------
+    ValueError
+        If it is out of range.
+    """
+    if value is not None and not low <= value <= high:
+        raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
+
+
+@dataclass(frozen=True, slots=True)
+class TrialPace:
+    """Times of a trial.
+
+    Parameters
+    ----------
+    gap_s
+        From the answer to the next cue.
+    warning_s
+        From the cue to the audible warning; None for no warning.
+
+    Raises
+    ------
+    ValueError
+        If a time is out of range.
+    """
+
+    gap_s: float = 0.5
+    warning_s: float | None = None
+
+    def __post_init__(self) -> None:
+        check_range("gap_s", self.gap_s, 0, 60, " s")
+        check_range("warning_s", self.warning_s, 1, 3600, " s")
+
+
+@dataclass(frozen=True, slots=True)
+class SessionPace:
+    """Length of a session, and its breaks.
+
+    Parameters
+    ----------
+    limit_s
+        After which no trial begins; None for no limit.
+    break_every
+        Trials of a block from one break to the next; None for breaks between
+        blocks only.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    limit_s: float | None = None
+    break_every: int | None = None
+
+    def __post_init__(self) -> None:
+        check_range("limit_s", self.limit_s, 1, 86_400, " s")
+        check_range("break_every", self.break_every, 1, 10_000)
+
+
+@dataclass(frozen=True, slots=True)
+class Tone:
+    """A sound.
+
+    Parameters
+    ----------
+    frequency_hz, duration_ms
+        Of a sine.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    frequency_hz: float
+    duration_ms: float
+
+    def __post_init__(self) -> None:
+        check_range("frequency", self.frequency_hz, 20, 20_000, " Hz")
+        check_range("duration", self.duration_ms, 1, 5_000, " ms")
+
+
+@dataclass(frozen=True, slots=True)
+class Sound:
+    """What is heard.
+
+    Parameters
+    ----------
+    cue
+        A trial begins.
+    warning
+        It has gone on for `TrialPace.warning_s`.
+    """
+
+    cue: Tone = Tone(880.0, 150.0)
+    warning: Tone = Tone(440.0, 400.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A question about the participant, asked before the session; nothing personal.
+
+    Parameters
+    ----------
+    name
+        Of the column that it makes.
+    ask
+        The question, one line.
+    choices
+        The answers there are; none for any.
+
+    Raises
+    ------
+    ValueError
+        If a text cannot be used, or a choice stands twice.
+    """
+
+    name: str
+    ask: str
+    choices: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_name("name", self.name)
+        check_line("ask", self.ask)
+        for choice in self.choices:
+            check_line("a choice", choice)
+            if self.choices.count(choice) > 1:
+                raise ValueError(f"the choice {choice!r} stands twice; leave one out")

@@ -1,0 +1,202 @@
+"""The journal of a session: one event a line, each with a checksum that holds the one before.
+
+What was said to be in is on the disk. A line that a crash cut short is the
+journal's torn tail; anything else that does not match is damage. Neither is
+mended here. `docs/session-format.md` describes the events.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Self
+from zlib import crc32
+
+from vbraille.errors import InputError, VbrailleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    Event = dict[str, Any]
+
+NAME = "journal.jsonl"
+TORN = "journal.torn"
+_LINE = re.compile(rb'(\{.+),"crc":"([0-9a-f]{8})"\}', re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a journal tells.
+
+    Parameters
+    ----------
+    events
+        Of its lines, up to the first that is not whole.
+    good_bytes
+        Length of those lines.
+    crc
+        Checksum of the last of them.
+    torn
+        A last line without an end, as a crash leaves it.
+    damage
+        What is wrong with a line that has an end; None if nothing is.
+    """
+
+    events: list[Event]
+    good_bytes: int
+    crc: int
+    torn: bytes
+    damage: str | None
+
+
+def encode(event: Event, crc: int) -> tuple[bytes, int]:
+    """Line of an event after one with that checksum, and its own."""
+    body = json.dumps(event, ensure_ascii=False, separators=(",", ":"))[:-1].encode()
+    crc = crc32(body, crc)
+    return b'%s,"crc":"%08x"}\n' % (body, crc), crc
+
+
+def decode(journal: bytes) -> Told:
+    """Events of a journal, as far as it is whole."""
+    events: list[Event] = []
+    good = crc = 0
+    while (end := journal.find(b"\n", good)) >= 0:
+        found = _LINE.fullmatch(journal[good:end])
+        if found is None or crc32(found[1], crc) != int(found[2], 16):
+            damage = f"line {len(events) + 1} does not match its checksum"
+            return Told(events, good, crc, b"", damage)
+        crc = int(found[2], 16)
+        events.append(json.loads(found[1] + b"}"))
+        good = end + 1
+    return Told(events, good, crc, journal[good:], None)
+
+
+class Journal:
+    """A session's journal, open to be added to, by nobody else meanwhile. A context manager.
+
+    Parameters
+    ----------
+    folder
+        The session's.
+
+    Attributes
+    ----------
+    told : Told
+        What was in it when it was opened.
+
+    Raises
+    ------
+    InputError
+        If it is open elsewhere, or may not be written.
+    VbrailleError
+        If it is damaged.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / NAME
+        try:
+            self._file = os.open(self._path, os.O_RDWR | os.O_APPEND | os.O_CLOEXEC)
+        except OSError as error:
+            raise InputError(
+                f"{self._path} cannot be opened for writing: {error.strerror}"
+            ) from None
+        try:
+            self._lock()
+            self.told = decode(self._path.read_bytes())
+            if self.told.damage is not None:
+                raise VbrailleError(
+                    f"{self._path} is damaged: {self.told.damage}; the {len(self.told.events)} "
+                    f"events before it are whole, and nothing was changed"
+                )
+        except BaseException:
+            self.close()
+            raise
+        self._count, self._crc = len(self.told.events), self.told.crc
+
+    def set_torn_aside(self) -> int:
+        """Move a torn tail to a file of its own; its length.
+
+        Raises
+        ------
+        VbrailleError
+            If the disk does not take it: the tail is then where it was.
+        """
+        torn = self.told.torn
+        if not torn:
+            return 0
+        try:
+            with (self._path.parent / TORN).open("ab") as file:
+                file.write(torn + b"\n")
+                file.flush()
+                os.fsync(file.fileno())
+            os.ftruncate(self._file, self.told.good_bytes)
+            os.fsync(self._file)
+        except OSError as error:
+            raise VbrailleError(
+                f"the torn end of {self._path} cannot be moved: {error.strerror}"
+            ) from None
+        return len(torn)
+
+    def append(self, event: Event, *, durable: bool = True) -> Event:
+        """Add an event; it is on the disk when this returns, unless it need not be yet.
+
+        Raises
+        ------
+        VbrailleError
+            If the disk does not take it: it is then not in.
+        """
+        numbered = {"n": self._count + 1, **event, "wall": now()}
+        line, crc = encode(numbered, self._crc)
+        try:
+            written = os.write(self._file, line)
+            if written < len(line):
+                os.write(self._file, line[written:])  # says why not
+            if durable:
+                os.fsync(self._file)
+        except OSError as error:
+            raise VbrailleError(
+                f"{self._path} cannot be written: {error.strerror}; the {event['event']} is not "
+                f"in, all before it is: make room, then session resume goes on"
+            ) from None
+        self._count += 1
+        self._crc = crc
+        return numbered
+
+    def close(self) -> None:
+        """Let others open it; further calls do nothing."""
+        if self._file >= 0:
+            os.close(self._file)
+            self._file = -1
+
+    def _lock(self) -> None:
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(
+                f"{self._path.parent} is open in another console; end that one first"
+            ) from None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def first_lines(events: Iterable[Event]) -> bytes:
+    """Write a journal that begins with these events."""
+    lines, crc = [], 0
+    for n, event in enumerate(events, 1):
+        line, crc = encode({"n": n, **event, "wall": now()}, crc)
+        lines.append(line)
+    return b"".join(lines)
+
+
+def now() -> str:
+    """Wall-clock time, UTC."""
+    return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
