@@ -98,11 +98,11 @@ class Session:
         }  # fmt: skip
         create(folder, self.protocol, self.plan, head)
 
-    def sit(self, *script, engine=None, noise=None):
+    def sit(self, *script, engine=BatchEngine, noise=0.0):
         """Run it: by a person who types these lines, else by a simulated reader."""
         said, played = [], []
         person = Person(list(script), said=said)
-        answers = person if script else Simulated(self.protocol, self.plan.seed, noise or 0.0)
+        answers = person if script else Simulated(self.protocol, self.plan.seed, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
             array = model.array
@@ -111,7 +111,7 @@ class Session:
                 1024, model.rest_side, 300.0, 200.0, 1000.0,
             )  # fmt: skip
             device = open_device(f"sim:?hand={self.hand}&seed=1", info)
-            engine = engine or BatchEngine(device, poll_ticks=100)
+            engine = engine(device, poll_ticks=100)
             engine.start()
             display = OnDevice(engine, self.protocol, self.folder, keeps=not script)
         record = load(self.folder)

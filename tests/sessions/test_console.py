@@ -3,6 +3,8 @@
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
+from vbraille.engine.batch import BatchEngine
+from vbraille.engine.ring import Flag
 from vbraille.sessions.orders import ORDERS
 from vbraille.sessions.spelling import say_cells
 
@@ -249,6 +251,28 @@ def test_the_session_ends_at_its_limit_after_the_open_trial(tmp_path):
     assert of(sat.events, "end")[0]["why"] == "the limit of 10 s is over"
     before, last = (e["t_s"] for e in of(sat.events, "answer")[-2:])
     assert before < 10 <= last
+
+
+class Unplugged(BatchEngine):
+    """A device that is silent for some time."""
+
+    def poll(self):
+        ticks = super().poll()
+        ticks["flags"][(ticks["tick"] >= 800) & (ticks["tick"] < 1200)] |= int(Flag.SILENT)
+        return ticks
+
+
+@pytest.mark.parametrize("repeats", [True, False])
+def test_a_trial_in_which_the_device_was_silent(tmp_path, repeats):
+    toml = MINI + f"[faults]\nrepeat = {str(repeats).lower()}\n"
+    sat = Session(tmp_path / "s", toml, hand="sweep:60").sit(engine=Unplugged)
+    assert sat.progress.ended
+    attempts = [sat.progress.trials[number].attempts for number in (1, 2, 3, 4)]
+    assert attempts == ([2, 1, 1, 1] if repeats else [1, 1, 1, 1])
+    assert sat.progress.trials[1].faults == ["the device is silent"]
+    assert len(of(sat.events, "well")) == (not repeats)
+    if repeats:  # once it is back
+        assert of(sat.events, "presented")[1]["t_s"] >= of(sat.events, "fault")[0]["t_s"] + 0.2
 
 
 def test_help_says_every_order(session):

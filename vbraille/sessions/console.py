@@ -105,7 +105,7 @@ class Console:
         trial = correcting or course.trial or self._progress.last_answered
         if trial is None or course.phase is Phase.OVER:
             return
-        felt = [] if course.display is None else course.display.explorations
+        felt = course.display.explorations if course.display and self._answers.felt else []
         given = self._answers.next(trial, self._progress.told(trial).attempts, felt)
         if given is not None:
             self.take(*given)

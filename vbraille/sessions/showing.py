@@ -8,7 +8,7 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.engine.advance import HOME_MM, EndOfLine
-from vbraille.engine.engine import Engine, place_of, placing_of
+from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.ring import Flag
 from vbraille.render.renderer import Renderer
 from vbraille.sessions.skin import Exploration
@@ -108,7 +108,7 @@ class OnDevice:
         self._stimulus: Stimulus | None = None
         self._end: EndOfLine
         self._edge_mm: float | None = None
-        self._touched = self._read = self._away = False
+        self._touched = self._read = self._away = self._ready = False
         self._felt: list[list[NDArray[np.void]]] = []
 
     def open(self, run: int, line: int) -> str:
@@ -130,7 +130,7 @@ class OnDevice:
             run += 1
         self._trace = TraceWriter(self._folder / _trace_name(run))
         self._newest = self._stimulus = None
-        self._away = False
+        self._away = self._ready = False
         return _trace_name(run)
 
     @property
@@ -140,11 +140,8 @@ class OnDevice:
 
     @property
     def ready(self) -> bool:
-        """Whether the device is well and its carriage at the left stop."""
-        if self._newest is None or self._newest["flags"] & _AWAY:
-            return False
-        x_mm = place_of(self._newest)
-        return x_mm is not None and x_mm <= HOME_MM - self._span_mm
+        """Whether the device is well, and its carriage has just been at the left stop."""
+        return self._ready
 
     @property
     def read(self) -> bool:
@@ -174,7 +171,7 @@ class OnDevice:
             self._protocol.line(stimulus.masks), self._protocol.mapping, stimulus.geometry
         )
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm
-        self._touched = self._read = False
+        self._touched = self._read = self._away = False
         self.retune(tuning)
         self.engine.paused = False
 
@@ -222,6 +219,9 @@ class OnDevice:
         if not ticks.size:
             return happened
         self._newest = ticks[-1]
+        # A carriage that a machine moves may be there for some ticks only.
+        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm
+        self._ready = bool((at_left & (ticks["flags"] & _AWAY == 0)).any())
         if self._trace is not None:
             self._trace.add(ticks)
         placing = placing_of(self._newest)
