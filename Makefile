@@ -9,7 +9,7 @@ DEBS   := python3-louis python3-venv
 NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q '^Status: install ok installed' || echo $(d))))
 
 .DELETE_ON_ERROR:
-.PHONY: read test bench format setup clean
+.PHONY: read test bench format setup clean sound
 
 read: .venv/runs
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
@@ -34,6 +34,12 @@ format: .venv/tests
 	$(BIN)/ruff format
 
 setup: .venv/runs
+
+# PortAudio, for the participant's signals in sessions; without it the terminal's bell rings.
+sound:
+	@dpkg -s libportaudio2 >/dev/null 2>&1 || { set -e; \
+	  echo 'Installing from Debian: libportaudio2 (sounds in legibility sessions)'; \
+	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq libportaudio2; }
 
 .venv/pip:
 	@[ -x $(PYTHON) ] && $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \

@@ -173,7 +173,7 @@ def test_help_says_every_key_and_every_key_does_something():
 
 def test_a_hand_too_fast_for_texture_is_told_once():
     def told(speed, tuning=STRESS2.tuning):
-        bench = Bench(hand=Sweep(speed), tuning=tuning)
+        bench = Bench(text="one", hand=Sweep(speed), tuning=tuning)
         bench.run()
         return [said for said in bench.said if said.startswith("speed")]
 
