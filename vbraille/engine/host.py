@@ -75,6 +75,7 @@ class Host:
         self._before = Tally()
         self._lost_before = 0
         self._paused = False
+        self._launched = False
 
     def start(self) -> None:
         """Start the process, and wait until it has opened the device; again after its death.
@@ -84,7 +85,20 @@ class Host:
         VbrailleError
             If the device cannot be opened.
         """
+        if not self._launched:
+            self.launch()
+        self._launched = False
+        while self._info is None:
+            if not self._hear():
+                raise self._end()
+        os.set_blocking(self._answers(), False)
+        if self._shown is not None:
+            self._mailbox.post(*self._shown)
+
+    def launch(self) -> None:
+        """Start the process and wait for nothing: `start` does, when there is no more to do."""
         self.close()
+        self._launched = True
         if self.newest is not None:
             self._before, self._lost_before = self.tally, self.lost
         self._info = self._fault = self.newest = None
@@ -112,12 +126,6 @@ class Host:
         assert self._process.stdin is not None
         with suppress(BrokenPipeError), self._process.stdin as stdin:
             stdin.write(json.dumps(config).encode() + b"\n")
-        while self._info is None:
-            if not self._hear():
-                raise self._end()
-        os.set_blocking(self._answers(), False)
-        if self._shown is not None:
-            self._mailbox.post(*self._shown)
 
     @property
     def process_id(self) -> int | None:
