@@ -161,19 +161,6 @@ def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tu
         raise InputError(str(error)) from None
 
 
-def check_rate(rate_hz: float) -> float:
-    """Frames a second, if possible.
-
-    Raises
-    ------
-    InputError
-        If it is not 1 to 10,000.
-    """
-    if not 1 <= rate_hz <= 10_000:
-        raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
-    return rate_hz
-
-
 def note_unseen_dots(page: Page, mapping: Mapping) -> None:
     """Say on stderr if the table writes dots that the display does not show."""
     info = page.layout.book.table.info

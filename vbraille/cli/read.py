@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from vbraille.cli.build import (
     build_page,
     build_show,
-    check_rate,
     note_unseen_dots,
 )
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info, device_spec
+from vbraille.cli.wanted import check_rate, device_info, device_spec
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded

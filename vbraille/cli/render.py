@@ -11,11 +11,11 @@ import numpy as np
 from vbraille.cli.build import (
     build_page,
     build_show,
-    check_rate,
     note_unseen_dots,
 )
 from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
+from vbraille.cli.wanted import check_rate
 from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.errors import InputError
 from vbraille.reading import EndOfLine, too_fast_note

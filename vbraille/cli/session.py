@@ -8,30 +8,25 @@ from contextlib import suppress
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
-from vbraille.cli.build import check_rate
 from vbraille.cli.printable import printable
-from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info, device_spec
-from vbraille.devices import open_device
-from vbraille.errors import InputError
+from vbraille.cli.wanted import check_rate
+from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions import journal
 from vbraille.sessions.answers import Script, Typed, parse_answers
 from vbraille.sessions.plan import make_plan
 from vbraille.sessions.progress import Progress
 from vbraille.sessions.protocol import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record import FORMAT, Record, create, load, versions
+from vbraille.sessions.record import FORMAT, check_free, create, load, versions
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.devices import DeviceInfo
     from vbraille.sessions.answers import Answers
     from vbraille.sessions.conduct import Field
     from vbraille.sessions.plan import Plan, Trial
     from vbraille.sessions.protocol import Protocol
-    from vbraille.sessions.showing import RunEngine
-    from vbraille.sessions.sounds import Sound
 
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
 
@@ -53,9 +48,10 @@ def _protocols(arguments: argparse.Namespace) -> int:
 
 def _plan(arguments: argparse.Namespace) -> int:
     protocol, plan = _planned(arguments)
+    if arguments.brf and protocol.task == "choice":
+        raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
+    _say_seed(arguments, plan)
     if arguments.brf:
-        if protocol.task == "choice":
-            raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
         for trial in plan.trials:
             print(_cells(trial).to_brf())
         return 0
@@ -73,14 +69,17 @@ def _plan(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    from vbraille.cli.sitting import Sitting
+
     protocol, plan = _planned(arguments)
-    sitting = _Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate))
+    sitting = Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate), say=_say)
     answers = parse_answers(arguments.answers, protocol, plan.seed)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, protocol, Progress(plan))
-    fields = _ask_fields(protocol, arguments.field, answers)
     folder = Path(arguments.out or _new_name(plan))
+    check_free(folder)
+    fields = _ask_fields(protocol, arguments.field, answers)
     head = {
         "format": FORMAT,
         "protocol": protocol.name,
@@ -102,12 +101,20 @@ def _run(arguments: argparse.Namespace) -> int:
     with sitting:
         sitting.open()
         create(folder, protocol, plan, head)
+        _say_seed(arguments, plan)
         _say(f"session: {folder}")
         return sitting.run(load(folder), answers, why="start")
 
 
 def _resume(arguments: argparse.Namespace) -> int:
+    from vbraille.cli.sitting import Sitting
+
     record = load(Path(arguments.folder))
+    if record.told.damage is not None:
+        raise VbrailleError(
+            f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
+            f"{len(record.told.events)} events before it are whole, and nothing was changed"
+        )
     head = record.head
     for name in ("device", "hand", "answers"):
         if getattr(arguments, name) is None:
@@ -116,10 +123,11 @@ def _resume(arguments: argparse.Namespace) -> int:
     progress = Progress(record.plan, record.told.events)
     if progress.ended:
         raise InputError(f"{record.folder} has ended; session export makes tables of it")
-    sitting = _Sitting(arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"])
-    answers = parse_answers(
-        arguments.answers, record.protocol, record.plan.seed, progress.script_line
+    sitting = Sitting(
+        arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"], say=_say
     )
+    used = progress.script_lines.get(arguments.answers, 0)
+    answers = parse_answers(arguments.answers, record.protocol, record.plan.seed, used)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, record.protocol, progress)
@@ -129,32 +137,35 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace) -> int:
     from vbraille.sessions import bids
-    from vbraille.sessions.export import rows, to_csv, write_new
+    from vbraille.sessions.export import Traces, encode, rows, to_csv, write_new
 
+    if arguments.bids and not arguments.out:
+        raise InputError("--bids needs a directory; give one with --out")
     record = load(Path(arguments.folder))
-    if record.told.damage is not None:
-        before = f"what the {len(record.told.events)} events before it tell is exported"
-        print(f"{record.folder}: the journal is damaged, {before}", file=sys.stderr, flush=True)
+    traces = Traces(record)
     if arguments.bids:
-        if arguments.out is None:
-            raise InputError("--bids needs a directory; give one with --out")
-        for path in bids.write(record, Path(arguments.out)):
+        for path in bids.write(record, Path(arguments.out), traces):
             _say(f"written: {path}")
-        return 0
-    table = to_csv(rows(record))
-    if arguments.out is None:
-        sys.stdout.write(table)
     else:
-        write_new(Path(arguments.out), table.encode())
-        _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
+        table = to_csv(rows(record, traces))
+        if arguments.out is None:
+            sys.stdout.write(table)
+        else:
+            write_new(Path(arguments.out), encode(table))
+            _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
+    faults = list(traces.faults)
+    if record.told.damage is not None:
+        faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
+    if faults:
+        raise VbrailleError(f"exported is what is whole; {'; '.join(faults)}")
     return 0
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.check import check
+    from vbraille.sessions.check import check_folder
 
     good = True
-    for finding in check(load(Path(arguments.folder))):
+    for finding in check_folder(Path(arguments.folder)):
         good &= finding.good
         _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1
@@ -170,142 +181,11 @@ _ACTIONS = {
 }
 
 
-class _Sitting:
-    """One run of a session: its engine, and what goes on around it. A context manager."""
-
-    def __init__(
-        self,
-        arguments: argparse.Namespace,
-        protocol: Protocol,
-        plan: Plan,
-        runs: int,
-        rate_hz: float,
-    ) -> None:
-        self._arguments = arguments
-        self._real = not arguments.fast
-        self._engine: RunEngine | None = None
-        self._opened = False
-        # Another hand each time that the session is gone on with, and the same for the same seed.
-        spec = device_spec(arguments.device, arguments.hand, plan.seed + runs)
-        if arguments.fast and not spec.startswith("sim:"):
-            raise InputError("--fast is for the simulated device; leave out --device")
-        if protocol.medium == "device":
-            wanted = device_info(protocol.model, protocol.geometry, rate_hz)
-            self._engine = _build(spec, wanted, protocol, plan, fast=arguments.fast)
-
-    def check(self, answers: Answers) -> None:
-        """Raise InputError if these answers cannot be had in this way."""
-        if self._arguments.fast and answers.typed:
-            raise InputError("--fast is for answers that are not typed; give --answers simulated")
-
-    def open(self) -> None:
-        """Start the engine, unless it was."""
-        if self._engine is not None and not self._opened:
-            self._engine.start()
-            self._opened = True
-
-    def run(self, record: Record, answers: Answers, *, why: str) -> int:
-        """Conduct the session until its end, or until it is stopped."""
-        from vbraille.sessions.console import Console
-        from vbraille.sessions.course import Course
-        from vbraille.sessions.journal import Journal
-        from vbraille.sessions.showing import OnDevice
-
-        with Journal(record.folder) as journal:
-            torn_bytes = journal.set_torn_aside()
-            self.open()
-            progress = Progress(record.plan, journal.told.events)
-            display = None
-            if self._engine is not None:
-                display = OnDevice(self._engine, record.protocol, record.folder, keeps=answers.felt)
-            sound = self._sound(answers)
-            course = Course(
-                record.protocol,
-                record.plan,
-                journal,
-                progress,
-                display,
-                waits=answers.typed,
-                corrects=not answers.felt,
-                say=_say,
-                play=sound.play,
-                real=self._real,
-            )
-            told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
-            if progress.runs:
-                told["gap_s"] = _since(progress.wall)
-                _say(f"resume: {progress.done} of {len(record.plan.trials)} trials have answers")
-            if torn_bytes:
-                _say(f"torn: {torn_bytes} bytes at the end of the journal are in journal.torn")
-            if not answers.typed and not progress.begun:
-                told["practice"] = "left out"
-            try:
-                arguments = self._arguments
-                course.start(
-                    **told,
-                    spec=arguments.device,
-                    hand=arguments.hand,
-                    answers=arguments.answers,
-                    clock="machine" if self._real else "manual",
-                )
-                if "practice" in told:
-                    _say("practice: left out, since answers are not typed")
-                    course.log("begin")
-                Console(course, answers, say=_say, real=self._real).run()
-            finally:
-                EAR.close()  # so that the array goes to rest
-                if display is not None:
-                    display.close()
-            if display is not None:
-                counts = {name: count for name, count in display.engine.counts.items() if count}
-                course.log("closed", lost=display.engine.lost, counts=counts)
-        return 0
-
-    def _sound(self, answers: Answers) -> Sound:
-        from vbraille.sessions.sounds import Bell, Silence, Tones
-
-        wanted = self._arguments.sound
-        if wanted == "none" or (wanted == "auto" and not answers.typed):
-            return Silence()
-        if wanted != "bell":
-            try:
-                return Tones()
-            except OSError as error:
-                if wanted == "tones":
-                    raise InputError(f"{error}; give --sound bell, or none") from None
-            _say("sound: the terminal's bell, since there is no audio output")
-        return Bell()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._engine is not None:
-            EAR.close()
-            self._engine.close()
-
-
-def _build(
-    spec: str, wanted: DeviceInfo, protocol: Protocol, plan: Plan, *, fast: bool
-) -> RunEngine:
-    """The engine: in a process of its own, or on a clock turned by hand."""
-    if fast:
-        from vbraille.engine.batch import BatchEngine
-
-        return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-    from vbraille.engine.host import Host
-
-    trials = (*plan.practice, *plan.trials)
-    most = max(len(protocol.line(s.masks)) for trial in trials for s in trial.stimuli)
-    return Host(spec, wanted, most)
-
-
 def _planned(arguments: argparse.Namespace) -> tuple[Protocol, Plan]:
     protocol = load_protocol(arguments.protocol)
     seed = arguments.seed
     if seed is None:
         seed = secrets.randbelow(_MOST_DRAWN)
-        print(f"seed: {seed}", file=sys.stderr, flush=True)
     plan = make_plan(
         protocol,
         arguments.participant,
@@ -315,6 +195,12 @@ def _planned(arguments: argparse.Namespace) -> tuple[Protocol, Plan]:
         contrast=arguments.contrast,
     )
     return protocol, plan
+
+
+def _say_seed(arguments: argparse.Namespace, plan: Plan) -> None:
+    """Say the seed, if it was drawn."""
+    if arguments.seed is None:
+        print(f"seed: {plan.seed}", file=sys.stderr, flush=True)
 
 
 def _describe(trial: Trial) -> str:
@@ -337,20 +223,21 @@ def _check_script(script: Script, protocol: Protocol, progress: Progress) -> Non
     from vbraille.sessions.orders import find_order
 
     trials = iter(progress.plan.trials[progress.done :])
-    trial = progress.correcting or next(trials, None)
+    correcting, answered = progress.correcting, progress.last_answered
     for line, number in script.left:
         found = find_order(line)
-        if found is not None and found[0].word == "undo" and trial is not None:
-            continue
+        if found is not None and found[0].word == "undo":
+            correcting = correcting or answered
         if found is not None and found[0].word != "answer":
             continue
+        trial = correcting or next(trials, None)
         if trial is None:
             raise InputError(f"{script.path} line {number}: there is no trial left to answer")
         try:
             read_line(protocol, trial, line if found is None else found[1])
         except ValueError as error:
             raise InputError(f"{script.path} line {number}: {error}") from None
-        trial = next(trials, trial)
+        correcting, answered = None, trial if correcting is None else answered
 
 
 def _ask_fields(protocol: Protocol, given: dict[str, str], answers: Answers) -> dict[str, str]:
@@ -359,7 +246,8 @@ def _ask_fields(protocol: Protocol, given: dict[str, str], answers: Answers) -> 
     for name in given:
         if name not in names:
             raise InputError(
-                f"{protocol.name} does not ask for {name!r}; it asks for {', '.join(names)}"
+                f"{protocol.name} does not ask for {name!r}; "
+                f"it asks for {', '.join(names) or 'nothing'}"
             )
     told = {}
     for field in protocol.fields:
@@ -367,6 +255,10 @@ def _ask_fields(protocol: Protocol, given: dict[str, str], answers: Answers) -> 
             if field.choices and given[field.name] not in field.choices:
                 raise InputError(
                     f"{field.name} is {given[field.name]!r}; it must be {_choices(field)}"
+                )
+            if not given[field.name].isprintable():
+                raise InputError(
+                    f"{field.name} is {given[field.name]!r}; it must be one line of text"
                 )
             told[field.name] = given[field.name]
         else:
@@ -392,12 +284,6 @@ def _choices(field: Field) -> str:
 
 def _new_name(plan: Plan) -> str:
     return f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
-
-
-def _since(wall: str) -> float:
-    """Seconds since a time of the journal; not below 0, should the clock have been set back."""
-    before = datetime.fromisoformat(wall)
-    return round(max((datetime.now(before.tzinfo) - before).total_seconds(), 0.0), 3)
 
 
 def _say(sentence: str) -> None:

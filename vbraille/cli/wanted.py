@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from vbraille.devices import DeviceInfo
+from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from vbraille.geometry import Geometry
@@ -30,6 +31,19 @@ def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
         counts_per_mm=COUNTS_PER_MM,
         rate_hz=rate_hz,
     )
+
+
+def check_rate(rate_hz: float) -> float:
+    """Frames a second, if possible.
+
+    Raises
+    ------
+    InputError
+        If it is not 1 to 10,000.
+    """
+    if not 1 <= rate_hz <= 10_000:
+        raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+    return rate_hz
 
 
 def device_spec(device: str, hand: str, seed: int) -> str:

@@ -11,12 +11,13 @@ from vbraille.errors import VbrailleError
 from vbraille.sessions import journal
 from vbraille.sessions.plan import check_plan
 from vbraille.sessions.progress import Progress
-from vbraille.sessions.traces import read_trace
+from vbraille.sessions.record import FILES, load, read_file, read_journal, read_told_trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from vbraille.sessions.journal import Event, Told
     from vbraille.sessions.record import Record
     from vbraille.sessions.traces import Trace
 
@@ -37,8 +38,36 @@ class Finding:
     good: bool = True
 
 
+def check_folder(folder: Path) -> Iterator[Finding]:
+    """Look at every file of a session, also where not all can be used.
+
+    Raises
+    ------
+    InputError
+        If it is no session, or one of a newer format.
+    VbrailleError
+        If there is no journal to go by.
+    """
+    told = read_journal(folder)
+    faults: list[Finding] = []
+    for name in FILES:
+        try:
+            read_file(folder, name, told)
+        except VbrailleError as error:
+            faults.append(Finding(str(error), good=False))
+    if not faults:
+        yield from check(load(folder))
+        return
+    yield from faults
+    yield from _check_journal(told)
+    yield from _check_torn(folder, told)
+    runs = [event for event in told.events if event["event"] == "run"]
+    for name in _trace_names(folder, runs):
+        yield _describe(name, read_told_trace(folder, name, told))
+
+
 def check(record: Record) -> Iterator[Finding]:
-    """Look at every file of a session."""
+    """Look at every file of a session whose first files are whole."""
     told = record.told
     yield Finding("session.json, plan.json, protocol.toml: as they were when the session began")
     try:
@@ -46,6 +75,15 @@ def check(record: Record) -> Iterator[Finding]:
         yield Finding(f"plan: {len(record.plan.trials)} trials, all design rules hold")
     except VbrailleError as error:
         yield Finding(f"plan: {error}", good=False)
+    yield from _check_journal(told)
+    yield from _check_torn(record.folder, told)
+    progress = Progress(record.plan, told.events)
+    yield from _check_traces(record, progress)
+    state = "ended" if progress.ended else "not ended, session resume goes on"
+    yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")
+
+
+def _check_journal(told: Told) -> Iterator[Finding]:
     if told.damage is not None:
         before = f"the {len(told.events)} events before it are whole"
         yield Finding(f"{journal.NAME}: damaged, {told.damage}; {before}", good=False)
@@ -56,45 +94,45 @@ def check(record: Record) -> Iterator[Finding]:
             f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
             f"session resume sets them aside"
         )
-    progress = Progress(record.plan, told.events)
-    yield from _check_torn(record.folder / journal.TORN, progress)
-    yield from _check_traces(record, progress)
-    state = "ended" if progress.ended else "not ended, session resume goes on"
-    yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")
 
 
-def _check_torn(path: Path, progress: Progress) -> Iterator[Finding]:
-    """Bytes set aside must be those that the journal tells of; each tail has a line break after."""
-    tails = [run["torn_bytes"] for run in progress.runs if run.get("torn_bytes")]
-    length = path.stat().st_size if path.exists() else 0
-    if not tails and not length:
+def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
+    """Look whether what was set aside begins with all that the journal tells of."""
+    try:
+        torn = (folder / journal.TORN).read_bytes()
+    except FileNotFoundError:
+        torn = b""
+    except OSError as error:
+        yield Finding(f"{journal.TORN} cannot be read: {error.strerror}", good=False)
         return
-    agree = length == sum(tails) + len(tails)
-    yield Finding(
-        f"{path.name}: {sum(tails)} bytes set aside by session resume after a crash"
-        if agree
-        else f"{path.name}: {length} bytes, and the journal tells of {sum(tails)}",
-        good=agree,
-    )
+    sums = [event["torn_file"] for event in told.events if event.get("torn_file")]
+    good = all(journal.sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
+    if not good:
+        yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
+    elif torn:  # the last ones untold of, if a crash came before the journal could
+        yield Finding(f"{journal.TORN}: {len(torn)} bytes set aside by session resume")
 
 
 def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
+    told = record.told
     expected = {run["trace"] for run in progress.runs if "trace" in run}
     answered, known = _answered_lines(progress), _known_lines(progress)
-    for path in sorted({*record.folder.glob("trace-*"), *map(record.folder.joinpath, expected)}):
-        try:
-            trace = read_trace(path)
-        except VbrailleError as error:
-            yield Finding(str(error), good=False)
-            continue
-        lines = set(np.unique(trace.ticks["line"]).tolist())
-        if path.name not in expected:
-            # A run that was killed before the journal told of it has shown nothing.
-            yield Finding(f"{path.name}: the journal does not tell of it", good=lines <= {0})
-            continue
-        yield _describe(path.name, trace)
+    # A crash may leave a trace that goes on where the journal has lost its end.
+    open_end = bool(told.torn) or not told.events or told.events[-1]["event"] != "closed"
+    for name in _trace_names(record.folder, progress.runs):
+        trace = read_told_trace(record.folder, name, told)
+        yield _describe(name, trace)
+        if name not in expected:
+            yield Finding(f"{name}: of a run that the journal does not tell of")
         if trace.damage is None:
-            yield from _compare(path.name, lines, answered.get(path.name, set()), known | {0})
+            lines = set(np.unique(trace.ticks["line"]).tolist())
+            yield from _compare(name, lines, answered.get(name, set()), known | {0}, open_end)
+
+
+def _trace_names(folder: Path, runs: list[Event]) -> list[str]:
+    """Names of all traces that there are, or should be."""
+    told = {run["trace"] for run in runs if "trace" in run}
+    return sorted(told | {path.name for path in folder.glob("trace-*.gz")})
 
 
 def _describe(name: str, trace: Trace) -> Finding:
@@ -110,14 +148,15 @@ def _describe(name: str, trace: Trace) -> Finding:
     return Finding(said, good=not missing)
 
 
-def _compare(name: str, lines: set[int], answered: set[int], known: set[int]) -> Iterator[Finding]:
+def _compare(
+    name: str, lines: set[int], answered: set[int], known: set[int], open_end: bool
+) -> Iterator[Finding]:
     """What a trace and the journal tell of one another."""
-    for which, what in (
-        (answered - lines, "was answered and is not in it"),
-        (lines - known, "is in it, and the journal does not tell of it"),
-    ):
-        for line in sorted(which):
-            yield Finding(f"{name}: the stimulus with line {line} {what}", good=False)
+    for line in sorted(answered - lines):
+        yield Finding(f"{name}: stimulus {line} was answered and is not in it", good=False)
+    for line in sorted(lines - known):
+        text = f"{name}: stimulus {line} is in it, and the journal does not tell of it"
+        yield Finding(text, good=open_end)
 
 
 def _answered_lines(progress: Progress) -> dict[str, set[int]]:

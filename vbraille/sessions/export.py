@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import csv
+import errno
 import io
 import os
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vbraille.engine.ring import Flag
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.progress import Progress
+from vbraille.sessions.record import read_told_trace
 from vbraille.sessions.showing import render
-from vbraille.sessions.traces import read_trace
 from vbraille.sessions.trajectory import duration, first_edge_mm
 
 if TYPE_CHECKING:
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.plan import Trial
     from vbraille.sessions.progress import Told
     from vbraille.sessions.record import Record
+    from vbraille.sessions.traces import Trace
 
 # What each column holds: the table's head, and its description in BIDS.
 COLUMNS = {
@@ -58,41 +62,58 @@ COLUMNS = {
 
 
 class Traces:
-    """The traces of a session, each read once.
+    """The traces of a session, each read once, as far as it is whole.
 
     Parameters
     ----------
     record
         The session.
+
+    Attributes
+    ----------
+    faults : list[str]
+        What is wrong with those that were asked for.
     """
 
     def __init__(self, record: Record) -> None:
-        self._folder = record.folder
-        self._ticks: dict[str, NDArray[np.void]] = {}
-        self._starts: dict[str, NDArray[np.int64]] = {}
+        self.faults: list[str] = []
+        self._record = record
+        self._traces: dict[str, Trace] = {}
 
-    def of(self, name: str, lines: list[int]) -> NDArray[np.void]:
-        """Ticks of some lines of a trace, in order."""
-        if name not in self._ticks:
-            ticks = read_trace(self._folder / name).ticks
-            self._ticks[name] = ticks
-        ticks = self._ticks[name]
-        # Line numbers grow along a trace.
-        first, stop = np.searchsorted(ticks["line"], (min(lines), max(lines) + 1))
-        part = ticks[first:stop]
+    def read(self, name: str) -> Trace:
+        """A trace."""
+        if name not in self._traces:
+            trace = read_told_trace(self._record.folder, name, self._record.told)
+            self._traces[name] = trace
+            if trace.damage is not None:
+                self.faults.append(f"{name} is damaged, {trace.damage}")
+        return self._traces[name]
+
+    def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
+        """Ticks of some lines of a trace, in order; None if not all of them are known."""
+        trace = self.read(name)
+        # Line numbers grow along a trace, so that damage cuts the last one short.
+        known = trace.ticks["line"]
+        if trace.damage is not None and not (known.size and known[-1] > max(lines)):
+            return None
+        first, stop = np.searchsorted(known, (min(lines), max(lines) + 1))
+        part = trace.ticks[first:stop]
         return part[np.isin(part["line"], lines)]
 
 
-def rows(record: Record) -> list[dict[str, Any]]:
+def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
     """Rows of a session, by `COLUMNS` and then the protocol's fields.
 
-    Raises
-    ------
-    VbrailleError
-        If a trace cannot be read.
+    Parameters
+    ----------
+    record
+        The session.
+    traces
+        Its traces, for who wants to know what is wrong with them. What they do not tell
+        is left empty.
     """
     progress = Progress(record.plan, record.told.events)
-    traces = Traces(record)
+    traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     return [
         _row(record, trial, progress.trials[trial.number], traces) | fields
@@ -120,6 +141,7 @@ def _row(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, 
         "notes": "; ".join(told.notes),
         "cue_time": told.wall.get("cue", ""),
         "answer_time": told.wall.get("answer", ""),
+        "trace": told.showings[-1].trace or "" if told.showings else "",
     }
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
@@ -140,8 +162,8 @@ def _row(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, 
         if record.protocol.medium == "paper":
             if "read" in t_s and "cue" in t_s:
                 row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
-        elif told.answer is not None:
-            row |= _trajectory(record, trial, told, traces)
+        elif told.answer is not None and row["trace"]:
+            row |= _trajectory(record, trial, told, traces, row["trace"])
     return row
 
 
@@ -149,21 +171,22 @@ def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
 
-def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, Any]:
+def _trajectory(
+    record: Record, trial: Trial, told: Told, traces: Traces, trace: str
+) -> dict[str, Any]:
     """What the trace tells of the last attempt."""
-    shown = told.last_attempt
-    name = shown[-1].trace
-    if name is None:
-        return {}
-    ticks = traces.of(name, [showing.line for showing in shown])
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
     edge_mm = first_edge_mm(line, protocol.mapping, stimulus.geometry)
-    if edge_mm is None:
-        return {"trace": name}
-    renderer = render(protocol, stimulus, stimulus.tuning)
+    shown = [showing.line for showing in told.last_attempt]
+    ticks = traces.of(trace, shown)
+    if edge_mm is None or ticks is None:
+        return {}
+    felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
+    ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
 
     def moved() -> NDArray[np.bool_]:
+        renderer = render(protocol, stimulus, replace(stimulus.tuning, **told.tuning))
         frames = renderer.path(ticks["x_mm"])
         idle = renderer.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
@@ -176,10 +199,8 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> dic
         span_mm=protocol.model.array.span_mm,
     )
     if found is None:
-        return {"trace": name}
-    return {
-        "trace": name, "duration_s": round(found.seconds, 6), "returned": int(found.returned)
-    }  # fmt: skip
+        return {}
+    return {"duration_s": round(found.seconds, 6), "returned": int(found.returned)}
 
 
 def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:
@@ -192,6 +213,11 @@ def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "")
     return text.getvalue()
 
 
+def encode(text: str) -> bytes:
+    """UTF-8 of a text; what is no text, in a directory's name, is spelled."""
+    return text.encode("utf-8", "backslashreplace")
+
+
 def write_new(path: Path, content: bytes) -> None:
     """Write a file that is not there yet: whole, or not at all.
 
@@ -202,6 +228,8 @@ def write_new(path: Path, content: bytes) -> None:
     VbrailleError
         If the disk does not take it.
     """
+    if not path.name:
+        raise InputError(f"{path} is a directory; give the name of a file with --out")
     partial = path.with_name(f".{path.name}.partial")
     try:
         try:
@@ -210,7 +238,7 @@ def write_new(path: Path, content: bytes) -> None:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None
         with file:
             file.write(content)
-        os.link(partial, path)
+        _put(partial, path)
     except FileExistsError:
         raise InputError(f"{path} is there already; give another name with --out") from None
     except OSError as error:
@@ -218,3 +246,15 @@ def write_new(path: Path, content: bytes) -> None:
     finally:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
+
+
+def _put(partial: Path, path: Path) -> None:
+    """Give a file its name, unless another has it."""
+    try:
+        os.link(partial, path)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
+            raise
+        if path.exists():  # a disk without hard links, such as a memory stick
+            raise FileExistsError from None
+        partial.rename(path)

@@ -56,7 +56,8 @@ class Told:
 
 def encode(event: Event, crc: int) -> tuple[bytes, int]:
     """Line of an event after one with that checksum, and its own."""
-    body = json.dumps(event, ensure_ascii=False, separators=(",", ":"))[:-1].encode()
+    text = json.dumps(event, ensure_ascii=False, separators=(",", ":"))[:-1]
+    body = text.encode("utf-8", "backslashreplace")  # as JSON spells a lone surrogate too
     crc = crc32(body, crc)
     return b'%s,"crc":"%08x"}\n' % (body, crc), crc
 
@@ -73,7 +74,18 @@ def decode(journal: bytes) -> Told:
         crc = int(found[2], 16)
         events.append(json.loads(found[1] + b"}"))
         good = end + 1
-    return Told(events, good, crc, journal[good:], None)
+    tail = journal[good:]
+    found = _LINE.match(tail)
+    if found is not None and found.end() < len(tail) and crc32(found[1], crc) == int(found[2], 16):
+        # No crash leaves that: the line is whole, and its line break is something else.
+        damage = f"line {len(events) + 1} does not end where it should"
+        return Told(events, good, crc, b"", damage)
+    return Told(events, good, crc, tail, None)
+
+
+def sum_of_torn(torn: bytes) -> dict[str, Any]:
+    """Length and checksum of what was set aside of a journal, as a run tells of it."""
+    return {"bytes": len(torn), "crc": f"{crc32(torn):08x}"}
 
 
 class Journal:
@@ -117,6 +129,21 @@ class Journal:
             self.close()
             raise
         self._count, self._crc = len(self.told.events), self.told.crc
+        self._length = self.told.good_bytes + len(self.told.torn)
+
+    def torn_file(self) -> dict[str, Any]:
+        """Length and checksum of all that was ever set aside; empty if nothing was.
+
+        Raises
+        ------
+        VbrailleError
+            If it cannot be read.
+        """
+        path = self._path.parent / TORN
+        try:
+            return sum_of_torn(path.read_bytes()) if path.exists() else {}
+        except OSError as error:
+            raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
 
     def set_torn_aside(self) -> int:
         """Move a torn tail to a file of its own; its length.
@@ -135,6 +162,7 @@ class Journal:
                 file.flush()
                 os.fsync(file.fileno())
             os.ftruncate(self._file, self.told.good_bytes)
+            self._length = self.told.good_bytes
             os.fsync(self._file)
         except OSError as error:
             raise VbrailleError(
@@ -159,12 +187,14 @@ class Journal:
             if durable:
                 os.fsync(self._file)
         except OSError as error:
+            self._take_back()
             raise VbrailleError(
                 f"{self._path} cannot be written: {error.strerror}; the {event['event']} is not "
                 f"in, all before it is: make room, then session resume goes on"
             ) from None
         self._count += 1
         self._crc = crc
+        self._length += len(line)
         return numbered
 
     def close(self) -> None:
@@ -172,6 +202,13 @@ class Journal:
         if self._file >= 0:
             os.close(self._file)
             self._file = -1
+
+    def _take_back(self) -> None:
+        """Leave nothing of an event that is not in."""
+        try:
+            os.ftruncate(self._file, self._length)
+        except OSError:  # it is a torn end now, and nothing may come after it
+            self.close()
 
     def _lock(self) -> None:
         try:

@@ -115,8 +115,8 @@ class Progress:
         Each time the session was run, or its engine started again.
     line : int
         Largest line number used so far.
-    script_line : int
-        Lines of an answers file used so far.
+    script_lines : dict[str, int]
+        Lines used so far of each answers file, by its name.
     t_s : float
         Seconds that the session has run for.
     ended : bool
@@ -137,12 +137,13 @@ class Progress:
         self.tuning: dict[str, float] = {}
         self.runs: list[Event] = []
         self.line = 0
-        self.script_line = 0
+        self.script_lines: dict[str, int] = {}
         self.t_s = 0.0
         self.wall = ""
         self.ended = False
         self.notes: list[str] = []
         self.torn_bytes = 0
+        self._answers = ""
         self._paused_s: float | None = None
         self._answered = 0
         for event in events:
@@ -177,7 +178,8 @@ class Progress:
         """Go on by an event."""
         self.t_s = max(self.t_s, event["t_s"])
         self.wall = event["wall"]
-        self.script_line = max(self.script_line, event.get("script_line", 0))
+        if "script_line" in event:
+            self.script_lines[self._answers] = event["script_line"]
         handler = getattr(self, f"_take_{event['event']}", None)
         if handler is not None:
             handler(event)
@@ -202,6 +204,7 @@ class Progress:
 
     def _take_run(self, event: Event) -> None:
         self.runs.append(event)
+        self._answers = event.get("answers", self._answers)
         self.torn_bytes += event.get("torn_bytes", 0)
         self._paused_s = None
 

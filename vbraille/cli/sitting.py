@@ -1,0 +1,172 @@
+"""One sitting of a session: its engine, and what goes on around it."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import TYPE_CHECKING, Self
+
+from vbraille.cli.stopping import EAR
+from vbraille.cli.wanted import device_info, device_spec
+from vbraille.devices import open_device
+from vbraille.engine.host import Host
+from vbraille.errors import InputError
+from vbraille.sessions.journal import Journal
+from vbraille.sessions.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+    from vbraille.devices import DeviceInfo
+    from vbraille.sessions.answers import Answers
+    from vbraille.sessions.plan import Plan
+    from vbraille.sessions.protocol import Protocol
+    from vbraille.sessions.record import Record
+    from vbraille.sessions.showing import RunEngine
+    from vbraille.sessions.sounds import Sound
+
+
+class Sitting:
+    """One run of a session: its engine, and what goes on around it. A context manager."""
+
+    def __init__(
+        self,
+        arguments: argparse.Namespace,
+        protocol: Protocol,
+        plan: Plan,
+        runs: int,
+        rate_hz: float,
+        *,
+        say: Callable[[str], None],
+    ) -> None:
+        self._arguments = arguments
+        self._say = say
+        self._real = not arguments.fast
+        self._engine: RunEngine | None = None
+        self._opened = False
+        # Another hand each time that the session is gone on with, and the same for the same seed.
+        spec = device_spec(arguments.device, arguments.hand, plan.seed + runs)
+        if arguments.fast and not spec.startswith("sim:"):
+            raise InputError("--fast is for the simulated device; leave out --device")
+        if protocol.medium == "device":
+            wanted = device_info(protocol.model, protocol.geometry, rate_hz)
+            self._engine = _build(spec, wanted, protocol, plan, fast=arguments.fast)
+
+    def check(self, answers: Answers) -> None:
+        """Raise InputError if these answers cannot be had in this way."""
+        if self._arguments.fast and answers.typed:
+            raise InputError("--fast is for answers that are not typed; give --answers simulated")
+
+    def open(self) -> None:
+        """Wait until the engine runs, unless it does."""
+        if self._engine is not None and not self._opened:
+            self._engine.start()
+            self._opened = True
+
+    def run(self, record: Record, answers: Answers, *, why: str) -> int:
+        """Conduct the session until its end, or until it is stopped."""
+        # With numba and all: a host takes as long to start, and does so meanwhile.
+        from vbraille.sessions.console import Console
+        from vbraille.sessions.course import Course
+        from vbraille.sessions.showing import OnDevice
+
+        with Journal(record.folder) as book:
+            torn_bytes = book.set_torn_aside()
+            self.open()
+            progress = Progress(record.plan, book.told.events)
+            display = None
+            if self._engine is not None:
+                display = OnDevice(self._engine, record.protocol, record.folder, keeps=answers.felt)
+            sound = self._sound(answers)
+            course = Course(
+                record.protocol,
+                record.plan,
+                book,
+                progress,
+                display,
+                waits=answers.typed,
+                corrects=not answers.felt,
+                say=self._say,
+                play=sound.play,
+                real=self._real,
+            )
+            told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            if torn := book.torn_file():
+                told["torn_file"] = torn
+            if progress.runs:
+                told["gap_s"] = _since(progress.wall)
+                self._say(
+                    f"resume: {progress.done} of {len(record.plan.trials)} trials have answers"
+                )
+            if torn_bytes:
+                self._say(f"torn: {torn_bytes} bytes at the end of the journal are in journal.torn")
+            if not answers.typed and not progress.begun:
+                told["practice"] = "left out"
+            try:
+                arguments = self._arguments
+                course.start(
+                    **told,
+                    spec=arguments.device,
+                    hand=arguments.hand,
+                    answers=arguments.answers,
+                    clock="machine" if self._real else "manual",
+                )
+                if "practice" in told:
+                    self._say("practice: left out, since answers are not typed")
+                    course.log("begin")
+                Console(course, answers, say=self._say, real=self._real).run()
+            finally:
+                EAR.close()  # so that the array goes to rest
+                if display is not None:
+                    display.close()
+            if display is not None:
+                counts = {name: count for name, count in display.engine.counts.items() if count}
+                trace = progress.runs[-1]["trace"]
+                size = (record.folder / trace).stat().st_size
+                lost = display.engine.lost
+                course.log("closed", lost=lost, counts=counts, trace=trace, trace_bytes=size)
+        return 0
+
+    def _sound(self, answers: Answers) -> Sound:
+        from vbraille.sessions.sounds import Bell, Silence, Tones
+
+        wanted = self._arguments.sound
+        if wanted == "none" or (wanted == "auto" and not answers.typed):
+            return Silence()
+        if wanted != "bell":
+            try:
+                return Tones()
+            except OSError as error:
+                if wanted == "tones":
+                    raise InputError(f"{error}; give --sound bell, or none") from None
+            self._say("sound: the terminal's bell, since there is no audio output")
+        return Bell()
+
+    def __enter__(self) -> Self:
+        if isinstance(self._engine, Host):
+            self._engine.launch()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._engine is not None:
+            EAR.close()
+            self._engine.close()
+
+
+def _build(
+    spec: str, wanted: DeviceInfo, protocol: Protocol, plan: Plan, *, fast: bool
+) -> RunEngine:
+    """The engine: in a process of its own, or on a clock turned by hand."""
+    if fast:
+        from vbraille.engine.batch import BatchEngine
+
+        return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
+    trials = (*plan.practice, *plan.trials)
+    most = max(len(protocol.line(s.masks)) for trial in trials for s in trial.stimuli)
+    return Host(spec, wanted, most)
+
+
+def _since(wall: str) -> float:
+    """Seconds since a time of the journal; not below 0, should the clock have been set back."""
+    before = datetime.fromisoformat(wall)
+    return round(max((datetime.now(before.tzinfo) - before).total_seconds(), 0.0), 3)
