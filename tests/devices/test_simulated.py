@@ -4,7 +4,7 @@ import pytest
 from tests.engine.test_loop import info, straight
 from vbraille.devices.hand import Sweep
 from vbraille.devices.simulated import APPROACH_MM_S, SimulatedDevice
-from vbraille.engine import ManualClock
+from vbraille.engine.clock import ManualClock
 
 SPAN_MM = 10.8
 

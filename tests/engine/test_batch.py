@@ -10,8 +10,9 @@ from tests.engine.test_loop import straight
 from vbraille.devices import DeviceInfo
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.simulated import SimulatedDevice
-from vbraille.engine import LocalEngine, ManualClock
 from vbraille.engine.batch import BatchEngine
+from vbraille.engine.clock import ManualClock
+from vbraille.engine.local import LocalEngine
 from vbraille.engine.ring import Flag, tick_dtype
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning

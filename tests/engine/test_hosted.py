@@ -7,8 +7,10 @@ import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, picture, straight
 from vbraille.devices.hand import Sweep
-from vbraille.engine import Loop, ManualClock, shared
+from vbraille.engine import shared
+from vbraille.engine.clock import ManualClock
 from vbraille.engine.hosted import Hosted, warm_up
+from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Flag
 from vbraille.render import VBD
 from vbraille.render.renderer import Renderer

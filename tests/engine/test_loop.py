@@ -7,7 +7,8 @@ from vbraille.devices import DeviceInfo, Sample
 from vbraille.devices.hand import Hand
 from vbraille.devices.motion import Motion
 from vbraille.devices.simulated import SimulatedDevice
-from vbraille.engine import Loop, ManualClock
+from vbraille.engine.clock import ManualClock
+from vbraille.engine.loop import Loop
 from vbraille.errors import DeviceError
 from vbraille.render import MAPPINGS, STRESS2, Tuning
 from vbraille.render.renderer import Renderer

@@ -5,7 +5,8 @@ import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.devices.hand import Sweep
-from vbraille.engine import LocalEngine, ManualClock
+from vbraille.engine.clock import ManualClock
+from vbraille.engine.local import LocalEngine
 from vbraille.page import Layout
 from vbraille.reading import COMMANDS, Echo, Reader
 from vbraille.reading.commands import BY_KEY

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.cli.build import Page
-    from vbraille.engine import Tally
+    from vbraille.engine.tally import Tally
 
 _POLL_S = 0.02
 _PLACES = {

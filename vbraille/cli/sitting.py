@@ -65,7 +65,7 @@ class Sitting:
 
     def run(self, record: Record, answers: Answers, *, why: str) -> int:
         """Conduct the session until its end, or until it is stopped."""
-        # With numba and all: a host takes as long to start, and does so meanwhile.
+        # Here and not above: numba takes long to load, and the host starts meanwhile.
         from vbraille.sessions.console import Console
         from vbraille.sessions.course import Course
         from vbraille.sessions.showing import OnDevice

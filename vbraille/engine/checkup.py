@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.engine import LocalEngine
+from vbraille.engine.local import LocalEngine
 from vbraille.render import kernels
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Protocol
 
 from vbraille.devices.base import Placing
-from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Flag, Ring
+from vbraille.engine.ring import Flag
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,8 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.devices import Device, DeviceInfo
-    from vbraille.engine.clock import Clock
+    from vbraille.devices import DeviceInfo
     from vbraille.engine.tally import Tally
     from vbraille.render.renderer import Renderer
 
@@ -94,75 +92,3 @@ def placing_of(tick: np.void | None) -> Placing:
     if flags & Flag.STOP:
         return Placing.STOP
     return Placing.MARK if flags & Flag.MARK else Placing.DONE
-
-
-class LocalEngine:
-    """An engine in this process, for tests and for runs on a clock that is turned by hand.
-
-    Parameters
-    ----------
-    device
-        Opened, and closed by whoever opened it.
-    clock
-        When ticks are due.
-    rate_hz
-        Ticks a second.
-    poll_ticks
-        Ticks done by each poll.
-    """
-
-    def __init__(
-        self, device: Device, clock: Clock, *, rate_hz: float = 1000.0, poll_ticks: int = 1
-    ) -> None:
-        shape = device.info.rows, device.info.columns
-        size = poll_ticks + 1
-        self._ring = Ring(memoryview(bytearray(Ring.bytes_needed(shape, size))), shape, size)
-        self.loop = Loop(device, clock, rate_hz=rate_hz, ring=self._ring)
-        self._poll_ticks = poll_ticks
-        self._line = 0
-
-    @property
-    def info(self) -> DeviceInfo:
-        """What the device says of itself."""
-        return self.loop.device.info
-
-    @property
-    def tally(self) -> Tally:
-        """What the loop has done."""
-        return self.loop.tally
-
-    @property
-    def x_mm(self) -> float | None:
-        """Where the array's left column is; None before it is known."""
-        return self.loop.x_mm
-
-    @property
-    def paused(self) -> bool:
-        """Whether the array rests."""
-        return self.loop.paused
-
-    @paused.setter
-    def paused(self, paused: bool) -> None:
-        self.loop.paused = paused
-
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
-        """Put a picture of a line under the hand; see `Engine`."""
-        self.loop.show(picture, line)
-        if line != self._line:
-            self._line = line
-            self.loop.device.follow(end_mm)
-
-    def poll(self) -> NDArray[np.void]:
-        """Do some ticks; their records."""
-        for _ in range(self._poll_ticks):
-            self.loop.tick()
-        self._ring.publish()
-        return self._ring.drain()
-
-    def take_notes(self) -> Sequence[str]:
-        """What the device has to say since the last call."""
-        return self.loop.device.take_notes()
-
-    def set_zero(self) -> None:
-        """Say that the carriage is at the left stop now."""
-        self.loop.device.set_zero()

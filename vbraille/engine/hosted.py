@@ -20,7 +20,7 @@ from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
-from vbraille.engine.mailbox import PostedPicture
+from vbraille.engine.posted import PostedPicture
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
 

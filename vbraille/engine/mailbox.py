@@ -12,16 +12,16 @@ from zlib import crc32
 
 import numpy as np
 
-from vbraille.render import kernels
+from vbraille.render import work
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vbraille.engine.posted import PostedPicture
     from vbraille.render.renderer import Renderer
 
 _PUBLISHED, _PAUSED, _ZEROED, _STOPPED = range(4)
 _HEADER_BYTES = 64
-_SCRATCH = 64  # places for which a kernel has room beside its parameters
 
 
 class Mailbox:
@@ -41,12 +41,12 @@ class Mailbox:
         self._words = buffer[:_HEADER_BYTES].cast(
             "q"
         )  # a view of numpy's takes three times as long
-        self._slots = np.frombuffer(buffer, _slot_dtype(shape, cells), 2, _HEADER_BYTES)
+        self._slots = np.frombuffer(buffer, slot_dtype(shape, cells), 2, _HEADER_BYTES)
 
     @staticmethod
     def bytes_needed(shape: tuple[int, int], cells: int) -> int:
         """Size of the buffer, a multiple of 8."""
-        return _HEADER_BYTES + 2 * _slot_dtype(shape, cells).itemsize
+        return _HEADER_BYTES + 2 * slot_dtype(shape, cells).itemsize
 
     @property
     def published(self) -> int:
@@ -115,48 +115,8 @@ class Mailbox:
         self._words[_STOPPED] = 1
 
 
-class PostedPicture:
-    """A picture out of a mailbox: its own copy, in the memory that it was made with.
-
-    Parameters
-    ----------
-    shape, cells
-        As the mailbox's.
-    """
-
-    def __init__(self, shape: tuple[int, int], cells: int) -> None:
-        rows, columns = shape
-        self.slot = np.zeros((), _slot_dtype(shape, cells))
-        self._work = np.zeros((3, max(_SCRATCH, columns, kernels.IDLE + rows)))
-        self._work[0, kernels.COLUMNS] = columns
-        self._parameters = self._work[0, : kernels.IDLE + rows]
-        self._gains = self.slot["gains"]
-
-    @property
-    def line(self) -> int:
-        """Number of its line."""
-        return int(self.slot["line"])
-
-    @property
-    def end_mm(self) -> float:
-        """Where its last dot ends."""
-        return float(self.slot["end_mm"])
-
-    @property
-    def number(self) -> int:
-        """How many were posted with it."""
-        return int(self.slot["number"])
-
-    def update(self) -> None:
-        """Have the kernel see what was copied in."""
-        np.copyto(self._parameters, self.slot["parameters"])
-
-    def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
-        """Fill the frame for the array's left column at x."""
-        kernels.frame(self._work, self._gains, x_mm, out)
-
-
-def _slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
+def slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
+    """One slot: what the kernels know of a line of so many cells at most."""
     rows, _ = shape
     return np.dtype(
         [
@@ -164,7 +124,7 @@ def _slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
             ("number", "<i8"),
             ("line", "<i8"),
             ("end_mm", "<f8"),
-            ("parameters", "<f8", (kernels.IDLE + rows,)),
+            ("parameters", "<f8", (work.IDLE + rows,)),
             ("gains", "<f8", (rows, 2 * (cells + 2))),
         ]
     )

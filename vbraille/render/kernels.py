@@ -19,25 +19,20 @@ import math
 
 from numba import njit
 
-# Places in the row of parameters.
-(
-    CELLS_PER_MM,
+from vbraille.render.work import (
     CELL_PITCH,
+    CELLS_PER_MM,
     COLUMN_PITCH,
     COLUMNS,
-    DOTS_PER_MM,
     DOT_SPACING,
+    DOTS_PER_MM,
+    IDLE,
+    OVERLAP,
     PROFILE,
-    OVERLAP,  # 1 if two dots can be under one place
-    SHAPE,  # coefficients of the profile, 6
-    _S1,
-    _S2,
-    _S3,
-    _S4,
-    _S5,
-    IDLE,  # deflection of each row off the dots
-) = range(15)
-SWING, SLOT = 1, 2  # further rows of work
+    SHAPE,
+    SLOT,
+    SWING,
+)
 
 _HALF_SINE = 0.0
 _C = [(-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(11)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from vbraille.render import kernels
+from vbraille.render import kernels, work
 from vbraille.render.models import Profile
 from vbraille.render.reference import half_sine_peak
 
@@ -64,22 +64,22 @@ class Renderer:
                 f"the array has {array.rows}"
             )
         self.array = array
-        self._work = np.zeros((3, max(_BLOCK * array.columns, kernels.IDLE + array.rows)))
+        self._work = np.zeros((3, max(_BLOCK * array.columns, work.IDLE + array.rows)))
         parameters = self._work[0]
-        parameters[kernels.CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
-        parameters[kernels.CELL_PITCH] = geometry.cell_pitch_mm
-        parameters[kernels.COLUMN_PITCH] = array.column_pitch_mm
-        parameters[kernels.COLUMNS] = array.columns
-        parameters[kernels.DOTS_PER_MM] = 1 / geometry.dot_width_mm
-        parameters[kernels.DOT_SPACING] = geometry.dot_spacing_mm
-        parameters[kernels.PROFILE] = profile
-        parameters[kernels.OVERLAP] = geometry.dot_width_mm > min(
+        parameters[work.CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
+        parameters[work.CELL_PITCH] = geometry.cell_pitch_mm
+        parameters[work.COLUMN_PITCH] = array.column_pitch_mm
+        parameters[work.COLUMNS] = array.columns
+        parameters[work.DOTS_PER_MM] = 1 / geometry.dot_width_mm
+        parameters[work.DOT_SPACING] = geometry.dot_spacing_mm
+        parameters[work.PROFILE] = profile
+        parameters[work.OVERLAP] = geometry.dot_width_mm > min(
             geometry.dot_spacing_mm, geometry.cell_gap_mm
         )
-        parameters[kernels.SHAPE : kernels.SHAPE + 6] = _shape(profile, tuning)
+        parameters[work.SHAPE : work.SHAPE + 6] = _shape(profile, tuning)
         idle = np.zeros(array.rows)
         idle[: mapping.rows] = mapping.idle()
-        parameters[kernels.IDLE : kernels.IDLE + array.rows] = idle
+        parameters[work.IDLE : work.IDLE + array.rows] = idle
         slots = np.zeros((len(masks) + 2, 2), np.uint16)
         slots[1:-1] = mapping.row_bits()[masks]
         shown = slots.ravel() >> np.arange(array.rows, dtype=np.uint16)[:, None] & 1
@@ -88,7 +88,7 @@ class Renderer:
     @property
     def parameters(self) -> NDArray[np.float64]:
         """What the kernels know of the line's shape, float64[IDLE + rows]; see `kernels`."""
-        return self._work[0, : kernels.IDLE + self.array.rows]
+        return self._work[0, : work.IDLE + self.array.rows]
 
     @property
     def gains(self) -> NDArray[np.float64]:

@@ -1,0 +1,411 @@
+"""Sessions that are killed again and again, and what became of their answers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+import select
+import subprocess
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import IO, TYPE_CHECKING
+
+import numpy as np
+
+from tests.benchmarks.timing import vbraille
+from vbraille.sessions import journal
+from vbraille.sessions.check import check
+from vbraille.sessions.record import PLAN, load
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+KILLS = """
+format = 1
+name = "kills"
+title = "Pairs between delimiters"
+source = "ours"
+model = "vbd"
+[keys]
+l = "1"
+r = "4"
+n = "0"
+[design]
+kind = "combinations"
+characters = ["a", "c", "4", "0"]
+length = 2
+before = "c"
+after = "c"
+repeats = 2
+blocks = 2
+[[conditions]]
+name = "plain"
+texture = 0.0
+[[conditions]]
+name = "textured"
+texture = 1.0
+[practice]
+trials = 2
+[trial]
+gap_s = 0.0
+[session]
+break_every = 10
+"""
+TRIALS = 64
+MOST_LINES = 24
+MOST_PAUSE_S = 0.012  # some more than a trial takes
+# Shares of the kills, and of those a cut of the journal's last line if it may be lost.
+STARTING, BEGINNING, CUT = 0.3, 0.2, 0.5
+_PATIENCE_S = 60.0
+_CELLS = {"l": "⠁", "c": "⠉", "r": "⠈", "n": "⠀"}
+# What a crash of the machine may take: nobody was told that it is in.
+_NOT_DURABLE = ("presented", "cue", "contact", "read")
+_DONE = ("answer", "undo", "note", "repeat")
+
+Event = dict
+
+
+@dataclass(slots=True)
+class Tally:
+    """What came of the kills; the lists have a sentence each."""
+
+    kills: int = 0
+    starting: int = 0
+    torn: int = 0
+    sessions: int = 0
+    acknowledged: int = 0
+    most_attempts: int = 0
+    lost: list[str] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
+    others: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """What a run of the program said until it ended; exit code None: it was killed."""
+
+    lines: list[str]
+    code: int | None
+    stderr: str
+    first_line_s: float = 0.0
+
+
+def kill_often(kills: int, seed: int, folder: Path) -> Tally:
+    """Kill so many runs of sessions at random moments, and bring every session to its end."""
+    random = np.random.default_rng(seed)
+    protocol = folder / "kills.toml"
+    protocol.write_text(KILLS)
+    tally = Tally()
+    while tally.kills < kills:
+        tally.sessions += 1
+        number = f"{tally.sessions:03}"
+        answers = folder / f"{number}.txt"
+        answers.write_text(script(random))
+        command = ["session", "run", str(protocol), "--participant", "P1", "--fast"]
+        command += ["--seed", str(random.integers(1000)), "--answers", str(answers)]
+        command += ["--hand", "sweep:150", "--out"]
+        whole = folder / f"{number}-whole"
+        ended = _run([*command, str(whole)])
+        assert ended.code == 0, ended.stderr
+        run = [*command, str(folder / number)]
+        _Killed(run, whole, ended.first_line_s, random, tally).go(kills)
+    return tally
+
+
+def script(random: np.random.Generator) -> str:
+    """Lines of a file of answers: some are taken back, the last one too."""
+    lines = ["# answers, notes, and answers that are corrected"]
+    for trial in range(1, TRIALS + 1):
+        answer, other = ("".join(random.choice(list("lcrn"), 2)) for _ in range(2))
+        noted, repeated, undone = random.random(3) < 0.1
+        if noted:
+            lines.append(f"note before {trial}")
+        if repeated:
+            lines.append("repeat")
+        lines.append(answer)
+        if undone or trial == TRIALS:
+            lines += ["undo", other]
+    return "\n".join(lines) + "\n"
+
+
+class _Killed:
+    """A session that is killed and gone on with, beside one that nobody disturbed."""
+
+    def __init__(
+        self,
+        run: list[str],
+        whole: Path,
+        first_line_s: float,
+        random: np.random.Generator,
+        tally: Tally,
+    ) -> None:
+        self._run = run
+        self._whole = whole
+        self._folder = whole.with_name(run[-1].rpartition("/")[2])
+        self._first_line_s = first_line_s
+        self._random = random
+        self._tally = tally
+        self._lost, self._skipped, self._others = tally.lost, tally.skipped, tally.others
+        self._said: list[str] = []
+        self._tails: list[bytes] = []
+
+    def go(self, kills: int) -> None:
+        """Until its end; after so many kills, by a run that is let be."""
+        tally = self._tally
+        while not self._over():
+            command = self._run
+            if self._folder.exists():
+                command = ["session", "resume", str(self._folder)]
+            aside, untorn = self._aside_bytes(), not self._tail()
+            before = len(self._events()) if self._folder.exists() else 0
+            if tally.kills == kills:
+                ended = _run(command)
+            else:
+                # All is drawn in any case, so that what is drawn later never depends on time.
+                kind, share, cut, at = self._random.random(4)
+                lines = int(self._random.integers(1, MOST_LINES + 1))
+                if kind < STARTING:
+                    ended = _run(command, 0, share * 1.3 * self._first_line_s)
+                elif kind < STARTING + BEGINNING:
+                    ended = _run(command, 1 + lines % 3, share * MOST_PAUSE_S)
+                else:
+                    ended = _run(command, lines, share * MOST_PAUSE_S)
+                if ended.code is None:
+                    tally.kills += 1
+                    tally.starting += not ended.lines
+                    if cut < CUT and self._folder.exists():
+                        self._cut(at, before, ended.lines)
+            if (untorn or self._aside_bytes() > aside) and (tail := self._tail()):
+                self._tails.append(tail)
+                tally.torn += 1
+            self._said += ended.lines
+            self._see(ended)
+            if ended.code:  # it would fail for ever
+                return
+        self._compare()
+
+    def _see(self, ended: Ended) -> None:
+        """What must hold after every kill."""
+        if ended.code:
+            self._add(self._others, f"exit code {ended.code}: {ended.stderr.strip()}")
+        if not self._folder.exists():
+            if self._said:
+                self._add(self._lost, "the session is gone")
+            return
+        for finding in check(load(self._folder)):
+            if not finding.good:
+                self._add(self._others, f"session check: {finding.text}")
+        missing = Counter(_acknowledged(self._said)) - Counter(_answers(self._events()))
+        for trial, answer in missing:
+            self._add(self._lost, f"answer to trial {trial}, {answer}, is not in the journal")
+
+    def _compare(self) -> None:
+        """What must hold at the end, beside the session that nobody disturbed."""
+        tally, events = self._tally, self._events()
+        whole = load(self._whole).told.events
+        tally.acknowledged += len(_acknowledged(self._said))
+        if (self._folder / PLAN).read_bytes() != (self._whole / PLAN).read_bytes():
+            self._add(self._others, "the plan is another one")
+        if _done(events) != _done(whole) or _answers(events) != _answers(whole):
+            self._add(self._lost, "what the file says was not done line by line, once each")
+        if _first_shown(events) != _first_shown(whole):
+            self._add(self._skipped, "the order in which trials were first shown is another one")
+        self._compare_said(_last(events, "presented", "attempt"))
+        for problem in _wrong_attempts(events):
+            self._add(self._skipped, problem)
+        self._compare_table(events, whole)
+        self._compare_tails(events)
+
+    def _compare_said(self, attempts: dict[int, int]) -> None:
+        """Nothing was shown after its answer was in, and nothing that the journal has not."""
+        answered: set[int] = set()
+        cues: Counter[int] = Counter()
+        for line in self._said:
+            kind, trial = _parse(line)
+            if kind == "answer":
+                answered.add(trial)
+            elif kind == "cue":
+                cues[trial] += 1
+                if trial in answered:
+                    self._add(
+                        self._lost,
+                        f"trial {trial} was shown again after its answer was acknowledged",
+                    )
+        for trial in cues:
+            if cues[trial] > attempts[trial]:
+                self._add(
+                    self._skipped,
+                    f"trial {trial} was shown {cues[trial]} times, as {attempts[trial]}",
+                )
+
+    def _compare_table(self, events: list[Event], whole: list[Event]) -> None:
+        exported = _run(["session", "export", str(self._folder)])
+        rows = list(csv.DictReader(io.StringIO("\n".join(exported.lines))))
+        attempts = _last(events, "presented", "attempt")
+        self._tally.most_attempts = max(self._tally.most_attempts, *attempts.values())
+        if {int(row["trial"]): int(row["attempt"]) for row in rows} != attempts:
+            self._add(self._others, "the exported attempts are not those of the journal")
+        if {int(row["trial"]): row["answered"] for row in rows} != _last(whole, "answer", "answer"):
+            self._add(self._lost, "the exported answers are not those of the undisturbed session")
+        if len(rows) != TRIALS:
+            self._add(self._skipped, f"{len(rows)} rows are exported, of {TRIALS} trials")
+
+    def _compare_tails(self, events: list[Event]) -> None:
+        """Every torn end is in its file; `session check` holds that against the run events."""
+        torn = self._folder / journal.TORN
+        found = torn.read_bytes() if torn.exists() else b""
+        if found != b"".join(tail + b"\n" for tail in self._tails):
+            self._add(self._others, "journal.torn does not hold what was torn")
+        lengths = iter([len(tail) for tail in self._tails])
+        for run in _of(events, "run"):
+            # One that was killed between setting it aside and its own event names none.
+            if run.get("torn_bytes") and run["torn_bytes"] not in lengths:
+                self._add(
+                    self._others, f"a run event names {run['torn_bytes']} torn bytes that are none"
+                )
+        checked = _run(["session", "check", str(self._folder)])
+        named = any(line.startswith(f"{journal.TORN}: ") for line in checked.lines)
+        if checked.code or named != bool(self._tails) or "is ended" not in checked.lines[-1]:
+            self._add(
+                self._others, f"session check, exit code {checked.code}: {'; '.join(checked.lines)}"
+            )
+
+    def _cut(self, share: float, before: int, lines: list[str]) -> None:
+        """Cut the last line short, as if the machine had crashed, unless it was acknowledged.
+
+        Only one that came after those before, of the run that said these lines.
+        """
+        told = self._told()
+        happened = Counter(event["event"] for event in told.events[before:])
+        last = told.events[-1]["event"]
+        said = Counter(line.partition(":")[0] for line in lines)
+        loose = last in _NOT_DURABLE
+        loose |= last in ("answer", "undo", "note") and happened[last] > said[last]
+        loose |= last == "run" and not said.keys() - {"session", "resume", "torn"}
+        if not happened or not loose or told.torn:
+            return
+        path = self._folder / journal.NAME
+        content = path.read_bytes()
+        start = content.rindex(b"\n", 0, -1) + 1
+        os.truncate(path, start + 1 + int(share * (len(content) - start - 1)))
+
+    def _told(self) -> journal.Told:
+        return journal.decode((self._folder / journal.NAME).read_bytes())
+
+    def _events(self) -> list[Event]:
+        return self._told().events
+
+    def _over(self) -> bool:
+        return self._folder.exists() and bool(_of(self._events(), "end"))
+
+    def _tail(self) -> bytes:
+        return self._told().torn if self._folder.exists() else b""
+
+    def _aside_bytes(self) -> int:
+        torn = self._folder / journal.TORN
+        return torn.stat().st_size if torn.exists() else 0
+
+    def _add(self, sentences: list[str], what: str) -> None:
+        sentence = f"session {self._folder.name}: {what}"
+        if sentence not in sentences:
+            sentences.append(sentence)
+
+
+def _run(command: list[str], lines: int | None = None, pause_s: float = 0.0) -> Ended:
+    """Run the program; kill it a while after it has said so many lines, if a number is given."""
+    said: list[bytes] = []
+    begun_s = time.monotonic()
+    with subprocess.Popen(
+        vbraille(*command),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        bufsize=0,  # a line at a time, and nothing of the rest is kept from communicate
+    ) as process:
+        assert process.stdout is not None
+        if lines != 0:
+            said.append(_read(process.stdout))
+        first_line_s = time.monotonic() - begun_s
+        if lines is None:
+            rest, stderr = process.communicate(timeout=_PATIENCE_S)
+        else:
+            while len(said) < lines and said[-1]:
+                said.append(_read(process.stdout))
+            time.sleep(pause_s)
+            process.kill()
+            rest, stderr = process.communicate(timeout=_PATIENCE_S)
+    text = (b"".join(said) + rest).decode()
+    # A line without an end was not read by anybody.
+    whole = text.split("\n")[:-1]
+    return Ended(
+        whole,
+        process.returncode if process.returncode >= 0 else None,
+        stderr.decode(),
+        first_line_s,
+    )
+
+
+def _read(stdout: IO[bytes]) -> bytes:
+    """Read a line, or what there is of it at the end."""
+    assert select.select([stdout], [], [], _PATIENCE_S)[0]
+    return stdout.readline()
+
+
+def _parse(line: str) -> tuple[str, int]:
+    """Kind of a line and its trial, 0 if it has none."""
+    found = re.match(r"(\w+): trial (\d+)", line)
+    return ("", 0) if found is None else (found[1], int(found[2]))
+
+
+def _acknowledged(lines: list[str]) -> list[tuple[int, str]]:
+    """Trials and answers that the program said are in."""
+    found = (re.fullmatch(r"answer: trial (\d+) of \d+, (.+)", line) for line in lines)
+    return [(int(f[1]), "".join(_CELLS[name] for name in f[2].split())) for f in found if f]
+
+
+def _of(events: list[Event], name: str) -> list[Event]:
+    return [event for event in events if event["event"] == name]
+
+
+def _answers(events: list[Event]) -> list[tuple[int, str]]:
+    return [(event["trial"], event["answer"]) for event in _of(events, "answer")]
+
+
+def _done(events: list[Event]) -> list[tuple]:
+    """What was done for each line of the file."""
+    names = ("script_line", "event", "trial", "answer", "text", "corrects")
+    return [tuple(map(event.get, names)) for event in events if event["event"] in _DONE]
+
+
+def _first_shown(events: list[Event]) -> list[int]:
+    return list(dict.fromkeys(event["trial"] for event in _of(events, "presented")))
+
+
+def _last(events: list[Event], name: str, member: str) -> dict:
+    return {event["trial"]: event[member] for event in _of(events, name)}
+
+
+def _wrong_attempts(events: list[Event]) -> list[str]:
+    """Trials that were shown again without a reason, or not again though they were open."""
+    problems = []
+    attempts: Counter[int] = Counter()
+    open_trial, reason = 0, True
+    for event in events:
+        kind, trial = event["event"], event.get("trial", 0)
+        if kind == "presented":
+            if trial != (open_trial or trial) or event["attempt"] != attempts[trial] + 1:
+                problems.append(
+                    f"trial {trial} was shown as attempt {event['attempt']} after "
+                    f"{attempts[trial]}, with trial {open_trial} open"
+                )
+            if attempts[trial] and not reason:
+                problems.append(f"trial {trial} was shown again, and nobody wanted it")
+            attempts[trial] = event["attempt"]
+            open_trial, reason = trial, False
+        elif kind == "answer" and trial == open_trial:
+            open_trial = 0
+        reason |= kind in ("run", "repeat")
+    return problems

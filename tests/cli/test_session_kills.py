@@ -1,0 +1,17 @@
+"""The program killed in the middle of sessions: what it said is in, is in."""
+
+from tests.benchmarks.killing import kill_often
+from tests.conftest import SEED
+
+KILLS = 20
+
+
+def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
+    print(f"seed: {SEED}")
+    tally = kill_often(KILLS, SEED, tmp_path)
+    assert (tally.lost, tally.skipped, tally.others) == ([], [], [])
+    assert tally.kills == KILLS
+    assert tally.starting
+    assert tally.torn
+    assert tally.acknowledged >= KILLS
+    assert tally.most_attempts > 1
