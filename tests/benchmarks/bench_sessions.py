@@ -18,9 +18,9 @@ import numpy as np
 from tests.benchmarks.killing import kill_often
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
-from vbraille.sessions.protocol import builtin_text
-from vbraille.sessions.record import load
-from vbraille.sessions.traces import read_trace
+from vbraille.sessions.planning.protocol import builtin_text
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.traces import read_trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,8 +59,8 @@ gap_s = 0.0
 _START = """
 import time
 begun_s = time.perf_counter()
-import vbraille.cli.session, vbraille.sessions.console, vbraille.sessions.course
-import vbraille.sessions.showing
+import vbraille.cli.session, vbraille.sessions.running.console, vbraille.sessions.running.course
+import vbraille.sessions.running.showing
 from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
 from vbraille.render import VBD

@@ -16,9 +16,9 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 
 from tests.benchmarks.timing import vbraille
-from vbraille.sessions import journal
-from vbraille.sessions.check import check
-from vbraille.sessions.record import PLAN, load
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.check import check
+from vbraille.sessions.record.folder import PLAN, load
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,7 @@ import pytest
 from tests.cli import program
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import COMPARED, MINI
-from vbraille.sessions.protocol import builtin_names
+from vbraille.sessions.planning.protocol import builtin_names
 
 WHO = ("--participant", "P07")
 PAPER = MINI.replace('model = "vbd"', 'model = "vbd"\nmedium = "paper"')

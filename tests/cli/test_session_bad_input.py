@@ -8,8 +8,8 @@ import pytest
 
 from tests.cli.test_bad_input import refused
 from tests.sessions.sittings import MINI, Session
-from vbraille.sessions import journal
-from vbraille.sessions.journal import first_lines
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.journal import first_lines
 
 FAST = ("--participant", "P07", "--seed", "1", "--answers", "simulated", "--fast")
 

@@ -14,10 +14,10 @@ from tests.cli import program
 from tests.cli.program import Terminal
 from tests.cli.test_read_serial import simulated
 from tests.sessions.sittings import MINI
-from vbraille.sessions import export
-from vbraille.sessions.check import check
-from vbraille.sessions.record import load
-from vbraille.sessions.replay import frames
+from vbraille.sessions.record import export
+from vbraille.sessions.record.check import check
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.replay import frames
 
 STRINGS = """
 format = 1

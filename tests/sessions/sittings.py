@@ -7,15 +7,15 @@ from pathlib import Path
 from vbraille.devices import open_device
 from vbraille.devices.base import DeviceInfo
 from vbraille.engine.batch import BatchEngine
-from vbraille.sessions.answers import Simulated
-from vbraille.sessions.console import Console
-from vbraille.sessions.course import Course
-from vbraille.sessions.journal import Journal
-from vbraille.sessions.plan import make_plan
-from vbraille.sessions.progress import Progress
-from vbraille.sessions.protocol import parse_protocol
-from vbraille.sessions.record import create, load, versions
-from vbraille.sessions.showing import OnDevice
+from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.record.folder import create, load, versions
+from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import Simulated
+from vbraille.sessions.running.console import Console
+from vbraille.sessions.running.course import Course
+from vbraille.sessions.running.showing import OnDevice
 
 MINI = """
 format = 1

@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING
 from vbraille.cli.printable import printable
 from vbraille.cli.wanted import check_rate
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions import journal
-from vbraille.sessions.answers import Script, Typed, parse_answers
-from vbraille.sessions.plan import make_plan
-from vbraille.sessions.progress import Progress
-from vbraille.sessions.protocol import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record import FORMAT, check_free, create, load, versions
+from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.folder import FORMAT, check_free, create, load, versions
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import Script, Typed, parse_answers
 
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.sessions.answers import Answers
-    from vbraille.sessions.conduct import Field
-    from vbraille.sessions.plan import Plan, Trial
-    from vbraille.sessions.protocol import Protocol
+    from vbraille.sessions.planning.conduct import Field
+    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.running.answers import Answers
 
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
 
@@ -136,8 +136,8 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions import bids
-    from vbraille.sessions.export import Traces, encode, rows, to_csv, write_new
+    from vbraille.sessions.record import bids
+    from vbraille.sessions.record.export import Traces, encode, rows, to_csv, write_new
 
     if arguments.bids and not arguments.out:
         raise InputError("--bids needs a directory; give one with --out")
@@ -162,7 +162,7 @@ def _export(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.check import check_folder
+    from vbraille.sessions.record.check import check_folder
 
     good = True
     for finding in check_folder(Path(arguments.folder)):
@@ -219,8 +219,8 @@ def _cells(trial: Trial):
 
 def _check_script(script: Script, protocol: Protocol, progress: Progress) -> None:
     """Raise InputError if a line of the file is no answer to its trial: nothing is begun then."""
-    from vbraille.sessions.console import read_line
-    from vbraille.sessions.orders import find_order
+    from vbraille.sessions.running.console import read_line
+    from vbraille.sessions.running.orders import find_order
 
     trials = iter(progress.plan.trials[progress.done :])
     correcting, answered = progress.correcting, progress.last_answered

@@ -10,20 +10,20 @@ from vbraille.cli.wanted import device_info, device_spec
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
-from vbraille.sessions.journal import Journal
-from vbraille.sessions.progress import Progress
+from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.progress import Progress
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable
 
     from vbraille.devices import DeviceInfo
-    from vbraille.sessions.answers import Answers
-    from vbraille.sessions.plan import Plan
-    from vbraille.sessions.protocol import Protocol
-    from vbraille.sessions.record import Record
-    from vbraille.sessions.showing import RunEngine
-    from vbraille.sessions.sounds import Sound
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.showing import RunEngine
+    from vbraille.sessions.running.sounds import Sound
 
 
 class Sitting:
@@ -66,9 +66,9 @@ class Sitting:
     def run(self, record: Record, answers: Answers, *, why: str) -> int:
         """Conduct the session until its end, or until it is stopped."""
         # Here and not above: numba takes long to load, and the host starts meanwhile.
-        from vbraille.sessions.console import Console
-        from vbraille.sessions.course import Course
-        from vbraille.sessions.showing import OnDevice
+        from vbraille.sessions.running.console import Console
+        from vbraille.sessions.running.course import Course
+        from vbraille.sessions.running.showing import OnDevice
 
         with Journal(record.folder) as book:
             torn_bytes = book.set_torn_aside()
@@ -128,7 +128,7 @@ class Sitting:
         return 0
 
     def _sound(self, answers: Answers) -> Sound:
-        from vbraille.sessions.sounds import Bell, Silence, Tones
+        from vbraille.sessions.running.sounds import Bell, Silence, Tones
 
         wanted = self._arguments.sound
         if wanted == "none" or (wanted == "auto" and not answers.typed):

@@ -1,1 +1,4 @@
-"""Legibility sessions: protocols, trials, the journal, traces."""
+"""Legibility sessions: planned, run, kept on the disk, and made into tables.
+
+`docs/session-format.md` describes what they leave behind.
+"""

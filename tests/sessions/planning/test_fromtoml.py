@@ -1,0 +1,192 @@
+"""What a file cannot have is said in one sentence: where it is, what is wrong, what to do."""
+
+import re
+
+import pytest
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.protocol import parse_protocol
+
+HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
+VBD_HEAD = f'{HEAD}model = "vbd"\n'
+STRESS2_HEAD = f'{HEAD}model = "stress2"\n'
+PAIRS = '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 2\n'
+STRINGS = '[design]\nkind = "list"\nstrings = ["ab", "cd"]\n'
+WIDTHS = '[design]\nkind = "choice"\nparameter = "dot_width_mm"\nvalues = [1, 2]\nstring = "a"\n'
+GAPS = WIDTHS.replace("width", "gap").replace('"a"', '"c"')
+
+
+def parse(text):
+    return parse_protocol(text, "mine.toml")
+
+
+def refuse(text, says):
+    """The whole sentence, or its beginning and end around a …."""
+    pattern = ".*".join(map(re.escape, says.split("…")))
+    with pytest.raises(InputError, match=rf"^mine\.toml{pattern}$"):
+        parse(text)
+
+
+BAD_HEADS = [
+    (PAIRS, ": lacks format; add it"),
+    (VBD_HEAD.replace("1", "2"), ": format is 2, and this vbraille knows format 1; use…it"),
+    (f"format = {'1' * 30}", f": format is {'1' * 30}; it must be a whole number"),
+    ("format = true", ": format is True; it must be a whole number"),
+    (f"format = 0x{'f' * 5000}", ": format is too large a number; it must be a whole number"),
+    ("format 1", " is not TOML: …; mend it there"),
+    ("a = " + "[" * 5000, " is not TOML: its brackets nest too deep; mend it"),
+    (VBD_HEAD + "desing = 1", ": has no key 'desing'; the nearest is design, and there is…"),
+    (VBD_HEAD.replace("vbd", "vdb") + PAIRS, ": model is 'vdb'; the nearest is vbd, and there is…"),
+    (VBD_HEAD.replace("mine", "My own") + PAIRS, ": name is 'My own'; it must be 1 to 40…hyphens"),
+    (VBD_HEAD.replace("Mine", "") + PAIRS, ": title has 0 characters; it must have 1 to 200"),
+    (VBD_HEAD.replace("Mine", r"a\nb") + PAIRS, r": title is 'a\nb'; it must be one line…"),
+    (f'{VBD_HEAD}medium = "air"\n' + PAIRS, ": medium is 'air'; the nearest is…"),
+    (f"{VBD_HEAD}design = 3", ": [design] is 3; it must be a table"),
+    (
+        VBD_HEAD + PAIRS + "[rules]\neach_letter = 5",
+        ": [rules] count the letters of kind…",
+    ),
+]
+BAD_DISPLAYS = [
+    (VBD_HEAD, "texture = 2", "texture is 2; it must be 0 to 1"),
+    (VBD_HEAD, "texture = nan", "texture is nan; it must be 0 to 1"),
+    (VBD_HEAD, 'texture = "1"', "texture is '1'; it must be a number"),
+    (VBD_HEAD, "texture_cycles = 7", "texture_cycles is of the STReSS²; the texture of the VBD…"),
+    (VBD_HEAD, "dot_row = 4", "dot row is 4; it must be 1, 2 or 3"),
+    (VBD_HEAD, 'mapping = "paired"', "mapping is of the STReSS²; for the VBD give dot_row"),
+    (VBD_HEAD, "dot_width = 2", "has no key 'dot_width'; the nearest is dot_width_mm, and…"),
+    (VBD_HEAD, "dot_width_mm = 30", "dot width is 30 mm; it must be 0.1 to 20 mm"),
+    (VBD_HEAD, f"travel_mm = 1{'0' * 400}", "travel_mm is 1000…; it must be a smaller number"),
+    (
+        STRESS2_HEAD,
+        "dot_row = 1",
+        "dot_row is of the VBD; the STReSS² shows all, …",
+    ),
+    (STRESS2_HEAD, 'mapping = "pair"', "mapping is 'pair'; the nearest is paired, and there is…"),
+    (STRESS2_HEAD, "texture_cycles = 6", "texture cycles are 6; they must be an odd number…"),
+]
+BAD_KEYS = [
+    ('ab = "1"', "has the key 'ab'; a key must be one character, and no digit…"),
+    ('1 = "1"', "has the key '1'; a key must be…"),
+    ('"?" = "1"', "has the key '?'; a key must be…"),
+    ('" " = "1"', "has the key ' '; a key must be…"),
+    ("x = 1", "x is 1; it must be a string, in quotation marks"),
+    ('x = "1 4"', "x is 2 cells; it must be the dot numbers of one, such as 4"),
+    ('x = "9"', "x: '9' is not the dots of a cell, such as 1-2-4, or 0 for none"),
+    ('x = "2"', "x is dot 2, and the VBD's row 1 shows dots 1 and 4 only; leave the key out"),
+]
+BAD_DESIGNS = [
+    ("[design]", "lacks kind; add it"),
+    ('[design]\nkind = "lists"', "kind is 'lists'; the nearest is list, and there is…"),
+    (
+        PAIRS + "reorder = true",
+        "reorder is of kind = 'list'; leave it out…",
+    ),
+    (PAIRS + "repeats = 0", "repeats is 0; it must be 1 to 10000"),
+    (PAIRS + "repeats = 1.5", "repeats is 1.5; it must be a whole number"),
+    (PAIRS + "repeats = 2501", "makes a session of more than 10000 trials; make it smaller"),
+    (PAIRS.replace("2", "0"), "length is 0; it must be 1 to 100"),
+    (PAIRS.replace("2", "100"), "makes a session of more than 10000 trials; make it smaller"),
+    (PAIRS.replace('"a", ', '"14", '), "characters have dots 1 and 4 twice; leave one out"),
+    (PAIRS.replace('"a", "c"', ""), "characters are none; give one or more"),
+    (PAIRS.replace('"a"', '"aa"'), "characters have 'aa', 2 cells; give one each"),
+    (PAIRS.replace('"a"', '"0"'), "a combination is all blank, and nothing can be felt of it; …"),
+    (
+        PAIRS.replace('"a"', '"full"'.replace("full", "123456")),
+        "has the cell ⠿ (dots 1, 2, 3, 4, 5 and 6), and the VBD's row 1 shows dots 1 and 4 only; "
+        "leave the cell out",
+    ),
+    (PAIRS + 'before = "b"', "has the cell ⠃ (dots 1 and 2), and the VBD's row 1 shows…"),
+    (
+        PAIRS + f'before = "{"c" * 27}"',
+        "has a line of 30 cells, lead_cells among them, and the VBD has room for 28; "
+        "make it shorter, or travel_mm longer",
+    ),
+    (PAIRS + "blocks = 5", "blocks is 5; it must be 1 to 4, since there are 4 trials"),
+    (PAIRS + "blocks = 0", "blocks is 0; it must be 1 to 4, since there are 4 trials"),
+    (PAIRS + 'blocks = "condition"', "blocks is 'condition'; the nearest is conditions, and…"),
+    (PAIRS + 'blocks = 2\norder = "listed"', "order is of a block each condition; leave it out…"),
+    (PAIRS + 'order = "random"', "order is 'random'; the nearest is…"),
+    (STRINGS.replace('"ab", "cd"', ""), "strings are none; give one or more"),
+    (STRINGS.replace("ab", ""), "strings, number 1, has no dots, and nothing can be felt of it; …"),
+    (STRINGS.replace("cd", "c!"), "strings, number 2: '!' is no cell; …"),
+    (STRINGS.replace('["ab", "cd"]', '"ab"'), "strings is 'ab'; it must be a list, in brackets"),
+    (STRINGS.replace('"cd"', "3"), "strings, number 2, is 3; it must be a string, in quotation…"),
+    (STRINGS + "reorder = 1", "reorder is 1; it must be true or false"),
+    (WIDTHS.replace("width_mm", "weight"), "parameter is 'dot_weight'; the nearest is…"),
+    (WIDTHS.replace("[1, 2]", "[1]"), "values are 1; give two or more to compare"),
+    (WIDTHS.replace("[1, 2]", "[1, 1.0]"), "values have 1 twice; leave one out"),
+    (
+        WIDTHS.replace("2]", "30]"),
+        "at a value of 30 mm: dot width is 30 mm; it must…",
+    ),
+    (WIDTHS.replace("2]", "-1]"), "a value is -1 mm; it must be 0 to 50 mm"),
+    (WIDTHS.replace("2]", "nan]"), "a value is nan mm; it must be 0 to 50 mm"),
+    (WIDTHS.replace('"a"', '"0"'), "string has no dots; give one with some"),
+    (GAPS.replace('"c"', '"a"'), "string has no cell with a gap; give one with a left and…"),
+]
+BAD_REST = [
+    (
+        '[[conditions]]\nname = "a"\n' * 2,
+        "[[conditions]] has the name 'a' twice; give…",
+    ),
+    ("[[conditions]]\ntexture = 1", "[[conditions]] number 1 lacks name; add it"),
+    ("[conditions]", "conditions must be tables; write each under [[conditions]]"),
+    ('[[conditions]]\nname = "a b"', "[[conditions]] number 1 name is 'a b'; it must be…"),
+    ('[[conditions]]\nname = "a"\nhue = 1', "[[conditions]] number 1 has no key 'hue'; the…"),
+    ("[rules]\neach_letter = 0", "[rules] each_letter is 0; it must be 1 to 10000"),
+    ("[practice]\ntrials = -1", "[practice] trials is -1; it must be 0 to 10000"),
+    ("[practice]\ntrials = 9999", "[design] makes a session of more than 10000 trials; make it…"),
+    ("[trial]\ngap_s = -1", "[trial] gap_s is -1 s; it must be 0 to 60 s"),
+    ("[trial]\nwarning_s = 0", "[trial] warning_s is 0 s; it must be 1 to 3600 s"),
+    ("[session]\nlimit_s = 0", "[session] limit_s is 0 s; it must be 1 to 86400 s"),
+    ("[session]\nbreak_every = 0", "[session] break_every is 0; it must be 1 to 10000"),
+    ("[faults]\nrepeat = 1", "[faults] repeat is 1; it must be true or false"),
+    ("[sound]\ncue = [880]", "[sound] cue has 1 numbers; give two, of Hz and of ms"),
+    ("[sound]\ncue = [5, 100]", "[sound] cue: frequency is 5 Hz; it must be 20 to 20000 Hz"),
+    ('[[fields]]\nname = "f"', "[[fields]] number 1 lacks ask; add it"),
+    (
+        '[[fields]]\nname = "f"\nask = "F"\nchoices = ["x", "x"]',
+        "[[fields]] number 1 the choice 'x' stands twice; leave one out",
+    ),
+    ('[[fields]]\nname = "f"\nask = "F"\n' * 2, "[[fields]] has the name 'f' twice; give each…"),
+]
+
+
+class TestErrors:
+    @pytest.mark.parametrize(("text", "says"), BAD_HEADS)
+    def test_heads(self, text, says):
+        refuse(text, says)
+
+    @pytest.mark.parametrize(("head", "line", "says"), BAD_DISPLAYS)
+    def test_displays(self, head, line, says):
+        refuse(f"{head}[display]\n{line}\n{PAIRS}", f": [display] {says}")
+
+    @pytest.mark.parametrize(("line", "says"), BAD_KEYS)
+    def test_keys(self, line, says):
+        refuse(f"{VBD_HEAD}[keys]\n{line}\n{PAIRS}", f": [keys] {says}")
+
+    @pytest.mark.parametrize(("design", "says"), BAD_DESIGNS)
+    def test_designs(self, design, says):
+        refuse(VBD_HEAD + design, f": [design]{' ' * (not says.startswith(':'))}{says}")
+
+    @pytest.mark.parametrize(("rest", "says"), BAD_REST)
+    def test_the_rest(self, rest, says):
+        strings = STRINGS.replace("ab", "ac").replace("cd", "ca")
+        refuse(f"{VBD_HEAD}{strings}{rest}", f": {says}")
+
+    @pytest.mark.parametrize(
+        ("rule", "says"),
+        [
+            ("each_letter = 2", "a is shown once; each_letter is 2"),
+            ("each_letter_at_least = 1", "b is shown 0 times; each_letter_at_least is 1"),
+        ],
+    )
+    def test_rules_that_the_strings_cannot_keep(self, rule, says):
+        text = f"{VBD_HEAD}{STRINGS.replace('ab', 'ac').replace('cd', 'c')}[rules]\n{rule}"
+        refuse(text, f": [rules] {says}; change the strings or the rule")
+
+    def test_a_cell_with_dots_that_six_dot_braille_has_not(self):
+        text = STRESS2_HEAD + STRINGS.replace("ab", "8")
+        says = "⢀ (dot 8), and the STReSS² with the mapping alternate shows dots …"
+        refuse(text, f": [design] has the cell {says} only; leave the cell out")

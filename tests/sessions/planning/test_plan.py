@@ -1,0 +1,216 @@
+"""A plan is the same on every machine, and keeps the rules of its design."""
+
+import json
+import re
+from collections import Counter
+from dataclasses import replace
+from hashlib import sha256
+from itertools import groupby
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.plan import Plan, check_plan, make_plan
+from vbraille.sessions.planning.protocol import builtin_names, load_protocol, parse_protocol
+from vbraille.sessions.planning.spelling import LETTERS
+
+HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
+ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
+PAIRS = '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 2\n'
+LEGIBILITY, LETTERS_PROTOCOL = load_protocol("legibility"), load_protocol("letters")
+
+
+def parse(text):
+    return parse_protocol(HEAD + text, "mine.toml")
+
+
+def conditions_of(trials):
+    return [name for name, _ in groupby(trial.condition for trial in trials)]
+
+
+class TestOrders:
+    def test_participants_go_through_the_orders(self):
+        protocol = parse(PAIRS + ABC)
+        plans = [make_plan(protocol, f"P{n:02}", 1) for n in range(1, 8)]
+        assert [plan.order for plan in plans] == [1, 2, 3, 4, 5, 6, 1]
+        orders = [tuple(conditions_of(plan.trials)) for plan in plans]
+        assert len(set(orders[:6])) == 6
+        assert orders[6] == orders[0]
+        for place in range(3):
+            assert Counter(order[place] for order in orders[:6]) == {"A": 2, "B": 2, "C": 2}
+
+    def test_two_conditions_alternate(self):
+        first = [make_plan(LEGIBILITY, p, 1).trials[0].condition for p in ("P1", "P2", "x2-3")]
+        assert first == ["nominal", "textured", "nominal"]
+
+    def test_an_order_that_is_given(self):
+        assert make_plan(LEGIBILITY, "anna", 1, 2).trials[0].condition == "textured"
+        assert make_plan(LEGIBILITY, "P07", 1, 4).order == 2
+
+    def test_a_participant_without_a_number(self):
+        says = r"^the order .* and anna has none; give --order N, or a participant such as P07$"
+        with pytest.raises(InputError, match=says):
+            make_plan(LEGIBILITY, "anna", 1)
+        assert make_plan(LETTERS_PROTOCOL, "anna", 1).order == 0
+
+    def test_orders_that_cannot_be(self):
+        with pytest.raises(InputError, match=r"^order is 0; it must be 1 or more$"):
+            make_plan(LEGIBILITY, "P07", 1, 0)
+        with pytest.raises(InputError, match=r"^letters has no balanced orders; leave --order"):
+            make_plan(LETTERS_PROTOCOL, "P07", 1, 1)
+
+    def test_listed_and_shuffled_blocks(self):
+        listed = parse(f'{PAIRS}order = "listed"\n{ABC}')
+        shuffled = parse(f'{PAIRS}order = "shuffled"\n{ABC}')
+        orders = {"".join(conditions_of(make_plan(shuffled, "x", n).trials)) for n in range(40)}
+        assert orders == {"ABC", "ACB", "BAC", "BCA", "CAB", "CBA"}
+        assert {"".join(conditions_of(make_plan(listed, "x", n).trials)) for n in range(9)} == {
+            "ABC"
+        }
+
+
+class TestPlans:
+    def test_they_are_the_same_on_every_machine(self):
+        """If these change, sessions planned by an older version cannot be planned again."""
+        sums = {
+            protocol.name: sha256(make_plan(protocol, "P07", 42).to_json().encode()).hexdigest()
+            for protocol in (LEGIBILITY, LETTERS_PROTOCOL)
+        }
+        assert sums == {
+            "legibility": "b96cd68c655ac7a45f7beac4c0a426b32974eed679f91c8142ffc27bae94f456",
+            "letters": "f685d8a43443cb53e0bfa44d2a3f76534ed864135cdc534695c1cb9cd2a18570",
+        }
+
+    def test_seed_and_participant_make_the_order(self):
+        plans = {make_plan(LEGIBILITY, p, s).trials for p in ("P01", "P03") for s in (0, 1)}
+        assert len(plans) == 4
+        assert make_plan(LEGIBILITY, "P01", 2**63 - 1).seed == 2**63 - 1
+
+    @pytest.mark.parametrize("name", builtin_names())
+    def test_json_and_back(self, name):
+        protocol = load_protocol(name)
+        plan = make_plan(protocol, "P07", 42)
+        text = plan.to_json()
+        assert Plan.from_json(text) == plan
+        assert Plan.from_json(text).to_json() == text
+        check_plan(protocol, Plan.from_json(text))
+        assert text.count('{"number"') == len(re.findall(r"(?m)^\{\"number\".*\},?$", text))
+        assert len(json.loads(text)["trials"]) == protocol.trials
+
+    def test_legibility(self):
+        plan = make_plan(LEGIBILITY, "P07", 42)
+        assert [trial.number for trial in plan.trials] == list(range(1, 161))
+        assert [trial.block for trial in plan.trials] == [1] * 80 + [2] * 80
+        for block in (1, 2):
+            shown = Counter(trial.presented for trial in plan.trials if trial.block == block)
+            assert len(shown) == 16
+            assert set(shown.values()) == {5}
+            assert set("".join(shown)) == set("⠁⠉⠈⠀")
+        for trial in (*plan.practice, *plan.trials):
+            (stimulus,) = trial.stimuli
+            assert (len(stimulus.masks), trial.asked) == (4, (1, 3))
+            assert stimulus.masks[0] == stimulus.masks[3] == LETTERS["c"]
+            assert stimulus.tuning.texture == (trial.condition == "textured")
+            assert (stimulus.geometry, stimulus.value) == (LEGIBILITY.geometry, None)
+
+    @pytest.mark.parametrize(
+        ("name", "length"), [("tuning-width", "dot_width_mm"), ("tuning-spacing", "gap_mm")]
+    )
+    def test_choices(self, name, length):
+        protocol = load_protocol(name)
+        plan = make_plan(protocol, "P07", 42)
+        pairs = Counter(tuple(s.value for s in trial.stimuli) for trial in plan.trials)
+        assert len(pairs) == 30
+        assert set(pairs.values()) == {3}
+        for first, second in (trial.stimuli for trial in plan.trials):
+            assert first.value != second.value
+            assert (first.masks, first.tuning) == (second.masks, second.tuning)
+            for g, value in ((first.geometry, first.value), (second.geometry, second.value)):
+                gap_mm = g.dot_spacing_mm - g.dot_width_mm
+                shown = g.dot_width_mm if length == "dot_width_mm" else gap_mm
+                assert shown == pytest.approx(value)
+
+    def test_letters(self):
+        plan = make_plan(LETTERS_PROTOCOL, "P07", 42)
+        assert Counter((trial.block, trial.condition) for trial in plan.trials) == {
+            (block, name): 13 for block in (1, 2) for name in ("T0", "T25", "T100")
+        }
+        for name in ("T0", "T25", "T100"):
+            shown = [t.stimuli[0].masks for t in plan.trials if t.condition == name]
+            letters = Counter(mask for masks in shown for mask in masks)
+            assert letters == dict.fromkeys(LETTERS.values(), 5)
+            listed = sorted(tuple(sorted(masks)) for masks in LETTERS_PROTOCOL.design.strings)
+            assert sorted(tuple(sorted(masks)) for masks in shown) == listed
+
+    def test_no_order_of_letters_comes_again(self):
+        for seed in range(20):
+            plan = make_plan(LETTERS_PROTOCOL, "P07", seed)
+            assert len({trial.presented for trial in plan.trials}) == 78
+
+    def test_few_orders_come_again_as_seldom_as_they_can(self):
+        protocol = parse('[design]\nkind = "list"\nstrings = ["aab"]\nreorder = true\nrepeats = 6')
+        shown = Counter(trial.presented for trial in make_plan(protocol, "x", 1).trials)
+        assert shown == {"⠁⠁⠃": 2, "⠁⠃⠁": 2, "⠃⠁⠁": 2}
+
+    def test_words_stay_words(self):
+        protocol = load_protocol("words")
+        plan = make_plan(protocol, "P07", 42, texture=0.25)
+        shown = [trial.stimuli[0].masks for trial in plan.trials]
+        assert sorted(shown) == sorted(protocol.design.strings)
+        assert shown != list(protocol.design.strings)
+        assert {trial.stimuli[0].tuning.texture for trial in plan.trials} == {0.25}
+
+    def test_blocks_that_do_not_come_out_even(self):
+        protocol = parse(f"{PAIRS}blocks = 5\n{ABC}")
+        plan = make_plan(protocol, "x", 1)
+        sizes = Counter(trial.block for trial in plan.trials)
+        assert sorted(sizes.values()) == [2, 2, 2, 3, 3]
+        assert max(Counter((t.block, t.condition) for t in plan.trials).values()) == 1
+
+    def test_practice(self):
+        plan = make_plan(LEGIBILITY, "P07", 42)
+        assert [trial.number for trial in plan.practice] == list(range(1, 9))
+        assert {(trial.block, trial.practice) for trial in plan.practice} == {(0, True)}
+        assert Counter(trial.condition for trial in plan.practice) == {"nominal": 4, "textured": 4}
+        assert len({trial.presented for trial in plan.practice}) > 1
+
+    @pytest.mark.parametrize("trials", [0, 1, 7, 500])
+    def test_more_practice_does_not_change_the_rest(self, trials):
+        other = replace(LEGIBILITY, practice=trials)
+        plan = make_plan(other, "P07", 42)
+        assert len(plan.practice) == trials
+        assert plan.trials == make_plan(LEGIBILITY, "P07", 42).trials
+
+    @given(st.integers(0, 2**63 - 1), st.from_regex(r"[A-Za-z0-9][\w-]{0,9}1", fullmatch=True))
+    def test_any_seed_gives_a_plan_that_keeps_the_rules(self, seed, participant):
+        if participant.isascii():
+            check_plan(LETTERS_PROTOCOL, make_plan(LETTERS_PROTOCOL, participant, seed))
+
+
+class TestRefusals:
+    @pytest.mark.parametrize("name", ["", "a/b", "../P07", "-P07", "P 07", "é", "P" * 33, "P07\n"])
+    def test_pseudonyms(self, name):
+        with pytest.raises(InputError, match=r"^participant is .*a pseudonym such as P07: 1 to 32"):
+            make_plan(LEGIBILITY, name, 1)
+
+    @pytest.mark.parametrize("seed", [-1, 2**63, 2**64])
+    def test_seeds(self, seed):
+        with pytest.raises(InputError, match=r"^seed is out of range; it must be 0 to 2⁶³ - 1$"):
+            make_plan(LEGIBILITY, "P07", seed)
+
+    def test_a_texture_that_all_conditions_have(self):
+        says = r"^every condition of legibility has its own texture; leave --texture out$"
+        with pytest.raises(InputError, match=says):
+            make_plan(LEGIBILITY, "P07", 1, texture=0.5)
+
+    def test_a_contrast_out_of_range(self):
+        with pytest.raises(InputError, match=r"^contrast is 2; it must be 0 to 1$"):
+            make_plan(LEGIBILITY, "P07", 1, contrast=2)
+
+    def test_a_contrast_for_those_that_have_none(self):
+        protocol = parse(f"{PAIRS}{ABC}contrast = 0.5\n")
+        plan = make_plan(protocol, "P1", 1, contrast=0.25)
+        seen = {(t.condition, t.stimuli[0].tuning.contrast) for t in plan.trials}
+        assert seen == {("A", 0.25), ("B", 0.25), ("C", 0.5)}

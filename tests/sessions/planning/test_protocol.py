@@ -1,0 +1,259 @@
+"""Protocols: the source's come with the program, and a lab's are read from files."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.conftest import TEXTS
+from vbraille.errors import InputError
+from vbraille.geometry import VBD
+from vbraille.render import MAPPINGS, Tuning
+from vbraille.sessions import planning
+from vbraille.sessions.planning.conduct import Field, Tone
+from vbraille.sessions.planning.protocol import (
+    builtin_names,
+    builtin_text,
+    load_protocol,
+    parse_protocol,
+)
+from vbraille.sessions.planning.spelling import spell
+
+HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
+VBD_HEAD = f'{HEAD}model = "vbd"\n'
+STRESS2_HEAD = f'{HEAD}model = "stress2"\n'
+PAIRS = '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 2\n'
+WIDTHS = '[design]\nkind = "choice"\nparameter = "dot_width_mm"\nvalues = [1, 2]\nstring = "a"\n'
+GAPS = WIDTHS.replace("width", "gap").replace('"a"', '"c"')
+
+
+def parse(text):
+    return parse_protocol(text, "mine.toml")
+
+
+class TestBuiltIns:
+    def test_names(self):
+        assert builtin_names() == [
+            "control",
+            "legibility",
+            "letters",
+            "tuning-spacing",
+            "tuning-width",
+            "words",
+        ]
+
+    @pytest.mark.parametrize("name", builtin_names())
+    def test_each_is_what_its_file_says(self, name):
+        protocol = load_protocol(name)
+        assert protocol.name == name
+        assert protocol.text == builtin_text(name)
+        assert protocol.source.startswith("Lévesque 2009, ")
+        assert [field.name for field in protocol.fields] == ["finger", "hand", "masking_noise"]
+
+    @pytest.mark.parametrize("name", builtin_names())
+    def test_each_explains_its_tables_and_keys(self, name):
+        before = table = ""
+        for line in builtin_text(name).splitlines():
+            table = line if line.startswith("[") else table
+            # Tables that come again are explained where they come first, delimiters together.
+            if re.match(r"[a-z_]+ = ", line) and table != "[keys]" and table[:2] != "[[":
+                assert before.startswith("#") or line.startswith("after = ")
+            before = line
+        assert "\n# What is asked about the participant" in builtin_text(name)
+
+    def test_a_copy_is_the_same_protocol(self, tmp_path):
+        copy = tmp_path / "copy.toml"
+        copy.write_bytes(builtin_text("legibility").encode())
+        assert load_protocol(str(copy)) == load_protocol("legibility")
+
+    def test_they_are_beside_the_code(self):
+        folder = Path(planning.__file__).parent / "protocols"
+        assert sorted(path.stem for path in folder.iterdir()) == builtin_names()
+
+    def test_tuning_of_the_width(self):
+        protocol = load_protocol("tuning-width")
+        assert (protocol.task, protocol.parameter) == ("choice", "dot_width_mm")
+        assert protocol.design.values == (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
+        assert (protocol.design.string, protocol.trials) == ((1,), 90)
+        assert [c.tuning.texture for c in protocol.conditions] == [1.0]
+
+    def test_tuning_of_the_spacing(self):
+        protocol = load_protocol("tuning-spacing")
+        assert (protocol.task, protocol.parameter) == ("choice", "dot_gap_mm")
+        assert protocol.design.values == (1.0, 1.3, 1.6, 1.9, 2.2, 2.5)
+        assert (protocol.design.string, protocol.trials) == ((0b1001,), 90)
+        assert protocol.geometry.dot_width_mm == 2.0
+
+    def test_legibility(self):
+        protocol = load_protocol("legibility")
+        assert (protocol.task, protocol.parameter, protocol.medium) == ("strings", None, "device")
+        assert protocol.model.name == "vbd"
+        assert protocol.mapping.shown_dots() == 0b1001
+        assert protocol.keys == {"l": 1, "r": 8, "n": 0}
+        assert protocol.design.characters == (1, 9, 8, 0)
+        assert (protocol.design.before, protocol.design.after) == ((9,), (9,))
+        assert [(c.name, c.tuning) for c in protocol.conditions] == [
+            ("nominal", Tuning(texture=0.0)),
+            ("textured", Tuning(texture=1.0)),
+        ]
+        assert (protocol.trials, protocol.practice) == (160, 8)
+        assert (protocol.blocks, protocol.order) == (None, "balanced")
+
+    def test_control_is_legibility_on_paper(self):
+        protocol, device = load_protocol("control"), load_protocol("legibility")
+        assert protocol.medium == "paper"
+        assert (protocol.design, protocol.keys) == (device.design, device.keys)
+        assert (len(protocol.conditions), protocol.trials) == (1, 80)
+
+    def test_letters(self):
+        protocol = load_protocol("letters")
+        assert (protocol.model.name, protocol.mapping) == ("stress2", MAPPINGS["alternate"])
+        assert [c.tuning.texture for c in protocol.conditions] == [0.0, 0.25, 1.0]
+        assert {c.tuning.cycles for c in protocol.conditions} == {7}
+        assert (len(protocol.design.strings), protocol.trials) == (26, 78)
+        assert all(len(set(string)) == 5 for string in protocol.design.strings)
+        assert (protocol.blocks, protocol.design.reorder, protocol.practice) == (2, True, 6)
+        assert (protocol.rules.each_letter, protocol.trial.warning_s) == (5, 30.0)
+        assert '"epkgn"' in protocol.text
+
+    def test_words_are_those_of_the_texts(self):
+        protocol = load_protocol("words")
+        words = (TEXTS / "mots.txt").read_text(encoding="utf-8").split()
+        assert protocol.design.strings == tuple(spell(word, {}) for word in words)
+        assert protocol.trials == 40
+        assert protocol.rules.each_letter_at_least == 4
+        assert protocol.session.limit_s == 3600.0
+        assert protocol.conditions[0].tuning == Tuning(texture=1.0)
+
+
+class TestParsing:
+    def test_what_is_left_out(self):
+        protocol = parse(VBD_HEAD + PAIRS)
+        assert protocol.geometry == VBD
+        assert (protocol.medium, protocol.practice, protocol.repeat_faults) == ("device", 0, True)
+        assert (protocol.blocks, protocol.order, protocol.design.repeats) == (None, "balanced", 1)
+        assert [(c.name, c.tuning, c.own) for c in protocol.conditions] == [
+            ("all", Tuning(), frozenset())
+        ]
+        assert (protocol.trial.gap_s, protocol.trial.warning_s) == (0.5, None)
+        assert (protocol.session.limit_s, protocol.session.break_every) == (None, None)
+        assert (protocol.sound.cue, protocol.sound.warning) == (Tone(880, 150), Tone(440, 400))
+        assert (protocol.keys, protocol.fields) == ({}, ())
+
+    def test_what_is_given(self):
+        protocol = parse(
+            f"""{STRESS2_HEAD}medium = "paper"
+            [display]
+            texture = 0.5
+            contrast = 0.75
+            texture_cycles = 5
+            mapping = "paired"
+            dot_width_mm = 3
+            travel_mm = 200
+            [keys]
+            x = "1-2"
+            [design]
+            kind = "list"
+            strings = ["x⠁ 4"]
+            repeats = 2
+            blocks = "conditions"
+            order = "listed"
+            [[conditions]]
+            name = "weak"
+            contrast = 0.25
+            [[conditions]]
+            name = "fine"
+            texture_cycles = 9
+            texture = 1
+            [practice]
+            trials = 3
+            [trial]
+            gap_s = 1
+            warning_s = 20
+            [session]
+            limit_s = 60
+            break_every = 5
+            [faults]
+            repeat = false
+            [sound]
+            cue = [1000, 100]
+            [[fields]]
+            name = "finger"
+            ask = "Which?"
+            """
+        )
+        assert (protocol.geometry.dot_width_mm, protocol.geometry.travel_mm) == (3.0, 200.0)
+        assert (protocol.mapping.name, protocol.medium) == ("paired", "paper")
+        assert protocol.design.strings == ((3, 1, 8),)
+        assert [(c.name, c.tuning, c.own) for c in protocol.conditions] == [
+            ("weak", Tuning(0.5, 0.25, 5), {"contrast"}),
+            ("fine", Tuning(1.0, 0.75, 9), {"texture", "cycles"}),
+        ]
+        assert (protocol.order, protocol.trials, protocol.practice) == ("listed", 4, 3)
+        assert (protocol.trial.gap_s, protocol.trial.warning_s) == (1.0, 20.0)
+        assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
+        assert not protocol.repeat_faults
+        assert protocol.sound.cue == Tone(1000, 100)
+        assert protocol.fields == (Field("finger", "Which?"),)
+
+    @pytest.mark.parametrize(
+        ("value", "width_mm", "spacing_mm"), [(None, 2.0, 4.0), (1.5, 2.0, 3.5), (0.0, 2.0, 2.0)]
+    )
+    def test_a_gap_is_from_edge_to_edge(self, value, width_mm, spacing_mm):
+        geometry = parse(VBD_HEAD + GAPS).geometry_at(value)
+        assert (geometry.dot_width_mm, geometry.dot_spacing_mm) == (width_mm, spacing_mm)
+
+    def test_a_width_leaves_the_centres_where_they_are(self):
+        geometry = parse(VBD_HEAD + WIDTHS).geometry_at(1.0)
+        assert (geometry.dot_width_mm, geometry.dot_spacing_mm) == (1.0, 4.0)
+
+    @given(st.text(max_size=200) | st.text("[]={}\"'.#\n a1", max_size=60))
+    def test_whatever_a_file_has_a_sentence_is_said(self, text):
+        with pytest.raises(InputError, match=r"^mine\.toml"):
+            parse(text)
+
+
+class TestLoading:
+    def test_a_name_that_is_not_there(self):
+        says = (
+            r"^there is no protocol 'leters'; the nearest is letters, and there is control, "
+            r".*, words; that of a file ends in \.toml, or has a / in it$"
+        )
+        with pytest.raises(InputError, match=says):
+            load_protocol("leters")
+
+    @pytest.mark.parametrize("name", ["", "..", "__init__", "letters\0"])
+    def test_names_that_are_no_names(self, name):
+        with pytest.raises(InputError, match=r"^there is no protocol "):
+            load_protocol(name)
+
+    def test_a_file_that_is_not_there(self):
+        with pytest.raises(InputError, match=r"^there is no file none\.toml; check the name$"):
+            load_protocol("none.toml")
+
+    def test_a_directory(self, tmp_path):
+        with pytest.raises(InputError, match=r" is a directory; give a protocol in it$"):
+            load_protocol(str(tmp_path))
+
+    @pytest.mark.parametrize("name", ["a\0.toml", f"{'a' * 300}.toml"])
+    def test_names_that_no_file_can_have(self, name):
+        with pytest.raises(InputError, match=r" cannot be read: "):
+            load_protocol(name)
+
+    def test_a_file_that_is_not_utf_8(self, tmp_path):
+        path = tmp_path / "mine.toml"
+        path.write_bytes(b"format = 1\n# L\xe9vesque\n")
+        with pytest.raises(InputError, match=r" is not UTF-8 in line 2; save it as UTF-8$"):
+            load_protocol(str(path))
+
+    def test_a_file_that_is_far_too_large(self):
+        with pytest.raises(InputError, match=r"^/dev/zero is too large for a protocol"):
+            load_protocol("/dev/zero")
+
+    def test_a_byte_order_mark_and_windows_line_ends(self, tmp_path):
+        path = tmp_path / "mine.toml"
+        text = (VBD_HEAD + PAIRS).replace("\n", "\r\n")
+        path.write_bytes(b"\xef\xbb\xbf" + text.encode())
+        assert load_protocol(str(path)).text == text

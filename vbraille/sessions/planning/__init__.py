@@ -1,0 +1,1 @@
+"""What is shown to whom, in which order: protocols and plans, before anyone sits down."""

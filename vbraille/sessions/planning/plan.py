@@ -1,0 +1,282 @@
+"""The plan of a session: all that will be shown, in its order, before the first trial.
+
+Protocol, participant and seed give the same plan on every machine.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from itertools import cycle, islice
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning import planfile
+from vbraille.sessions.planning.chance import Chance, balanced_orders
+from vbraille.sessions.planning.design import Combinations, StringList
+from vbraille.sessions.planning.rules import check_plan, is_balanced
+from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.sessions.planning.design import Condition
+    from vbraille.sessions.planning.protocol import Protocol
+
+__all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
+
+_Item = tuple[float, ...]  # the cells asked for, or the values compared
+_Shown = tuple[_Item, "Condition"]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """All trials of a session, in order.
+
+    Parameters
+    ----------
+    protocol
+        Its name.
+    participant
+        A pseudonym.
+    seed
+        Of all that is drawn.
+    order
+        Which of the balanced orders of conditions, from 1; 0 if there is only one.
+    practice, trials
+        In the order in which they are shown.
+
+    Raises
+    ------
+    ValueError
+        If the participant, the seed or the order cannot be used.
+    """
+
+    protocol: str
+    participant: str
+    seed: int
+    order: int
+    practice: tuple[Trial, ...]
+    trials: tuple[Trial, ...]
+
+    def __post_init__(self) -> None:
+        check_participant(self.participant)
+        check_seed(self.seed)
+        if self.order < 0:
+            raise ValueError(f"order is {self.order}; it must be 0 or more")
+
+    def to_json(self) -> str:
+        """JSON, a trial a line; the same bytes on every machine."""
+        return planfile.encode(
+            {
+                "protocol": self.protocol,
+                "participant": self.participant,
+                "seed": self.seed,
+                "order": self.order,
+            },
+            {"practice": self.practice, "trials": self.trials},
+        )
+
+    @classmethod
+    def from_json(cls, text: str) -> Plan:
+        """Read the plan that `to_json` wrote.
+
+        Raises
+        ------
+        InputError
+            If it is damaged.
+        """
+        with planfile.damage():
+            head, runs = planfile.decode(text)
+            return cls(
+                head.text("protocol"),
+                head.text("participant"),
+                head.whole("seed"),
+                head.whole("order"),
+                runs["practice"],
+                runs["trials"],
+            )
+
+
+def make_plan(
+    protocol: Protocol,
+    participant: str,
+    seed: int,
+    order: int | None = None,
+    *,
+    texture: float | None = None,
+    contrast: float | None = None,
+) -> Plan:
+    """Plan a session, and check it.
+
+    Parameters
+    ----------
+    protocol
+        What is shown.
+    participant
+        A pseudonym; the last number in it says which balanced order it is.
+    seed
+        Of all that is drawn.
+    order
+        Which of the balanced orders, from 1, instead of the participant's. They
+        come round again.
+    texture, contrast
+        Instead of the display's, in those conditions that do not give their own.
+
+    Raises
+    ------
+    InputError
+        If something cannot be used with this protocol.
+    """
+    try:
+        check_participant(participant)
+        check_seed(seed)
+        conditions = _tuned(protocol, {"texture": texture, "contrast": contrast})
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    order = _choose_order(protocol, participant, order)
+    chance = Chance(f"{seed} {participant}")
+    blocks = _blocks(protocol, conditions, order, chance)
+    trials = [
+        _trial(protocol, item, condition, block)
+        for block, shown in enumerate(blocks, 1)
+        for item, condition in chance.shuffled(shown)
+    ]
+    plan = Plan(
+        protocol.name,
+        participant,
+        seed,
+        order,
+        # By chances of its own: another number of practice trials leaves the others as they are.
+        _numbered(_practice(protocol, conditions, Chance(f"{seed} {participant} practice"))),
+        _numbered(trials),
+    )
+    check_plan(protocol, plan)
+    return plan
+
+
+def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:
+    """Conditions with what is given instead of the display's own values."""
+    for name, value in given.items():
+        if value is not None and all(name in condition.own for condition in protocol.conditions):
+            raise ValueError(
+                f"every condition of {protocol.name} has its own {name}; leave --{name} out"
+            )
+    return [
+        replace(
+            condition,
+            tuning=replace(
+                condition.tuning,
+                **{
+                    name: float(value)
+                    for name, value in given.items()
+                    if value is not None and name not in condition.own
+                },
+            ),
+        )
+        for condition in protocol.conditions
+    ]
+
+
+def _choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
+    """Number of the balanced order, from 1; 0 if there is nothing to balance."""
+    if not is_balanced(protocol):
+        if order is not None:
+            raise InputError(f"{protocol.name} has no balanced orders; leave --order out")
+        return 0
+    if order is None:
+        numbers = re.findall("[0-9]+", participant)
+        if not numbers:
+            raise InputError(
+                f"the order of the conditions goes by the participant's number, and {participant} "
+                f"has none; give --order N, or a participant such as P07"
+            )
+        order = int(numbers[-1])
+    elif order < 1:
+        raise InputError(f"order is {order}; it must be 1 or more")
+    return (order - 1) % len(balanced_orders(len(protocol.conditions))) + 1
+
+
+def _blocks(
+    protocol: Protocol, conditions: list[Condition], order: int, chance: Chance
+) -> list[list[_Shown]]:
+    """What each block shows, not yet shuffled."""
+    items = _items(protocol, chance)
+    if protocol.blocks is None:
+        places = list(range(len(conditions)))
+        if order:
+            places = list(balanced_orders(len(conditions))[order - 1])
+        elif protocol.order == "shuffled":
+            places = chance.shuffled(places)
+        return [[(item, conditions[place]) for item in items[place]] for place in places]
+    blocks: list[list[_Shown]] = [[] for _ in range(protocol.blocks)]
+    # Dealt like cards, and each condition goes on where the one before it ended: so no block gets
+    # more than one more of a condition than another, nor more than one more in all.
+    dealt = cycle(blocks)
+    for condition, shown in zip(conditions, items, strict=True):
+        for item in chance.shuffled(shown):
+            next(dealt).append((item, condition))
+    return blocks
+
+
+def _items(protocol: Protocol, chance: Chance) -> list[list[_Item]]:
+    """What each condition shows, with the cells of its strings in their order."""
+    items: list[_Item] = [*protocol.design.items()]
+    if not (isinstance(protocol.design, StringList) and protocol.design.reorder):
+        return [items for _ in protocol.conditions]
+    showings = {cells: _reorderings(cells, chance) for cells in dict.fromkeys(items)}
+    return [[next(showings[cells]) for cells in items] for _ in protocol.conditions]
+
+
+def _reorderings(cells: _Item, chance: Chance) -> Iterator[_Item]:
+    """Orders of some cells by chance, without end; none comes again before all have come."""
+    seen: set[_Item] = set()
+    all_orders = _count_orders(cells)
+    while True:
+        order = tuple(chance.shuffled(cells))
+        if order not in seen:
+            seen.add(order)
+            yield order
+        if len(seen) == all_orders:
+            seen.clear()
+
+
+def _count_orders(cells: _Item) -> int:
+    """How many different orders some cells have: n! by the product of k! of equal ones."""
+    count = 1
+    for place in range(1, len(cells)):
+        # Whole at every step: the orders of the first cells, one more each time.
+        count = count * (place + 1) // cells[: place + 1].count(cells[place])
+    return count
+
+
+def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -> list[Trial]:
+    """Trials drawn from all conditions alike."""
+    runs = [
+        [(item, condition) for item in chance.shuffled(items)]
+        for condition, items in zip(conditions, _items(protocol, chance), strict=True)
+    ]
+    drawn = islice(
+        cycle(shown for turn in zip(*runs, strict=True) for shown in turn), protocol.practice
+    )
+    return [_trial(protocol, item, condition, 0) for item, condition in chance.shuffled(drawn)]
+
+
+def _trial(protocol: Protocol, item: _Item, condition: Condition, block: int) -> Trial:
+    """Make a trial of an item of the design; it gets its number later."""
+    design, tuning = protocol.design, condition.tuning
+    if isinstance(design, Combinations | StringList):
+        masks = tuple(map(int, item))
+        first = 0
+        if isinstance(design, Combinations):
+            first, masks = len(design.before), (*design.before, *masks, *design.after)
+        stimuli = (Stimulus(masks, tuning, protocol.geometry),)
+        return Trial(1, block, condition.name, stimuli, (first, first + len(item)))
+    stimuli = tuple(
+        Stimulus(design.string, tuning, protocol.geometry_at(value), value) for value in item
+    )
+    return Trial(1, block, condition.name, stimuli, (0, len(design.string)))
+
+
+def _numbered(trials: list[Trial]) -> tuple[Trial, ...]:
+    return tuple(replace(trial, number=number) for number, trial in enumerate(trials, 1))

@@ -1,0 +1,198 @@
+"""Does a finished plan keep the rules of its design? Counted from what it shows alone."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import groupby, pairwise, permutations, product
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.chance import balanced_orders
+from vbraille.sessions.planning.design import Choice, Combinations, StringList
+from vbraille.sessions.planning.spelling import to_braille
+
+if TYPE_CHECKING:
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
+
+Content = tuple[float, ...]  # the cells asked for, or the values compared
+
+
+def is_balanced(protocol: Protocol) -> bool:
+    """Whether participants differ in the order of the conditions."""
+    return protocol.blocks is None and protocol.order == "balanced" and len(protocol.conditions) > 1
+
+
+def check_plan(protocol: Protocol, plan: Plan) -> None:
+    """Check a plan against its protocol, however it was made.
+
+    Raises
+    ------
+    InputError
+        If it breaks a rule; it says which.
+    """
+    wanted = _wanted(protocol)
+    try:
+        if plan.protocol != protocol.name:
+            raise ValueError(f"it is of the protocol {plan.protocol}")
+        if len(plan.practice) != protocol.practice:
+            raise ValueError(
+                f"{len(plan.practice)} trials are practice, and {protocol.practice} must be"
+            )
+        for trials in (plan.practice, plan.trials):
+            for number, trial in enumerate(trials, 1):
+                about = f"trial {number} of {'practice' if trials is plan.practice else 'all'}"
+                if trial.number != number:
+                    raise ValueError(f"{about} has the number {trial.number}")
+                problem = _problem_of_trial(protocol, trial, wanted)
+                if problem:
+                    raise ValueError(f"{about} {problem}")
+        _check_counts(protocol, plan, wanted)
+        _check_tuning(protocol, plan)
+        _check_blocks(protocol, plan)
+    except ValueError as error:
+        raise InputError(
+            f"the plan of {plan.participant} for {protocol.name} breaks a rule: {error}; "
+            f"make it anew from its seed"
+        ) from None
+
+
+def _wanted(protocol: Protocol) -> Counter[Content]:
+    """How often each condition must show each thing."""
+    design = protocol.design
+    if isinstance(design, Combinations):
+        things = product(design.characters, repeat=design.length)
+    elif isinstance(design, Choice):
+        things = permutations(design.values, 2)
+    else:
+        things = (tuple(sorted(s)) if design.reorder else s for s in design.strings)
+    return Counter({thing: n * design.repeats for thing, n in Counter(things).items()})
+
+
+def _content(protocol: Protocol, trial: Trial) -> Content:
+    """What a trial shows, as `_wanted` has it."""
+    design = protocol.design
+    if isinstance(design, Choice):
+        return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
+    masks = trial.stimuli[0].masks[slice(*trial.asked)]
+    if isinstance(design, StringList) and design.reorder:
+        return tuple(sorted(masks))
+    return masks
+
+
+def _problem_of_trial(protocol: Protocol, trial: Trial, wanted: Counter[Content]) -> str:
+    """Say what is wrong with a trial by itself; empty if nothing is."""
+    design = protocol.design
+    if len(trial.stimuli) != (2 if isinstance(design, Choice) else 1):
+        return f"has {len(trial.stimuli)} stimuli"
+    if len(trial.stimuli) == 2 and trial.stimuli[0] == trial.stimuli[1]:
+        return "compares two identical stimuli"
+    around = (design.before, design.after) if isinstance(design, Combinations) else ((), ())
+    first, stop = trial.asked
+    for stimulus in trial.stimuli:
+        if (stimulus.masks[:first], stimulus.masks[stop:]) != around:
+            return "asks for other cells than those between the delimiters"
+        if isinstance(design, Choice) and stimulus.masks != design.string:
+            return "shows another string than the design's"
+    if _content(protocol, trial) not in wanted:
+        return "shows what is not in the design"
+    for stimulus in trial.stimuli:
+        if stimulus.geometry != protocol.geometry_at(stimulus.value):
+            return "has other distances than the protocol's"
+    return ""
+
+
+def _check_tuning(protocol: Protocol, plan: Plan) -> None:
+    """Check that each condition has one tuning, and its own values where it gives some."""
+    tunings = {condition.name: set() for condition in protocol.conditions}
+    for trial in (*plan.practice, *plan.trials):
+        if trial.condition not in tunings:
+            raise ValueError(f"trial {trial.number} is of a condition {trial.condition!r}")
+        tunings[trial.condition].update(stimulus.tuning for stimulus in trial.stimuli)
+    for condition in protocol.conditions:
+        if len(tunings[condition.name]) != 1:
+            raise ValueError(f"condition {condition.name} has not one texture and contrast")
+        (tuning,) = tunings[condition.name]
+        for name in (*condition.own, "cycles"):
+            if getattr(tuning, name) != getattr(condition.tuning, name):
+                raise ValueError(f"condition {condition.name} has another {name}")
+
+
+def _check_blocks(protocol: Protocol, plan: Plan) -> None:
+    blocks = [block for block, _ in groupby(plan.trials, key=lambda trial: trial.block)]
+    wanted = len(protocol.conditions) if protocol.blocks is None else protocol.blocks
+    if blocks != list(range(1, wanted + 1)):
+        raise ValueError(f"its blocks are not 1 to {wanted}")
+    if any(not trial.practice for trial in plan.practice):
+        raise ValueError("a practice trial is in a block")
+    if plan.order and not is_balanced(protocol):
+        raise ValueError(f"it has the balanced order {plan.order}, and there is none")
+    if protocol.blocks is None:
+        _check_order(protocol, plan)
+        return
+    for name in (*(condition.name for condition in protocol.conditions), None):
+        shares = [
+            sum(trial.block == block and name in (trial.condition, None) for trial in plan.trials)
+            for block in blocks
+        ]
+        if max(shares) - min(shares) > 1:
+            raise ValueError(f"{name or 'all'} is not spread evenly over the blocks: {shares}")
+
+
+def _check_order(protocol: Protocol, plan: Plan) -> None:
+    """Check that each block is of one condition, and their order."""
+    listed = [condition.name for condition in protocol.conditions]
+    shown = [name for _, name in dict.fromkeys((t.block, t.condition) for t in plan.trials)]
+    if sorted(shown) != sorted(listed):
+        raise ValueError("its blocks are not of one condition each")
+    if protocol.order == "listed" and shown != listed:
+        raise ValueError("its conditions are not in the order listed")
+    if not is_balanced(protocol):
+        return
+    orders = balanced_orders(len(listed))
+    check_balance(orders)
+    if not 1 <= plan.order <= len(orders):
+        raise ValueError(f"it has the balanced order {plan.order} of {len(orders)}")
+    if shown != [listed[place] for place in orders[plan.order - 1]]:
+        raise ValueError(f"its conditions are not in the balanced order {plan.order}")
+
+
+def check_balance(orders: list[tuple[int, ...]]) -> None:
+    """Check that orders are balanced over a full cycle of them.
+
+    Raises
+    ------
+    ValueError
+        If a condition is not equally often in each place, or does not follow
+        each other one equally often.
+    """
+    every = range(len(orders[0]))
+    placed = Counter(place for order in orders for place in enumerate(order))
+    if len({placed[place, condition] for place in every for condition in every}) > 1:
+        raise ValueError("a condition is not equally often in each place of the balanced orders")
+    followed = Counter(pair for order in orders for pair in pairwise(order))
+    if len({followed[pair] for pair in permutations(every, 2)}) > 1:
+        raise ValueError("a condition does not follow each other one equally often")
+
+
+def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Content]) -> None:
+    """Check how often each condition shows each thing, and each letter."""
+    for condition in protocol.conditions:
+        trials = [trial for trial in plan.trials if trial.condition == condition.name]
+        shown = Counter(_content(protocol, trial) for trial in trials)
+        for content, times in wanted.items():
+            if shown[content] != times:
+                raise ValueError(
+                    f"condition {condition.name} shows {_name(protocol, content)} "
+                    f"{shown[content]} times, and must {times} times"
+                )
+        problem = protocol.rules.problem(trial.stimuli[0].masks for trial in trials)
+        if problem:
+            raise ValueError(f"in condition {condition.name} {problem}")
+
+
+def _name(protocol: Protocol, content: Content) -> str:
+    if isinstance(protocol.design, Choice):
+        return " and ".join(f"{value:g} mm" for value in content)
+    return to_braille(tuple(map(int, content)))

@@ -1,0 +1,132 @@
+"""What is under the hand in a trial."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vbraille.sessions.planning.spelling import to_braille
+
+if TYPE_CHECKING:
+    from vbraille.geometry import Geometry
+    from vbraille.render import Tuning
+
+MOST_SEED = 2**63 - 1
+
+_PARTICIPANT = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
+
+
+def check_participant(participant: str) -> None:
+    """Check a participant's pseudonym: folders and tables are named by it.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+    """
+    if not _PARTICIPANT.fullmatch(participant):
+        raise ValueError(
+            f"participant is {participant[:40]!r}; it must be a pseudonym such as P07: 1 to 32 "
+            f"letters a to z, digits, hyphens or underscores, a letter or digit first"
+        )
+
+
+def check_seed(seed: int) -> None:
+    """Check a seed.
+
+    Raises
+    ------
+    ValueError
+        If it is out of range.
+    """
+    if not 0 <= seed <= MOST_SEED:
+        raise ValueError("seed is out of range; it must be 0 to 2⁶³ - 1")
+
+
+@dataclass(frozen=True, slots=True)
+class Stimulus:
+    """One thing under the hand.
+
+    Parameters
+    ----------
+    masks
+        Dot masks of all cells shown, delimiters too.
+    tuning, geometry
+        What they are shown with.
+    value
+        Of the parameter compared, in mm; None if none is.
+
+    Raises
+    ------
+    ValueError
+        If there is no cell, or one that has more than eight dots.
+    """
+
+    masks: tuple[int, ...]
+    tuning: Tuning
+    geometry: Geometry
+    value: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.masks:
+            raise ValueError("a stimulus has no cells; it must have one or more")
+        for mask in self.masks:
+            if not 0 <= mask <= 0xFF:
+                raise ValueError(f"a cell's dot mask is {mask}; it must be 0 to 255")
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """Something to read, or two things to compare.
+
+    Parameters
+    ----------
+    number
+        From 1 in the session; practice trials count on their own.
+    block
+        From 1; 0 is practice.
+    condition
+        Its name.
+    stimuli
+        One to read, two to compare.
+    asked
+        Cells of the stimulus that are asked for, as [first, one past the last).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    number: int
+    block: int
+    condition: str
+    stimuli: tuple[Stimulus, ...]
+    asked: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        if self.number < 1:
+            raise ValueError(f"a trial's number is {self.number}; it must be 1 or more")
+        if self.block < 0:
+            raise ValueError(f"trial {self.number} has block {self.block}; it must be 0 or more")
+        if len(self.stimuli) not in (1, 2):
+            raise ValueError(
+                f"trial {self.number} has {len(self.stimuli)} stimuli; it must have 1 or 2"
+            )
+        first, stop = self.asked
+        if not 0 <= first < stop <= min(len(stimulus.masks) for stimulus in self.stimuli):
+            raise ValueError(
+                f"trial {self.number} asks for the cells from {first} to {stop}; "
+                f"they must be cells of what it shows"
+            )
+
+    @property
+    def practice(self) -> bool:
+        """Whether it is practice."""
+        return self.block == 0
+
+    @property
+    def presented(self) -> str:
+        """Unicode braille of the cells asked for (of the first stimulus, if there are two)."""
+        return to_braille(self.stimuli[0].masks[slice(*self.asked)])

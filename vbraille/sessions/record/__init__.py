@@ -1,0 +1,1 @@
+"""What is kept of a session on the disk, and what is made of it."""

@@ -1,0 +1,176 @@
+"""Whether a session's directory is whole, and its files agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.errors import VbrailleError
+from vbraille.sessions.planning.plan import check_plan
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.folder import FILES, load, read_file, read_journal, read_told_trace
+from vbraille.sessions.record.progress import Progress
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.journal import Event, Told
+    from vbraille.sessions.record.traces import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that was looked at.
+
+    Parameters
+    ----------
+    text
+        What there is to say of it.
+    good
+        Whether it is as it should be.
+    """
+
+    text: str
+    good: bool = True
+
+
+def check_folder(folder: Path) -> Iterator[Finding]:
+    """Look at every file of a session, also where not all can be used.
+
+    Raises
+    ------
+    InputError
+        If it is no session, or one of a newer format.
+    VbrailleError
+        If there is no journal to go by.
+    """
+    told = read_journal(folder)
+    faults: list[Finding] = []
+    for name in FILES:
+        try:
+            read_file(folder, name, told)
+        except VbrailleError as error:
+            faults.append(Finding(str(error), good=False))
+    if not faults:
+        yield from check(load(folder))
+        return
+    yield from faults
+    yield from _check_journal(told)
+    yield from _check_torn(folder, told)
+    runs = [event for event in told.events if event["event"] == "run"]
+    for name in _trace_names(folder, runs):
+        yield _describe(name, read_told_trace(folder, name, told))
+
+
+def check(record: Record) -> Iterator[Finding]:
+    """Look at every file of a session whose first files are whole."""
+    told = record.told
+    yield Finding("session.json, plan.json, protocol.toml: as they were when the session began")
+    try:
+        check_plan(record.protocol, record.plan)
+        yield Finding(f"plan: {len(record.plan.trials)} trials, all design rules hold")
+    except VbrailleError as error:
+        yield Finding(f"plan: {error}", good=False)
+    yield from _check_journal(told)
+    yield from _check_torn(record.folder, told)
+    progress = Progress(record.plan, told.events)
+    yield from _check_traces(record, progress)
+    state = "ended" if progress.ended else "not ended, session resume goes on"
+    yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")
+
+
+def _check_journal(told: Told) -> Iterator[Finding]:
+    if told.damage is not None:
+        before = f"the {len(told.events)} events before it are whole"
+        yield Finding(f"{journal.NAME}: damaged, {told.damage}; {before}", good=False)
+    else:
+        yield Finding(f"{journal.NAME}: {len(told.events)} events, whole")
+    if told.torn:
+        yield Finding(
+            f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
+            f"session resume sets them aside"
+        )
+
+
+def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
+    """Look whether what was set aside begins with all that the journal tells of."""
+    try:
+        torn = (folder / journal.TORN).read_bytes()
+    except FileNotFoundError:
+        torn = b""
+    except OSError as error:
+        yield Finding(f"{journal.TORN} cannot be read: {error.strerror}", good=False)
+        return
+    sums = [event["torn_file"] for event in told.events if event.get("torn_file")]
+    good = all(journal.sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
+    if not good:
+        yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
+    elif torn:  # the last ones untold of, if a crash came before the journal could
+        yield Finding(f"{journal.TORN}: {len(torn)} bytes set aside by session resume")
+
+
+def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
+    told = record.told
+    expected = {run["trace"] for run in progress.runs if "trace" in run}
+    answered, known = _answered_lines(progress), _known_lines(progress)
+    # A crash may leave a trace that goes on where the journal has lost its end.
+    open_end = bool(told.torn) or not told.events or told.events[-1]["event"] != "closed"
+    for name in _trace_names(record.folder, progress.runs):
+        trace = read_told_trace(record.folder, name, told)
+        yield _describe(name, trace)
+        if name not in expected:
+            yield Finding(f"{name}: of a run that the journal does not tell of")
+        if trace.damage is None:
+            lines = set(np.unique(trace.ticks["line"]).tolist())
+            yield from _compare(name, lines, answered.get(name, set()), known | {0}, open_end)
+
+
+def _trace_names(folder: Path, runs: list[Event]) -> list[str]:
+    """Names of all traces that there are, or should be."""
+    told = {run["trace"] for run in runs if "trace" in run}
+    return sorted(told | {path.name for path in folder.glob("trace-*.gz")})
+
+
+def _describe(name: str, trace: Trace) -> Finding:
+    ticks = trace.ticks
+    if trace.damage is not None:
+        whole = f"the {ticks.size} ticks before it are whole"
+        return Finding(f"{name}: damaged, {trace.damage}; {whole}", good=False)
+    missing = int((np.diff(ticks["tick"]) - 1).sum()) if ticks.size else 0
+    late = int(ticks["late"][-1]) if ticks.size else 0
+    said = f"{name}: {ticks.size} ticks, {missing} missing, {late} deadlines late"
+    if trace.torn_bytes:
+        said += f"; its last chunk was cut short, {trace.torn_bytes} bytes"
+    return Finding(said, good=not missing)
+
+
+def _compare(
+    name: str, lines: set[int], answered: set[int], known: set[int], open_end: bool
+) -> Iterator[Finding]:
+    """What a trace and the journal tell of one another."""
+    for line in sorted(answered - lines):
+        yield Finding(f"{name}: stimulus {line} was answered and is not in it", good=False)
+    for line in sorted(lines - known):
+        text = f"{name}: stimulus {line} is in it, and the journal does not tell of it"
+        yield Finding(text, good=open_end)
+
+
+def _answered_lines(progress: Progress) -> dict[str, set[int]]:
+    """Lines of the showings that answers rest on, by trace."""
+    lines: dict[str, set[int]] = {}
+    for told in progress.trials.values():
+        if told.answer is None and told.first_answer is None:
+            continue
+        for showing in told.last_attempt:
+            if showing.trace is not None:
+                lines.setdefault(showing.trace, set()).add(showing.line)
+    return lines
+
+
+def _known_lines(progress: Progress) -> set[int]:
+    trials = (*progress.trials.values(), *progress.practice.values())
+    return {showing.line for told in trials for showing in told.showings}

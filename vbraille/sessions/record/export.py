@@ -1,0 +1,260 @@
+"""A session as tables: one row a planned trial, made from the record alone."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import io
+import os
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vbraille.engine.ring import Flag
+from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions.planning.pictures import render
+from vbraille.sessions.record.folder import read_told_trace
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.trajectory import duration, first_edge_mm
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.progress import Told
+    from vbraille.sessions.record.traces import Trace
+
+# What each column holds: the table's head, and its description in BIDS.
+COLUMNS = {
+    "session": "name of the session's directory",
+    "participant": "pseudonym",
+    "protocol": "name of the protocol",
+    "block": "from 1",
+    "trial": "from 1, in the order of the plan",
+    "condition": "name, as in the protocol",
+    "texture": "level of texture, 0 to 1",
+    "contrast": "share of the full swing, 0 to 1",
+    "parameter": "what two stimuli were compared by, in mm; empty where strings are read",
+    "presented": "Unicode braille of the cells asked for; two values, the first one first",
+    "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
+    "correct": "1 if all places are right, 0 if not; empty for comparisons and without an answer",
+    "first_answer": "what had been answered before an undo; else empty",
+    "attempt": "how often the trial was begun",
+    "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
+    "(Levesque 2009, 3.4); on paper, by key",
+    "returned": "1 if the hand went back over the leftmost dot; 0 if the duration ends with the "
+    "last tick at which an actuator was off its idle end",
+    "contact_s": "from the start signal to the first touch",
+    "response_s": "from the start signal to the answer, pauses left out",
+    "paused_s": "length of the pauses",
+    "warned": "1 if the warning sounded",
+    "faults": "what went wrong with the device in the trial, all attempts",
+    "notes": "of the experimenter",
+    "cue_time": "wall clock at the start signal, UTC",
+    "answer_time": "wall clock at the answer, UTC",
+    "trace": "file of the trace of the last attempt",
+}
+
+
+class Traces:
+    """The traces of a session, each read once, as far as it is whole.
+
+    Parameters
+    ----------
+    record
+        The session.
+
+    Attributes
+    ----------
+    faults : list[str]
+        What is wrong with those that were asked for.
+    """
+
+    def __init__(self, record: Record) -> None:
+        self.faults: list[str] = []
+        self._record = record
+        self._traces: dict[str, Trace] = {}
+
+    def read(self, name: str) -> Trace:
+        """A trace."""
+        if name not in self._traces:
+            trace = read_told_trace(self._record.folder, name, self._record.told)
+            self._traces[name] = trace
+            if trace.damage is not None:
+                self.faults.append(f"{name} is damaged, {trace.damage}")
+        return self._traces[name]
+
+    def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
+        """Ticks of some lines of a trace, in order; None if not all of them are known."""
+        trace = self.read(name)
+        # Line numbers grow along a trace, so that damage cuts the last one short.
+        known = trace.ticks["line"]
+        if trace.damage is not None and not (known.size and known[-1] > max(lines)):
+            return None
+        first, stop = np.searchsorted(known, (min(lines), max(lines) + 1))
+        part = trace.ticks[first:stop]
+        return part[np.isin(part["line"], lines)]
+
+
+def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
+    """Rows of a session, by `COLUMNS` and then the protocol's fields.
+
+    Parameters
+    ----------
+    record
+        The session.
+    traces
+        Its traces, for who wants to know what is wrong with them. What they do not tell
+        is left empty.
+    """
+    progress = Progress(record.plan, record.told.events)
+    traces = Traces(record) if traces is None else traces
+    fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
+    return [
+        _row(record, trial, progress.trials[trial.number], traces) | fields
+        for trial in record.plan.trials
+    ]
+
+
+def _row(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, Any]:
+    t_s = told.t_s
+    tuning = trial.stimuli[0].tuning
+    row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
+    row |= {
+        "session": record.folder.resolve().name,
+        "participant": record.plan.participant,
+        "protocol": record.plan.protocol,
+        "block": trial.block,
+        "trial": trial.number,
+        "condition": trial.condition,
+        "texture": told.tuning.get("texture", tuning.texture),
+        "contrast": told.tuning.get("contrast", tuning.contrast),
+        "attempt": told.attempts,
+        "paused_s": round(told.paused_s, 6),
+        "warned": int("warning" in t_s),
+        "faults": "; ".join(told.faults),
+        "notes": "; ".join(told.notes),
+        "cue_time": told.wall.get("cue", ""),
+        "answer_time": told.wall.get("answer", ""),
+        "trace": told.showings[-1].trace or "" if told.showings else "",
+    }
+    if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
+        row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
+    if "cue" in t_s and "answer" in t_s:
+        row["response_s"] = round(t_s["answer"] - t_s["cue"] - told.paused_s, 6)
+    if len(trial.stimuli) == 2:
+        values = [f"{stimulus.value:g}" for stimulus in trial.stimuli]
+        row["parameter"] = record.protocol.parameter
+        row["presented"] = " ".join(values)
+        row["answered"] = _chosen(values, told.answer)
+        row["first_answer"] = _chosen(values, told.first_answer)
+    else:
+        row["presented"] = trial.presented
+        row["answered"] = told.answer or ""
+        row["first_answer"] = told.first_answer or ""
+        if told.answer is not None:
+            row["correct"] = int(told.answer == trial.presented)
+        if record.protocol.medium == "paper":
+            if "read" in t_s and "cue" in t_s:
+                row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
+        elif told.answer is not None and row["trace"]:
+            row |= _trajectory(record, trial, told, traces, row["trace"])
+    return row
+
+
+def _chosen(values: list[str], answer: str | None) -> str:
+    return "" if answer is None else values[int(answer) - 1]
+
+
+def _trajectory(
+    record: Record, trial: Trial, told: Told, traces: Traces, trace: str
+) -> dict[str, Any]:
+    """What the trace tells of the last attempt."""
+    protocol, stimulus = record.protocol, trial.stimuli[0]
+    line = protocol.line(stimulus.masks)
+    edge_mm = first_edge_mm(line, protocol.mapping, stimulus.geometry)
+    shown = [showing.line for showing in told.last_attempt]
+    ticks = traces.of(trace, shown)
+    if edge_mm is None or ticks is None:
+        return {}
+    felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
+    ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
+
+    def moved() -> NDArray[np.bool_]:
+        renderer = render(protocol, stimulus, replace(stimulus.tuning, **told.tuning))
+        frames = renderer.path(ticks["x_mm"])
+        idle = renderer.path(np.full(1, np.nan))
+        return (frames != idle).any(axis=(1, 2))
+
+    found = duration(
+        ticks["x_mm"],
+        ticks["time_ns"],
+        moved,
+        edge_mm=edge_mm,
+        span_mm=protocol.model.array.span_mm,
+    )
+    if found is None:
+        return {}
+    return {"duration_s": round(found.seconds, 6), "returned": int(found.returned)}
+
+
+def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:
+    """Write rows of one kind as text."""
+    text = io.StringIO()
+    writer = csv.writer(text, delimiter=delimiter, lineterminator="\n")
+    writer.writerow(table[0])
+    for row in table:
+        writer.writerow([missing if value == "" else value for value in row.values()])
+    return text.getvalue()
+
+
+def encode(text: str) -> bytes:
+    """UTF-8 of a text; what is no text, in a directory's name, is spelled."""
+    return text.encode("utf-8", "backslashreplace")
+
+
+def write_new(path: Path, content: bytes) -> None:
+    """Write a file that is not there yet: whole, or not at all.
+
+    Raises
+    ------
+    InputError
+        If it is there, or cannot be made.
+    VbrailleError
+        If the disk does not take it.
+    """
+    if not path.name:
+        raise InputError(f"{path} is a directory; give the name of a file with --out")
+    partial = path.with_name(f".{path.name}.partial")
+    try:
+        try:
+            file = partial.open("wb")
+        except OSError as error:
+            raise InputError(f"{path} cannot be written: {error.strerror}") from None
+        with file:
+            file.write(content)
+        _put(partial, path)
+    except FileExistsError:
+        raise InputError(f"{path} is there already; give another name with --out") from None
+    except OSError as error:
+        raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def _put(partial: Path, path: Path) -> None:
+    """Give a file its name, unless another has it."""
+    try:
+        os.link(partial, path)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
+            raise
+        if path.exists():  # a disk without hard links, such as a memory stick
+            raise FileExistsError from None
+        partial.rename(path)

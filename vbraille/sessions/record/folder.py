@@ -1,0 +1,285 @@
+"""A session's directory: what is on the disk before trial 1, and what is added to it.
+
+`docs/session-format.md` describes the files.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import platform
+import sys
+import zlib
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vbraille import __version__
+from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.protocol import Protocol, parse_protocol
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.traces import TRACE, Trace, read_trace
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from vbraille.sessions.record.journal import Told
+
+FORMAT = 1
+HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
+FILES = (HEAD, PLAN, PROTOCOL)
+_TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What a session's directory holds.
+
+    Parameters
+    ----------
+    folder
+        The directory.
+    head
+        Of `HEAD`: who, what, with what.
+    protocol, plan
+        What is done, and in which order.
+    told
+        The journal, when it was read.
+    """
+
+    folder: Path
+    head: dict[str, Any]
+    protocol: Protocol
+    plan: Plan
+    told: Told
+
+
+def check_free(folder: Path) -> None:
+    """See that a new session can have this directory.
+
+    Raises
+    ------
+    InputError
+        If there is something already, or it cannot be seen.
+    """
+    try:
+        taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
+    if taken:
+        raise InputError(f"{folder} is there already; give a new directory with --out")
+
+
+def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
+    """Put a new session on the disk: whole, or not at all.
+
+    Raises
+    ------
+    InputError
+        If there is something already, or no directory can be made there.
+    VbrailleError
+        If the disk does not take it.
+    """
+    folder = folder.absolute()
+    check_free(folder)
+    files = {
+        PROTOCOL: protocol.text.encode(),
+        PLAN: plan.to_json().encode(),
+        # A lone surrogate, of a file's name, is spelled as JSON does.
+        HEAD: (json.dumps(head, ensure_ascii=False, indent=2) + "\n").encode(
+            "utf-8", "backslashreplace"
+        ),
+    }
+    sums = {name: sha256(content).hexdigest() for name, content in files.items()}
+    # The others' checksums are in the journal, as its first event.
+    first = {"event": "session", "format": FORMAT, "sha256": sums, "t_s": 0.0}
+    files[journal.NAME] = journal.first_lines([first])
+    partial = folder.with_name(f".{folder.name}.partial")
+    made: list[Path] = []  # each in the one before
+    try:
+        for parent in missing(folder.parent):
+            parent.mkdir()
+            made.append(parent)
+        _remove(partial)  # of a session that was killed being born
+        partial.mkdir()
+        made.append(partial)
+        _fill(partial, files)
+        partial.rename(folder)
+        _sync(folder.parent)
+    except BaseException as fault:
+        with suppress(OSError):
+            _remove(partial)
+        for parent in reversed(made):
+            with suppress(OSError):  # what is in use stays
+                parent.rmdir()
+        if isinstance(fault, OSError):
+            kind = VbrailleError if partial in made else InputError
+            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
+        raise
+
+
+def read_journal(folder: Path) -> Told:
+    """Journal of a session, up to what is damaged or torn.
+
+    Raises
+    ------
+    InputError
+        If it is no session, or one of a newer format.
+    VbrailleError
+        If it cannot be read, or nothing of it is whole.
+    """
+    path = folder / journal.NAME
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise _no_journal(folder, error) from None
+    told = journal.decode(content)
+    if not told.events:
+        raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
+    first = told.events[0]
+    if first.get("event") != "session":
+        raise InputError(f"{path} is not the journal of a session")
+    if first["format"] > FORMAT:
+        raise InputError(
+            f"{folder} is a session of format {first['format']}, and this vbraille knows format "
+            f"{FORMAT}; use the vbraille that made it, or a newer one"
+        )
+    return told
+
+
+def read_file(folder: Path, name: str, told: Told) -> bytes:
+    """One of `FILES`, as it was when the session began.
+
+    Raises
+    ------
+    VbrailleError
+        If it is missing, or not what it was.
+    """
+    path = folder / name
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
+    if sha256(content).hexdigest() != told.events[0]["sha256"][name]:
+        raise VbrailleError(
+            f"{path} is not what it was when the session began; "
+            f"put it back as it was, nothing else was changed"
+        )
+    return content
+
+
+def load(folder: Path) -> Record:
+    """Read a session's directory; of a damaged journal, what comes before the damage.
+
+    Raises
+    ------
+    InputError
+        If it is no session, or one of a newer format.
+    VbrailleError
+        If a file other than the journal is missing or not what it was.
+    """
+    told = read_journal(folder)
+    contents = {name: read_file(folder, name, told).decode() for name in FILES}
+    return Record(
+        folder,
+        json.loads(contents[HEAD]),
+        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL)),
+        Plan.from_json(contents[PLAN]),
+        told,
+    )
+
+
+def read_told_trace(folder: Path, name: str, told: Told) -> Trace:
+    """Trace of a session, to its last whole chunk.
+
+    What makes it another than the journal tells of is damage too: that it is missing,
+    or shorter than it was when it was closed.
+    """
+    path = folder / name
+    try:
+        trace = read_trace(path)
+        size = path.stat().st_size
+    except (VbrailleError, OSError):
+        return Trace(np.zeros(0, TRACE), 0, "it cannot be read" if path.exists() else "it is gone")
+    closed = {event.get("trace"): event for event in told.events if event["event"] == "closed"}
+    damage = trace.damage
+    if damage is None and name in closed and size != closed[name]["trace_bytes"]:
+        damage = f"it has {size} bytes, and had {closed[name]['trace_bytes']} when it was closed"
+    elif damage is None and trace.torn_bytes and (name in closed or _is_member(path, trace)):
+        damage = "its last chunk has a wrong length"
+    return replace(trace, damage=damage)
+
+
+def missing(folder: Path) -> list[Path]:
+    """Directories that are not there yet, each in the one before."""
+    return [path for path in (*reversed(folder.parents), folder) if not path.exists()]
+
+
+def versions() -> dict[str, str]:
+    """Versions of all that has a part in what the actuators do."""
+    return {
+        "vbraille": __version__,
+        "python": sys.version.split()[0],
+        **{name: version(name) for name in _TOLD_VERSIONS},
+        "system": platform.platform(),
+    }
+
+
+def _no_journal(folder: Path, error: OSError) -> VbrailleError:
+    """Say why there is no journal to be read."""
+    try:
+        names = {path.name for path in folder.iterdir()}
+    except FileNotFoundError:
+        return InputError(f"there is no directory {folder}; give that of a session")
+    except OSError as fault:
+        return InputError(f"{folder} cannot be read: {fault.strerror}; give a session's directory")
+    if journal.NAME in names:
+        return VbrailleError(f"{folder / journal.NAME} cannot be read: {error.strerror}")
+    if names.issuperset(FILES):
+        return VbrailleError(f"{folder} has lost its {journal.NAME}; there is nothing to go by")
+    return InputError(f"{folder} is not the directory of a session: it has no {journal.NAME}")
+
+
+def _is_member(path: Path, trace: Trace) -> bool:
+    """Whether the torn end of a trace is whole: then its length is what is wrong."""
+    try:
+        gzip.decompress(path.read_bytes()[-trace.torn_bytes :])
+    except (OSError, EOFError, zlib.error):
+        return False
+    return True
+
+
+def _fill(folder: Path, files: dict[str, bytes]) -> None:
+    for name, content in files.items():
+        _write(folder / name, content)
+    _sync(folder)
+
+
+def _remove(folder: Path) -> None:
+    """Remove a directory with the files that a session is born with, and with no others."""
+    with suppress(FileNotFoundError):
+        for name in (*FILES, journal.NAME):
+            (folder / name).unlink(missing_ok=True)
+        folder.rmdir()
+
+
+def _write(path: Path, content: bytes) -> None:
+    with path.open("xb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _sync(folder: Path) -> None:
+    """Have a directory's names on the disk."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,1 @@
+"""A session being run: the console, the course of the trials, what is felt and heard."""

@@ -1,0 +1,234 @@
+"""Where answers come from: an experimenter's lines, a file of them, or a simulated reader."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+import time
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.sessions.simulated.observer import Observer
+
+if TYPE_CHECKING:
+    from vbraille.render.mappings import Mapping
+    from vbraille.render.models import Model
+    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.simulated.observer import Parameter
+    from vbraille.sessions.simulated.skin import Exploration
+
+MOST_NOISE = 100.0
+_WAIT_S = 1.0
+# What two stimuli are compared by, as the protocol and the observer call it.
+_COMPARED: dict[str, Parameter] = {"dot_width_mm": "dot width", "dot_gap_mm": "gap"}
+
+
+class Answers(Protocol):
+    """A source of lines for the console.
+
+    Attributes
+    ----------
+    typed : bool
+        Whether a person types them, who is waited for at breaks and may need practice.
+    felt : bool
+        Whether they come from what is felt of a device.
+    """
+
+    typed: bool
+    felt: bool
+
+    def lines(self, wait_s: float) -> list[str] | None:
+        """Lines given since the last call, after waiting so long for one; None: no more come."""
+        ...
+
+    def next(
+        self, trial: Trial, attempt: int, felt: list[Exploration], /
+    ) -> tuple[str, int] | None:
+        """Line given to a trial that has been read, and its number in its file, else 0.
+
+        None if there are no more.
+        """
+        ...
+
+
+class Typed:
+    """Lines of standard input, a terminal or not."""
+
+    typed = True
+    felt = False
+
+    def __init__(self) -> None:
+        self._descriptor = sys.stdin.fileno() if sys.stdin else None
+        self._partial = b""
+        self._waiting: list[str] = []
+
+    def lines(self, wait_s: float) -> list[str] | None:
+        """Lines typed since the last call; see `Answers`."""
+        if self._waiting:
+            lines, self._waiting = self._waiting, []
+            return lines
+        if self._descriptor is None:
+            return None
+        if not select.select([self._descriptor], [], [], wait_s)[0]:
+            return []
+        try:
+            said = os.read(self._descriptor, 1 << 16)
+        except OSError:  # the terminal is gone
+            said = b""
+        if not said:
+            self._descriptor = None
+            last, self._partial = self._partial, b""
+            return [last.decode("utf-8", "replace")] if last else None
+        *lines, self._partial = (self._partial + said).split(b"\n")
+        return [line.decode("utf-8", "replace") for line in lines]
+
+    def line(self) -> str | None:
+        """Wait for the next line; None: no more come."""
+        lines = self.lines(_WAIT_S)
+        while lines == []:
+            lines = self.lines(_WAIT_S)
+        if lines is None:
+            return None
+        line, *self._waiting = lines
+        return line
+
+    def next(
+        self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
+    ) -> tuple[str, int] | None:
+        """Nothing: a person answers when it suits."""
+        return None
+
+
+class Script:
+    """Lines of a file, the next one whenever a trial has been read.
+
+    Empty lines, and those that begin with #, are passed over.
+
+    Parameters
+    ----------
+    path
+        The file, UTF-8.
+    after
+        Number of the last line that was used before.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+
+    typed = False
+    felt = False
+
+    def __init__(self, path: Path, after: int = 0) -> None:
+        try:
+            text = path.read_text("utf-8-sig")
+        except OSError as error:
+            raise InputError(f"{path} cannot be read: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise InputError(f"{path} is not UTF-8; save it as that") from None
+        numbered = enumerate(text.splitlines(), 1)
+        self.left = [
+            (line.strip(), n)
+            for n, line in numbered
+            if n > after and line.strip() and not line.lstrip().startswith("#")
+        ]
+        self.path = path
+        self._given = 0
+
+    def lines(self, wait_s: float) -> list[str]:
+        """Nothing, after a wait: lines are given to trials."""
+        time.sleep(wait_s)
+        return []
+
+    def next(
+        self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
+    ) -> tuple[str, int] | None:
+        """Give the next line of the file."""
+        if self._given == len(self.left):
+            return None
+        self._given += 1
+        return self.left[self._given - 1]
+
+
+class Simulated:
+    """A simulated reader: it is given what was sent to the device, and nothing of the plan.
+
+    Like a person it has been told the protocol: where a string begins, how many
+    characters it has, which of them are asked for, what two stimuli are to be
+    compared by.
+
+    Parameters
+    ----------
+    protocol
+        For that, and for the display's nominal distances.
+    seed
+        Of its noise, together with the trial's number and attempt.
+    noise
+        Of the observer, `vbraille.sessions.simulated.observer`.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to feel, or the noise is out of range.
+    """
+
+    typed = False
+    felt = True
+
+    def __init__(self, protocol: Design, seed: int, noise: float = 0.0) -> None:
+        if protocol.medium == "paper":
+            raise InputError(
+                f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
+                f"type the answers, or give a file of them"
+            )
+        if not 0 <= noise <= MOST_NOISE:
+            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
+        model: Model = protocol.model
+        mapping: Mapping = protocol.mapping
+        self._observer = Observer(model.array, mapping, protocol.geometry, noise=noise)
+        self._lead_cells = protocol.lead_cells
+        self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
+        self._seed = seed
+
+    def lines(self, wait_s: float) -> list[str]:
+        """Nothing, after a wait: it answers when it has read."""
+        time.sleep(wait_s)
+        return []
+
+    def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
+        """Answer to what was felt."""
+        drawn = sha256(f"{self._seed} {trial.practice} {trial.number} {attempt}".encode()).digest()
+        random = np.random.default_rng(int.from_bytes(drawn[:8], "big"))
+        if self._compared is not None:
+            first, second = felt
+            return str(self._observer.compare(first, second, self._compared, random)), 0
+        places = self._lead_cells + len(trial.stimuli[0].masks)
+        masks = self._observer.read(felt[0], places, random)
+        asked = slice(*(self._lead_cells + place for place in trial.asked))
+        return "".join("?" if m is None else chr(0x2800 + m) for m in masks[asked]), 0
+
+
+def parse_answers(spec: str, protocol: Design, seed: int, after: int = 0) -> Answers:
+    """Source of a spec: ``typed``, ``simulated[:NOISE]``, or a file's name.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used.
+    """
+    kind, _, noise = spec.partition(":")
+    if kind == "typed" and not noise:
+        return Typed()
+    if kind == "simulated":
+        try:
+            return Simulated(protocol, seed, float(noise or 0.0))
+        except ValueError:
+            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
+    return Script(Path(spec), after)

@@ -1,0 +1,308 @@
+"""The experimenter's console: one line an event, orders and answers a line each.
+
+What is said of an answer is on the disk before. Nothing of a stimulus, nor
+whether an answer is right, is said before it, practice excepted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.spelling import parse_answer, parse_choice, say_cells
+from vbraille.sessions.running.course import POLL_S, Phase
+from vbraille.sessions.running.orders import ORDERS, find_order
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.course import Course
+
+
+class Console:
+    """Run a session to its end, or until it is stopped.
+
+    Parameters
+    ----------
+    course
+        What comes after what.
+    answers
+        Where lines come from.
+    say
+        Where to say things, one thing a call.
+    real
+        Whether time is the machine's, which is then waited for.
+
+    Raises
+    ------
+    VbrailleError
+        If the device, or the disk, fails for good.
+    """
+
+    def __init__(
+        self, course: Course, answers: Answers, *, say: Callable[[str], None], real: bool = True
+    ) -> None:
+        self._course = course
+        self._progress = course.progress
+        self._answers = answers
+        self._say = say
+        self._wait_s = POLL_S if real else 0.0
+
+    def run(self) -> None:
+        """Go on from where the progress is."""
+        course = self._course
+        if self._progress.correcting is not None:
+            self._say(f"undo: {course.name(self._progress.correcting)}; type its answer")
+        course.next()
+        while course.phase is not Phase.OVER:
+            lines = self._answers.lines(self._wait_s)
+            if lines is None:
+                self._leave()
+                return
+            for line in lines:
+                if course.phase is not Phase.OVER:
+                    self.take(line)
+            course.poll()
+            if not self._answers.typed:
+                self._ask()
+
+    def take(self, line: str, number: int = 0) -> None:
+        """Do what a line says: an order, an answer, or Enter.
+
+        Parameters
+        ----------
+        number
+            Of the line in its file, which the journal keeps; 0 if it is in none.
+
+        Raises
+        ------
+        InputError
+            If a line of a file cannot be used.
+        """
+        line = line.strip()
+        self._course.script_line = number
+        found = find_order(line)
+        if not line:
+            self.go_on()
+        elif found is None:
+            self.answer(line)
+        else:
+            order, rest = found
+            getattr(self, order.name)(rest)
+
+    def _ask(self) -> None:
+        """Ask whoever does not type, where somebody who types would be waited for."""
+        course, correcting = self._course, self._progress.correcting
+        if course.display is None and not correcting and not course.read:
+            course.press()  # a file reads paper in no time
+        last = course.phase is Phase.LAST
+        if not (correcting or course.paused or course.read or last):
+            return
+        trial = correcting or course.trial or self._progress.last_answered
+        if trial is None or course.phase is Phase.OVER:
+            return
+        felt = course.display.explorations if course.display and self._answers.felt else []
+        given = self._answers.next(trial, self._progress.told(trial).attempts, felt)
+        if given is not None:
+            self.take(*given)
+        elif last and not correcting:
+            course.end("all trials are done")
+        else:
+            self._say("answers: there are no more")
+            self._leave()
+
+    def _leave(self) -> None:
+        """Nobody says any more what to do."""
+        if self._course.phase is Phase.LAST and self._progress.correcting is None:
+            self._course.end("all trials are done")
+        else:
+            self.stop()
+
+    def _spoken(self, answer: str) -> str:
+        if self._course.protocol.task == "choice":
+            return "first" if answer == "1" else "second"
+        return say_cells(answer, self._course.protocol.keys)
+
+    def _tell(self, trial: Trial, answer: str) -> None:
+        """In practice: what it was."""
+        if len(trial.stimuli) == 2:
+            values = " and ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
+            self._say(f"practice: they were {values}")
+        else:
+            verdict = "right" if answer == trial.presented else "wrong"
+            self._say(f"practice: {verdict}, it was {self._spoken(trial.presented)}")
+
+    # Orders, by the names that `vbraille.sessions.running.orders` gives them
+
+    def answer(self, line: str) -> None:
+        """Take an answer to the open trial, or to the one that was taken back."""
+        course, correcting = self._course, self._progress.correcting
+        trial = correcting or course.open_trial
+        if trial is None:
+            self._say("no answer is waited for now; help says what there is to type")
+            return
+        if correcting is None and course.second_to_come:
+            self._say("the second has not been felt yet; repeat shows both again")
+            return
+        try:
+            answer = read_line(course.protocol, trial, line)
+        except ValueError as error:
+            if course.script_line:
+                raise InputError(f"line {course.script_line} of the answers: {error}") from None
+            self._say(f"no answer: {error}")
+            return
+        if correcting is None:
+            course.withdraw()
+        told = {"attempt": self._progress.told(trial).attempts, "answer": answer}
+        if correcting is not None:
+            told["corrects"] = True
+        course.log("answer", trial, durable=True, **told)
+        self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
+        if trial.practice:
+            self._tell(trial, answer)
+        if correcting is None or course.trial is None:
+            course.paused = False
+            course.next()
+
+    def undo(self, _: str = "") -> None:
+        """Take back the last answer."""
+        trial = self._progress.last_answered
+        if trial is None or self._progress.correcting is not None:
+            self._say("undo: there is no answer to take back")
+            return
+        self._course.log("undo", trial, durable=True)
+        self._say(f"undo: {self._course.name(trial)}; type its answer")
+
+    def repeat(self, _: str = "") -> None:
+        """Show the open trial again."""
+        trial = self._course.open_trial
+        if trial is None:
+            self._say("repeat: no trial is open")
+            return
+        self._course.log("repeat", trial, durable=True)
+        self._course.again()
+
+    def note(self, text: str) -> None:
+        """Write something down."""
+        if not text:
+            self._say("note: type what is to be noted after it")
+            return
+        self._course.log("note", self._course.open_trial, durable=True, text=text)
+        self._say("note: is in")
+
+    def pause(self, _: str = "") -> None:
+        """Rest the array at once."""
+        course = self._course
+        if course.paused:
+            self.go_on()
+            return
+        if course.display is not None:
+            course.display.rest()
+        course.paused = True
+        course.log("pause", course.open_trial, durable=True)
+        self._say("pause: the array is at rest; Enter goes on")
+
+    def go_on(self, _: str = "") -> None:
+        """Go on after a pause or a break; on paper, take the time."""
+        course = self._course
+        if course.display is not None and course.display.confirm():
+            return
+        if course.paused:
+            course.paused = False
+            course.log("go", course.open_trial)
+            if course.display is not None and course.open_trial is not None:
+                course.display.go()
+            self._say("go: on")
+        elif course.phase is Phase.BREAK:
+            course.log("go")
+            course.next(gap=False)
+        elif course.phase is Phase.LAST and self._progress.correcting is None:
+            course.end("all trials are done")
+        elif course.display is None:
+            course.press()
+
+    def have_break(self, _: str = "") -> None:
+        """Have a break, after the open trial."""
+        self._course.log("break_wanted", self._course.open_trial)
+        self._course.want_break()
+
+    def begin(self, _: str = "") -> None:
+        """End practice."""
+        if self._progress.begun:
+            self._say("begin: practice is over already")
+            return
+        self._course.withdraw()
+        self._course.log("begin", durable=True)
+        self._course.next()
+
+    def texture(self, text: str) -> None:
+        """Set the texture, where it is not what is studied."""
+        self._retune("texture", text)
+
+    def contrast(self, text: str) -> None:
+        """Set the contrast, where it is not what is studied."""
+        self._retune("contrast", text)
+
+    def _retune(self, name: str, text: str) -> None:
+        plan = self._course.plan
+        planned = {getattr(s.tuning, name) for trial in plan.trials for s in trial.stimuli}
+        if len(planned) > 1 or self._course.display is None:
+            self._say(f"{name}: the plan sets it")
+            return
+        try:
+            tuning = {**self._progress.tuning, name: float(text)}
+            replace(plan.trials[0].stimuli[0].tuning, **tuning)
+        except ValueError:
+            self._say(f"{name}: type a number from 0 to 1 after it")
+            return
+        self._course.retune(tuning)
+        self._say(f"{name}: {text}")
+
+    def stop(self, _: str = "") -> None:
+        """End for now."""
+        course = self._course
+        course.withdraw()
+        course.log("stop", durable=True)
+        self._say(
+            f"stopped: {self._progress.done} of {len(course.plan.trials)} trials have answers; "
+            f"session resume goes on"
+        )
+        course.phase = Phase.OVER
+
+    def help(self, _: str = "") -> None:
+        """Say what there is to type."""
+        if self._course.protocol.task == "choice":
+            self._say("an answer: 1 or 2, for the first or the second")
+        else:
+            keys = " ".join(self._course.protocol.keys)
+            self._say(
+                "an answer: letters, dot numbers with a space between cells, "
+                + (f"the keys {keys}, " if keys else "")
+                + "? for a place not read"
+            )
+        self._say("Enter: go on after a pause or a break")
+        for order in ORDERS:
+            self._say(f"{order.word}: {order.help}")
+
+
+def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
+    """Answer to a trial, in its canonical form.
+
+    Raises
+    ------
+    ValueError
+        If the line is none.
+    """
+    if len(trial.stimuli) == 2:
+        return parse_choice(line)
+    first, stop = trial.asked
+    return parse_answer(
+        line,
+        places=stop - first,
+        keys=protocol.keys,
+        shown_dots=protocol.mapping.shown_dots(),
+    )

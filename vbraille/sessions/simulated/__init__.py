@@ -1,0 +1,1 @@
+"""A simulated reader, for pilots and tests."""

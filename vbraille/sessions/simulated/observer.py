@@ -1,0 +1,317 @@
+"""A simulated reader of legibility sessions: a noisy observer of frames and places.
+
+It knows what a hand on the carriage knows - what each contactor did, where the
+carriage was, and when - and how braille of this device is laid out. Of page,
+plan, tuning and profile it knows nothing. It is for pilots, power analyses and
+tests, and is no claim about anybody's skin: the model is ours.
+
+**What is felt.** Contactors at pitch p, along x. w is the swing of a row away
+from its idle end; rows that show the same dots are averaged. Between
+neighbours i and i + 1 the skin is strained (Lévesque 2009, fig. 3.10)
+
+    s(u) = [w_{i+1} - w_i] / p,    u = x + (i + 1/2) p,                      (1)
+
+a function of the place u alone, whichever pair feels it and whenever. The
+reconstruction filters (200 Hz, Lévesque 2009, 6.2) smooth it: at speed v by a
+Gaussian that is 3 dB down at 200 Hz / v, on top of one of 0.02 mm, finer than
+any texture that the program makes:
+
+    σ² = (0.02 mm)² + [v √(ln 2) / (2π · 200 Hz)]².                          (2)
+
+v is the median speed of the hand while any pair is over the dot, standing
+still left out. Evidence of a dot of nominal width W, centred at c, is the rms
+rate of change of the smoothed strain on the way over it,
+
+    E = √ mean (ds/du)²,    |u - c| ≤ W / 2,                                 (3)
+
+per mm and not per s, since a surface feels much the same at any speed; so what
+swings fast, be it finer or with more contrast, is felt more. It is told in
+units of E₀: (3) for w = [1 + cos(2πu/W)] / 2, unsmoothed, which is of W and p
+alone. A dot was reached if something came over nine tenths of its way, no two
+places of which are further apart than W / 2.
+
+**Best of the passes.** Of all that came over a place (5 µm of it), whichever
+pass and pair, only the moment that moved the skin most counts. What a fade or
+a rest weakens is so outdone by any later pass, and none of it is averaged in.
+
+**The answer.** Each E / E₀ gets Gaussian noise of standard deviation `noise`.
+A dot is one that exceeds half of the mean of those above half of the strongest.
+
+**Comparing.** A dot reaches from the first place to the last where contactors
+swing against the one that swings least; places told apart by less than a tenth
+of W are one dot. Widths, or the gap from one dot to the next, get noise in
+units of the nominal length, and the nearer to nominal is chosen.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from vbraille.sessions.simulated.skin import (
+    STILL_MM_S,
+    Exploration,
+    Rates,
+    Wave,
+    reference_per_mm2,
+    smoothing_mm,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.geometry import Geometry
+    from vbraille.render.arrays import ActuatorArray
+    from vbraille.render.mappings import Mapping
+
+Parameter = Literal["dot width", "gap"]
+
+PLACE_MM = 0.005
+LEAST_FELT = 1e-3  # in units of E₀; nothing above it is nothing felt
+LEAST_SWING = 1e-4  # of the largest; rest itself is exactly 0
+APART = 0.1  # of the nominal dot width
+TIE = 0.04  # of the nominal length: as near as each other, where no noise decides
+
+# Dot column (0 = left) and dot row of each dot, by its bit.
+_PLACES = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Touch:
+    """What was felt of each dot.
+
+    Parameters
+    ----------
+    evidence : float64[places, 8]
+        E / E₀ by cell and bit of the dot mask; NaN where the hand was not, and
+        of dots that the mapping does not show.
+
+    Raises
+    ------
+    ValueError
+        If it has another shape or is negative.
+    """
+
+    evidence: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        if self.evidence.ndim != 2 or self.evidence.shape[1] != 8:
+            raise ValueError(f"evidence has shape {self.evidence.shape}; it must be [places, 8]")
+        if (self.evidence < 0).any():
+            raise ValueError(f"evidence is {np.nanmin(self.evidence):g}; it must be 0 or more")
+
+    @property
+    def nothing(self) -> bool:
+        """Whether no dot at all was felt."""
+        return not (self.evidence > LEAST_FELT).any()
+
+
+class Observer:
+    """A reader made of the model above; nothing of it changes once made.
+
+    Parameters
+    ----------
+    array, mapping, geometry
+        What braille is shown with, and its nominal distances.
+    noise
+        Standard deviation of what is added to each evidence in units of E₀, or
+        to a length in units of the nominal one; 0 or more.
+
+    Raises
+    ------
+    ValueError
+        If the array has a single column or too few rows, the mapping shows
+        nothing, or noise is out of range.
+    """
+
+    __slots__ = ("_channels", "_pairs", "_steps", "_swings", "array", "geometry", "noise")
+
+    def __init__(
+        self, array: ActuatorArray, mapping: Mapping, geometry: Geometry, *, noise: float = 0.0
+    ) -> None:
+        if array.columns < 2:
+            raise ValueError("the array has 1 column; it must have 2 or more")
+        if mapping.rows > array.rows:
+            raise ValueError(
+                f"mapping {mapping.name} needs {mapping.rows} actuator rows; "
+                f"the array has {array.rows}"
+            )
+        if not 0 <= noise < math.inf:
+            raise ValueError(f"noise is {noise:g}; it must be a number, 0 or more")
+        self.array = array
+        self.geometry = geometry
+        self.noise = noise
+        self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
+        # Rows that show the same dots are one channel: its number by bit of the dot mask.
+        tables = mapping.left, mapping.right
+        rows = {}
+        for bit, (side, dot_row) in enumerate(_PLACES):
+            if dot_row in tables[side]:
+                rows[bit] = tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
+        kinds = sorted({*rows.values()})
+        if not rows:
+            raise ValueError(f"mapping {mapping.name} shows no dot; it must show one or more")
+        self._channels = {bit: kinds.index(kind) for bit, kind in rows.items()}
+        # Frames times these are strains and swings, by pair or column and then by channel.
+        signs = 1 - 2 * mapping.idle()
+        weights = np.zeros((array.rows, len(kinds)))
+        for channel, kind in enumerate(kinds):
+            weights[list(kind), channel] = signs[list(kind)] / len(kind)
+        differences = np.diff(np.eye(array.columns), axis=1) / array.column_pitch_mm
+        self._pairs = _per_frame(weights, differences)
+        self._swings = _per_frame(weights, np.eye(array.columns))
+
+    def felt(self, exploration: Exploration, places: int) -> Touch:
+        """What an exploration gives of the dots of the first cells of a line.
+
+        Parameters
+        ----------
+        exploration
+            Frames, positions and times.
+        places
+            How many cells there are; the left edge of the first is at x = 0.
+
+        Raises
+        ------
+        ValueError
+            If the frames have not the shape of the array.
+        """
+        geometry, pitch_mm = self.geometry, self.array.column_pitch_mm
+        evidence = np.full((places, 8), np.nan)
+        near = self._near(exploration, geometry.extent_mm(places))
+        if not near.x_mm.size:
+            return Touch(evidence)
+        strain = self._felt(near, self._pairs)
+        wave = Wave.best(near.x_mm + pitch_mm / 2, strain, pitch_mm, self._steps)
+        rates = Rates(wave, pitch_mm / self._steps, geometry.dot_width_mm / 2)
+        speeds = near.speeds_mm_s()
+        moving = speeds > STILL_MM_S
+        for place in range(places):
+            for side in (0, 1):
+                left_mm = place * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
+                right_mm = left_mm + geometry.dot_width_mm
+                over = (near.x_mm >= left_mm - self.array.span_mm + pitch_mm / 2) & (
+                    near.x_mm <= right_mm - pitch_mm / 2
+                )
+                over &= moving
+                speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
+                rms = rates.rms(left_mm, right_mm, smoothing_mm(speed_mm_s))
+                for bit, channel in self._channels.items():
+                    if _PLACES[bit][0] == side:
+                        evidence[place, bit] = rms[channel]
+        return Touch(evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm))
+
+    def answer(self, touch: Touch, random: np.random.Generator) -> list[int | None]:
+        """Dot masks of what was felt; None where the hand was not, or if nothing was felt."""
+        noisy = touch.evidence + self.noise * random.standard_normal(touch.evidence.shape)
+        if touch.nothing:
+            return [None] * len(noisy)
+        strong = noisy[noisy > np.nanmax(noisy) / 2]
+        criterion = strong.mean() / 2 if strong.size else math.inf
+        masks = (noisy > criterion) @ (1 << np.arange(8))
+        return [
+            None if np.isnan(row).all() else int(mask)
+            for mask, row in zip(masks, noisy, strict=True)
+        ]
+
+    def read(
+        self, exploration: Exploration, places: int, random: np.random.Generator
+    ) -> list[int | None]:
+        """Dot masks of the first cells of a line; see `felt` and `answer`."""
+        return self.answer(self.felt(exploration, places), random)
+
+    def lengths_mm(self, exploration: Exploration) -> tuple[float, float]:
+        """Width of the first dot of a line, and gap to the next; NaN where there is none."""
+        near = self._near(exploration, self.geometry.travel_mm)
+        if not near.x_mm.size:
+            return math.nan, math.nan
+        swing = self._felt(near, self._swings)
+        swing -= swing.min(axis=1, keepdims=True)
+        wave = Wave.best(near.x_mm, swing, self.array.column_pitch_mm, self._steps)
+        strength = wave.felt.max(axis=1)
+        at = np.flatnonzero(strength > LEAST_SWING * strength.max())
+        if not at.size:
+            return math.nan, math.nan
+        # An edge is halfway between the last place without a swing and the first with one.
+        u_mm = np.pad(wave.u_mm, 1, mode="edge")
+        starts_mm = (u_mm[at] + u_mm[at + 1]) / 2
+        ends_mm = (u_mm[at + 1] + u_mm[at + 2]) / 2
+        gaps_mm = starts_mm[1:] - ends_mm[:-1]
+        apart = np.flatnonzero(gaps_mm > APART * self.geometry.dot_width_mm)
+        last = apart[0] if apart.size else -1
+        gap_mm = float(gaps_mm[last]) if apart.size else math.nan
+        return float(ends_mm[last] - starts_mm[0]), gap_mm
+
+    def compare(
+        self,
+        first: Exploration,
+        second: Exploration,
+        parameter: Parameter,
+        random: np.random.Generator,
+    ) -> int:
+        """Which of two is nearer to the nominal distances: 1 or 2.
+
+        Parameters
+        ----------
+        first, second
+            Explorations of a dot, or of two side by side.
+        parameter
+            "dot width" or "gap".
+        random
+            Draws the noise.
+
+        Returns
+        -------
+        int
+            1 too if they are as near as each other, or neither was felt.
+
+        Raises
+        ------
+        ValueError
+            If there is no such parameter, or frames have not the array's shape.
+        """
+        geometry = self.geometry
+        nominal_mm = {
+            "dot width": geometry.dot_width_mm,
+            "gap": geometry.dot_spacing_mm - geometry.dot_width_mm,
+        }
+        if parameter not in nominal_mm:
+            raise ValueError(f"the parameter is {parameter!r}; it must be 'dot width' or 'gap'")
+        which = [*nominal_mm].index(parameter)
+        unit_mm = nominal_mm[parameter]
+        felt_mm = np.array([self.lengths_mm(one)[which] for one in (first, second)])
+        noisy_mm = felt_mm + self.noise * unit_mm * random.standard_normal(2)
+        off_mm = np.nan_to_num(np.abs(noisy_mm - unit_mm), nan=geometry.travel_mm)
+        tie_mm = 0.0 if self.noise else TIE * abs(unit_mm)
+        return 2 if off_mm[1] < off_mm[0] - tie_mm else 1
+
+    def _near(self, exploration: Exploration, right_mm: float) -> Exploration:
+        """The ticks at which the array is over a line, or a dot beside it.
+
+        Raises
+        ------
+        ValueError
+            If the frames have not the shape of the array.
+        """
+        if exploration.frames.shape[1:] != self.array.shape:
+            raise ValueError(
+                f"the frames have shape {exploration.frames.shape[1:]}; "
+                f"it must be {self.array.shape}"
+            )
+        aside_mm = self.geometry.dot_width_mm
+        return exploration.within(-self.array.span_mm - aside_mm, right_mm + aside_mm)
+
+    def _felt(self, exploration: Exploration, weights: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Strains or swings, float32[n, pairs or columns, channels]."""
+        frames = exploration.frames.reshape(len(exploration.frames), -1)
+        felt = np.asarray(frames, np.float32) @ weights.reshape(len(frames[0]), -1)
+        return felt.reshape(len(frames), *weights.shape[1:])
+
+
+def _per_frame(rows: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Weights of a frame's actuators; float32[rows · columns, pairs or columns, channels]."""
+    weights = np.einsum("rk,cp->rcpk", rows, columns)
+    return weights.reshape(-1, *weights.shape[2:]).astype(np.float32)

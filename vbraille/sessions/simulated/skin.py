@@ -1,0 +1,216 @@
+"""What reaches the skin in an exploration: waves along the line, and how fast they change.
+
+The equations are those of `vbraille.sessions.simulated.observer`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+CUTOFF_HZ = 200.0
+FINEST_MM = 0.02
+STILL_MM_S = 1.0
+SPEED_SPAN_S = 0.02  # over which a speed is taken: counts of 45 µm make it no coarser than 2 mm/s
+MOST_MM_S = 1000.0
+_REACHED = 0.9  # of a way that was felt
+_TAILS = 4  # standard deviations of a kernel
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Exploration:
+    """What a hand was given, tick by tick.
+
+    Parameters
+    ----------
+    frames : float[n, rows, columns]
+        Deflections sent, 0 … 1.
+    x_mm : float64[n]
+        Where the left column was; NaN where that was not known.
+    time_s : float64[n]
+        When, from anywhere.
+
+    Raises
+    ------
+    ValueError
+        If they differ in length, or time goes back.
+    """
+
+    frames: NDArray[np.floating]
+    x_mm: NDArray[np.float64]
+    time_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        ticks = {len(self.frames), len(self.x_mm), len(self.time_s)}
+        if self.frames.ndim != 3 or len(ticks) > 1:
+            raise ValueError(
+                f"frames, positions and times have shapes {self.frames.shape}, {self.x_mm.shape} "
+                f"and {self.time_s.shape}; they must be [n, rows, columns], [n] and [n]"
+            )
+        if not (np.diff(self.time_s) >= 0).all():
+            raise ValueError("time goes back or is not a number; it must increase")
+
+    def within(self, low_mm: float, high_mm: float) -> Exploration:
+        """The ticks with the left column between two places; those without a place are none."""
+        near = (self.x_mm >= low_mm) & (self.x_mm <= high_mm)
+        if near.all():
+            return self
+        return Exploration(self.frames[near], self.x_mm[near], self.time_s[near])
+
+    def speeds_mm_s(self) -> NDArray[np.float64]:
+        """Speed at each tick, either way; float64[n]."""
+        before = np.maximum(self.time_s - SPEED_SPAN_S / 2, self.time_s[0])
+        after = np.minimum(self.time_s + SPEED_SPAN_S / 2, self.time_s[-1])
+        way = np.interp(after, self.time_s, self.x_mm) - np.interp(before, self.time_s, self.x_mm)
+        return np.abs(way) / np.maximum(after - before, 1e-9)
+
+
+def smoothing_mm(speed_mm_s: float) -> float:
+    """σ of eq. 2 at a speed, in mm."""
+    per_mm_s = math.sqrt(math.log(2)) / (2 * math.pi * CUTOFF_HZ)
+    return math.hypot(FINEST_MM, min(speed_mm_s, MOST_MM_S) * per_mm_s)
+
+
+def reference_per_mm2(width_mm: float, pitch_mm: float) -> float:
+    """E₀: eq. 3 of the wave [1 + cos(2πu/W)] / 2, not smoothed."""
+    u_mm = (np.arange(1000) + 0.5) / 1000 * width_mm - width_mm / 2
+
+    def slope(at_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        inside = np.abs(at_mm) < width_mm / 2
+        return np.where(inside, -np.sin(2 * np.pi * at_mm / width_mm) * np.pi / width_mm, 0.0)
+
+    rate = (slope(u_mm + pitch_mm / 2) - slope(u_mm - pitch_mm / 2)) / pitch_mm
+    return float(np.sqrt(np.mean(rate**2)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wave:
+    """What was felt along the line, at the places where something came over.
+
+    Parameters
+    ----------
+    u_mm : float64[m]
+        Places, increasing.
+    felt : float64[m, channels]
+        The strongest that came over each.
+    """
+
+    u_mm: NDArray[np.float64]
+    felt: NDArray[np.float64]
+
+    @classmethod
+    def best(
+        cls, x_mm: NDArray[np.float64], felt: NDArray[np.floating], pitch_mm: float, steps: int
+    ) -> Wave:
+        """The best of all that came over each place.
+
+        A place is a pitch / steps long. Of the ticks at one place of the
+        carriage, the one with most energy is kept, whole, and then the same is
+        done for sensors at one place of the line. So each value is one that
+        was felt, at exactly the place where it was.
+
+        Parameters
+        ----------
+        x_mm : float64[n]
+            Where the first sensor was, n > 0.
+        felt : float[n, sensors, channels]
+            What sensors a pitch apart felt.
+        pitch_mm, steps
+            Between sensors, and places on that way.
+        """
+        sensors = felt.shape[1]
+        energy = np.einsum("nsc,nsc->n", felt, felt)
+        start_mm = x_mm.min()
+        place = ((x_mm - start_mm) * (steps / pitch_mm)).astype(np.intp)
+        order = np.lexsort((energy, place))
+        place = place[order]
+        last = np.append(np.flatnonzero(np.diff(place)), place.size - 1)
+        place, kept = place[last], order[last]
+        x_mm, felt = x_mm[kept], felt[kept]
+        most = np.full((sensors, place[-1] + 1 + (sensors - 1) * steps), -1.0)
+        number = np.zeros(place[-1] + 1, np.intp)
+        number[place] = np.arange(place.size)
+        energy = np.einsum("nsc,nsc->sn", felt, felt)
+        for sensor in range(sensors):
+            most[sensor, place + sensor * steps] = energy[sensor]
+        winner = most.argmax(axis=0)
+        at = np.flatnonzero(most.max(axis=0) >= 0)
+        winner = winner[at]
+        tick = number[at - winner * steps]
+        return cls(x_mm[tick] + winner * pitch_mm, felt[tick, winner].astype(np.float64))
+
+
+class Rates:
+    """How fast a wave changes, smoothed.
+
+    Smoothing is by weights of each value: the way that it stands for, times a
+    Gaussian of the distance. Their sum is divided out, so that uneven places
+    do not look like waves.
+
+    Parameters
+    ----------
+    wave
+        What was felt, somewhere at least.
+    step_mm
+        Between the points at which the rate is taken.
+    gap_mm
+        What is further from one value to the next was not felt.
+    """
+
+    __slots__ = ("_gap_mm", "_start_mm", "_step_mm", "_u_mm", "_weights")
+
+    def __init__(self, wave: Wave, step_mm: float, gap_mm: float) -> None:
+        u_mm = wave.u_mm
+        self._u_mm, self._step_mm, self._gap_mm = u_mm, step_mm, gap_mm
+        self._start_mm = float(u_mm[0])
+        halves = np.minimum(np.diff(u_mm), gap_mm) / 2
+        way = np.append(halves, gap_mm / 2) + np.append(gap_mm / 2, halves)
+        # Each value is shared between the two points next to it, so that its place stays exact.
+        place, part = np.divmod((u_mm - self._start_mm) / step_mm, 1)
+        place = place.astype(np.intp)
+        size = int(place[-1]) + 2
+        self._weights = np.array(
+            [
+                np.bincount(place, value * (1 - part), size)
+                + np.bincount(place + 1, value * part, size)
+                for value in (way, *(way * wave.felt.T))
+            ]
+        )
+
+    def rms(self, left_mm: float, right_mm: float, sigma_mm: float) -> NDArray[np.float64]:
+        """Rms rate on a way (eq. 3); float64[channels], NaN where the hand was not."""
+        first = math.ceil((left_mm - self._start_mm) / self._step_mm)
+        count = math.floor((right_mm - self._start_mm) / self._step_mm) - first + 1
+        middle_mm = self._start_mm + (first + np.arange(count - 1) + 0.5) * self._step_mm
+        felt = self._covered(middle_mm)
+        if np.mean(felt) < _REACHED:
+            return np.full(len(self._weights) - 1, np.nan)
+        reach = math.ceil(_TAILS * sigma_mm / self._step_mm)
+        kernel = np.exp(-((np.arange(-reach, reach + 1) * self._step_mm / sigma_mm) ** 2) / 2)
+        total, *sums = (
+            np.convolve(self._cut(row, first - reach, count + 2 * reach), kernel, "valid")
+            for row in self._weights
+        )
+        smooth = np.array(sums) / np.maximum(total, np.finfo(float).tiny)
+        rate = np.diff(smooth, axis=1) / self._step_mm
+        return np.sqrt(np.mean(rate[:, felt] ** 2, axis=1))
+
+    def _covered(self, at_mm: NDArray[np.floating]) -> NDArray[np.bool_]:
+        after = np.searchsorted(self._u_mm, at_mm)
+        inside = (after > 0) & (after < self._u_mm.size)
+        after = np.clip(after, 1, max(self._u_mm.size - 1, 1))
+        return inside & (self._u_mm[after] - self._u_mm[after - 1] <= self._gap_mm)
+
+    @staticmethod
+    def _cut(row: NDArray[np.float64], first: int, count: int) -> NDArray[np.float64]:
+        """Part of a row, which reaches into it, with 0 where there is none of it."""
+        cut = np.zeros(count)
+        low, high = max(first, 0), min(first + count, row.size)
+        cut[low - first : high - first] = row[low:high]
+        return cut
