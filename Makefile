@@ -20,7 +20,7 @@ test: .venv/tests
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --warnings
-	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
+	$(BIN)/pytest -n 3 --dist worksteal --cov --cov-branch --cov-report=term
 	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py
 
 bench: .venv/tests

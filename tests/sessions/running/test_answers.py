@@ -9,6 +9,9 @@ from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
 from vbraille.sessions.running.answers import Script, Simulated, parse_answers
 from vbraille.sessions.simulated.skin import Exploration
 
+# Coverage would double their time, and others cover what these do.
+pytestmark = pytest.mark.no_cover
+
 
 @pytest.mark.parametrize("name", ["legibility", "letters", "words"])
 def test_without_noise_every_string_of_every_protocol_is_read_right(tmp_path, name):
