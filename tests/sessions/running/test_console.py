@@ -275,6 +275,21 @@ def test_a_trial_in_which_the_device_was_silent(tmp_path, repeats):
         assert of(sat.events, "presented")[1]["t_s"] >= of(sat.events, "fault")[0]["t_s"] + 0.2
 
 
+class UnpluggedAtOnce(BatchEngine):
+    """A device that is silent while its carriage still is at the left stop."""
+
+    def poll(self):
+        ticks = super().poll()
+        ticks["flags"][(ticks["tick"] >= 650) & (ticks["tick"] < 1200)] |= int(Flag.SILENT)
+        ticks["x_mm"][ticks["tick"] < 1200] = -7.7
+        return ticks
+
+
+def test_a_trial_is_not_begun_while_the_device_is_silent(tmp_path):
+    sat = Session(tmp_path / "s", hand="sweep:60").sit(engine=UnpluggedAtOnce)
+    assert [sat.progress.trials[number].attempts for number in (1, 2, 3, 4)] == [2, 1, 1, 1]
+
+
 def test_help_says_every_order(session):
     sat = session.sit(("ready", "help"), ("help:", "stop"))
     for order in ORDERS:

@@ -221,7 +221,8 @@ class OnDevice:
         self._newest = ticks[-1]
         # A carriage that a machine moves may be there for some ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm
-        self._ready = bool((at_left & (ticks["flags"] & _AWAY == 0)).any())
+        well = ticks["flags"] & _AWAY == 0
+        self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
             self._trace.add(ticks)
         placing = placing_of(self._newest)
