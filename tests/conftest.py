@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings
+from hypothesis import is_hypothesis_test, settings
 
 SEED = 20090618
 TEXTS = Path(__file__).parent.parent / "texts"
@@ -15,6 +15,13 @@ settings.load_profile("vbraille")
 
 def pytest_report_header() -> str:
     return f"seed of the tests: {SEED}; hypothesis derives its own from each test"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave laws out of coverage: it would double the time of their hundreds of examples."""
+    for item in items:
+        if is_hypothesis_test(getattr(item, "obj", None)):
+            item.add_marker(pytest.mark.no_cover)
 
 
 @pytest.fixture
