@@ -301,7 +301,6 @@ def test_stalled_it_neither_reads_nor_writes_but_its_watchdog_goes_on(make):
     bench = make(faults=Faults(stall_s=0.2))
     bench.greet()
     bench.run(lambda: bench.show() or "watchdog: trip 1" in bench.said[-1])
-    assert Watchdog(1, 0) not in bench.host.heard
     before = len(bench.host.states)
     frames = bench.controller.frames
     bench.run(lambda: bench.show() or len(bench.host.states) > before)
