@@ -26,7 +26,7 @@ lint: .venv/tests
 	$(BIN)/pyright --warnings
 
 tests: .venv/tests
-	$(BIN)/pytest -n 3 --dist worksteal --cov --cov-branch --cov-report=term
+	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
 	@# The kernels once more, as plain Python.
 	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py
 
