@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 
 from vbraille import __version__
+from vbraille.cli.optionvalues import Pairs, duration, lines, marks, names, number, seed, whole
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -97,7 +97,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     plot.add_argument("--out", metavar="F.png|F.svg", help="the picture to write")
     plot.add_argument("--csv", action="store_true", help="print the numbers instead")
     plot.add_argument(
-        "--at", type=_number, default=20.0, metavar="MM", help="page: where the array is (20)"
+        "--at", type=number, default=20.0, metavar="MM", help="page: where the array is (20)"
     )
     plot.add_argument("--letter", help="mapping: the letter shown (z)")
     plot.set_defaults(model=None)  # the one that the source drew the figure for
@@ -108,12 +108,16 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
 
     _session_options(command("session", "Run legibility sessions, and keep every answer"))
 
+    _analyse_options(command("analyse", "Make tables, statistics and a report of sessions"))
+
     tables = command("tables", "List the braille tables there are")
     tables.add_argument("--language", metavar="TAG", help="only of this language, such as fr")
 
     arguments = parser.parse_args(argv)
     for name, value in vars(arguments).items():
-        if isinstance(value, list):  # Python before 3.13 takes the value of --name=-- away
+        if (
+            isinstance(value, list) and name != "paths"
+        ):  # Python before 3.13 takes the value of --name=-- away
             parser.error(f"argument --{name.replace('_', '-')}: expected one argument")
     return arguments
 
@@ -152,10 +156,10 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     run.add_argument("--out", metavar="DIR", help="its directory (PARTICIPANT-PROTOCOL-TIME)")
     _conduct_options(run)
     run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
-    run.add_argument("--rate", type=_number, metavar="HZ", help="frames a second (1000)")
+    run.add_argument("--rate", type=number, metavar="HZ", help="frames a second (1000)")
     run.add_argument(
         "--field",
-        action=_Pairs,
+        action=Pairs,
         default={},
         metavar="NAME=VALUE",
         help="what the protocol asks about the participant; may be given again",
@@ -181,15 +185,15 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
 def _plan_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("protocol", metavar="PROTOCOL", help="a name, or a file such as mine.toml")
     parser.add_argument("--participant", required=True, metavar="P07", help="a pseudonym")
-    parser.add_argument("--seed", type=_seed, metavar="N", help="of the order (drawn, and said)")
+    parser.add_argument("--seed", type=seed, metavar="N", help="of the order (drawn, and said)")
     parser.add_argument(
         "--order",
-        type=_whole,
+        type=whole,
         metavar="N",
         help="of the balanced orders (by the number in the participant's name)",
     )
-    parser.add_argument("--texture", type=_number, metavar="0…1", help="where no condition sets it")
-    parser.add_argument("--contrast", type=_number, metavar="0…1", help="where no condition does")
+    parser.add_argument("--texture", type=number, metavar="0…1", help="where no condition sets it")
+    parser.add_argument("--contrast", type=number, metavar="0…1", help="where no condition does")
 
 
 def _conduct_options(parser: argparse.ArgumentParser) -> None:
@@ -209,33 +213,61 @@ def _conduct_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-class _Pairs(argparse.Action):
-    """Options NAME=VALUE, gathered."""
-
-    def __call__(
-        self,
-        _parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: str | Sequence[object] | None,
-        _option: str | None = None,
-    ) -> None:
-        name, equals, value = str(values).partition("=")
-        if not equals or not name:
-            raise argparse.ArgumentError(self, f"{values!r} is not NAME=VALUE")
-        setattr(namespace, self.dest, {**getattr(namespace, self.dest), name: value})
+def _analyse_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "paths",
+        nargs="*",
+        metavar="DIR|trials.csv",
+        help="directories of sessions, or tables with columns participant, condition, presented, "
+        "answered",
+    )
+    parser.add_argument(
+        "--scores", metavar="FILE.csv", help="instead: participant, what was varied, score"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="report.html and .md, every table as CSV, figures as SVG, PNG"
+    )
+    parser.add_argument("--json", action="store_true", help="print the results as JSON")
+    parser.add_argument("--protocol", metavar="NAME", help="only trials of this protocol")
+    parser.add_argument(
+        "--exclude",
+        action=Pairs,
+        default={},
+        metavar="P07=REASON",
+        help="leave a participant out, and say why in the report; may be given again",
+    )
+    parser.add_argument(
+        "--factors",
+        type=names,
+        metavar="NAME,NAME",
+        help="compare trials by these columns, such as texture,contrast (condition)",
+    )
+    parser.add_argument(
+        "--correction",
+        choices=("none", "bonferroni", "holm", "fdr"),
+        default="none",
+        help="of t-tests for their number (none)",
+    )
+    parser.add_argument(
+        "--marks",
+        type=marks,
+        metavar="N,N",
+        help="mark errors above these counts in confusion matrices (4,9)",
+    )
+    parser.add_argument("--seed", type=seed, metavar="N", help="of bootstraps (20090618)")
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
     parser.add_argument("file", metavar="FILE", nargs="?" if optional else None, help="a text file")
     parser.add_argument("--table", metavar="NAME", help="a liblouis table")
     parser.add_argument("--language", metavar="TAG", help="instead of a table (en)")
-    parser.add_argument("--grade", type=_whole, metavar="N", help="of the language's braille")
+    parser.add_argument("--grade", type=whole, metavar="N", help="of the language's braille")
     parser.add_argument("--encoding", metavar="NAME", help="of the text, if it is not what it says")
     parser.add_argument(
         "--keep-lines", action="store_true", help="keep the text's line breaks (verse, code)"
     )
     parser.add_argument(
-        "--lines", type=_lines, default=(1, None), metavar="3-10", help="of the book, from 1"
+        "--lines", type=lines, default=(1, None), metavar="3-10", help="of the book, from 1"
     )
 
 
@@ -253,18 +285,18 @@ def _page_options(parser: argparse.ArgumentParser) -> None:
         ("line-pitch", "between lines"),
         ("travel", "of the carriage; the source gives none, 300 is vbraille's own"),
     ):
-        parser.add_argument(f"--{name}", type=_number, metavar="MM", help=text)
+        parser.add_argument(f"--{name}", type=number, metavar="MM", help=text)
 
 
 def _show_options(parser: argparse.ArgumentParser) -> None:
     _page_options(parser)
-    parser.add_argument("--texture", type=_number, metavar="0…1", help="level of texture")
+    parser.add_argument("--texture", type=number, metavar="0…1", help="level of texture")
     parser.add_argument(
-        "--texture-cycles", type=_whole, metavar="K", help="stress2: half-cycles a radius, odd (7)"
+        "--texture-cycles", type=whole, metavar="K", help="stress2: half-cycles a radius, odd (7)"
     )
-    parser.add_argument("--contrast", type=_number, metavar="0…1", help="share of the full swing")
+    parser.add_argument("--contrast", type=number, metavar="0…1", help="share of the full swing")
     parser.add_argument("--mapping", choices=MAPPINGS, help="stress2: dots to actuator rows")
-    parser.add_argument("--dot-row", type=_whole, metavar="1|2|3", help="vbd: the row shown (1)")
+    parser.add_argument("--dot-row", type=whole, metavar="1|2|3", help="vbd: the row shown (1)")
 
 
 def _hand_options(parser: argparse.ArgumentParser) -> None:
@@ -274,9 +306,9 @@ def _hand_options(parser: argparse.ArgumentParser) -> None:
         metavar="HAND",
         help="simulated: sweep:SPEED in mm/s (sweep:60), device, fluent, recorded:FILE.csv",
     )
-    parser.add_argument("--seed", type=_seed, default=1, help="of the hand's chances (1)")
+    parser.add_argument("--seed", type=seed, default=1, help="of the hand's chances (1)")
     parser.add_argument(
-        "--rate", type=_number, default=1000.0, metavar="HZ", help="frames a second (1000)"
+        "--rate", type=number, default=1000.0, metavar="HZ", help="frames a second (1000)"
     )
 
 
@@ -294,55 +326,13 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
         help="what it knows of its carriage's place when it starts: all (default), "
         "nothing before its mark, nothing",
     )
-    parser.add_argument("--travel", type=_number, metavar="MM", help="of the carriage (300)")
+    parser.add_argument("--travel", type=number, metavar="MM", help="of the carriage (300)")
     for name in ("drop", "corrupt"):
         parser.add_argument(
-            f"--{name}", type=_number, default=0.0, metavar="0…1", help=f"messages it {name}s"
+            f"--{name}", type=number, default=0.0, metavar="0…1", help=f"messages it {name}s"
         )
     for name, text in (
         ("stall", "do nothing for so long every second, such as 200ms"),
         ("unplug-every", "be unplugged so long after each greeting, such as 5s; needs --link"),
     ):
-        parser.add_argument(f"--{name}", type=_duration, default=0.0, metavar="DURATION", help=text)
-
-
-def _duration(text: str) -> float:
-    """Seconds of a duration such as 200ms or 5s."""
-    found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)(ms|s)", text)
-    seconds = float(found[1]) / (1000 if found[2] == "ms" else 1) if found else 0.0
-    if not 0.001 <= seconds <= 3600:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is no duration from 1ms to 3600s, such as 200ms or 5s"
-        )
-    return seconds
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-
-
-def _whole(text: str) -> int:
-    if not re.fullmatch(r"[+-]?[0-9]{1,18}", text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
-    return int(text)
-
-
-def _seed(text: str) -> int:
-    seed = _whole(text)
-    if seed < 0:
-        raise argparse.ArgumentTypeError(f"seed is {seed}; it must be 0 or more")
-    return seed
-
-
-def _lines(text: str) -> tuple[int, int | None]:
-    found = re.fullmatch(r"([0-9]{1,15})?(-)?([0-9]{1,15})?", text)
-    if found is None or not (found[1] or found[3]):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a range of lines, such as 3-10")
-    first = int(found[1] or 1)
-    last = int(found[3]) if found[3] else None if found[2] else first
-    if first < 1 or (last is not None and last < first):
-        raise argparse.ArgumentTypeError(f"{text!r} is no range: lines count from 1 upwards")
-    return first, last
+        parser.add_argument(f"--{name}", type=duration, default=0.0, metavar="DURATION", help=text)

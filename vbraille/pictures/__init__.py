@@ -1,8 +1,9 @@
 """What the source draws, as numbers and as pictures.
 
 `series` and `surface` compute a `Table` of numbers for each picture, `draw`
-makes a figure of it. `draw` alone imports matplotlib, and so is not imported
-here.
+makes a figure of it. `charts` says what charts of results hold, and
+`drawcharts` draws them. `figures`, `draw` and `drawcharts` alone import
+matplotlib, and so are not imported here.
 """
 
 from vbraille.pictures.series import mapping, profile, strain, wave

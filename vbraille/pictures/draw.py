@@ -1,23 +1,18 @@
-"""Figures of the tables; the only importer of matplotlib, and never of pyplot.
+"""Figures of the tables: matplotlib, and never pyplot.
 
 Everything is told apart by place, line style or fill, so that it holds in grey.
 """
 
 from __future__ import annotations
 
-import io
-import os
-from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib import style
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from vbraille.errors import InputError
+from vbraille.pictures.figures import FAINT, MIDDLE, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,21 +20,8 @@ if TYPE_CHECKING:
 
     from vbraille.pictures.table import Table
 
-# No date, no version and no reader's own matplotlibrc: the same table gives the same bytes.
-METADATA = {".png": {"Software": "vbraille"}, ".svg": {"Creator": "vbraille", "Date": None}}
-STYLE = {
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlesize": "medium",
-    "figure.constrained_layout.use": True,
-    "figure.labelsize": "medium",
-    "figure.titlesize": "large",
-    "font.size": 11,
-    "lines.linewidth": 1.4,
-    "svg.fonttype": "none",  # text stays text, for search and screen readers
-    "svg.hashsalt": "vbraille",
-}
-FAINT, MIDDLE = "0.8", "0.45"
+__all__ = ["draw", "save"]
+
 DEFLECTION = "deflection (of full swing)"
 SWING = -0.05, 1.1  # limits of an axis of deflections, whatever the contrast
 BANDS = "deflection from rest (grey) to full swing (dotted)"
@@ -48,37 +30,8 @@ BAND = 1.25  # from one curve's rest to the next one's, in full swings
 
 def draw(table: Table) -> Figure:
     """Draw a table by its kind."""
-    with style.context(["default", STYLE]):
+    with styled():
         return DRAWINGS[table.kind](table)
-
-
-def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG or SVG, by the suffix of the path; wholly or not at all.
-
-    Raises
-    ------
-    InputError
-        If the suffix is another one, or the file cannot be written.
-    """
-    path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in METADATA:
-        raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
-    content = io.BytesIO()
-    with style.context(["default", STYLE]):
-        metadata = {"Title": figure.get_suptitle(), **METADATA[suffix]}
-        figure.savefig(content, format=suffix[1:], dpi=150, metadata=metadata)
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_bytes(content.getvalue())
-        partial.replace(path)
-    except OSError as error:
-        raise InputError(
-            f"cannot write {path} ({error.strerror}): name a file in a folder that you can write to"
-        ) from error
-    finally:
-        with suppress(OSError):
-            partial.unlink()
 
 
 def profile(table: Table) -> Figure:

@@ -6,6 +6,7 @@ import csv
 import errno
 import io
 import os
+from bisect import bisect_left, bisect_right
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -14,12 +15,12 @@ import numpy as np
 
 from vbraille.engine.ring import Flag
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.planning.pictures import render
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.record.trajectory import duration, first_edge_mm
+from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.progress import Told
     from vbraille.sessions.record.traces import Trace
+
+NEVER_CAME = "the hand never came to the first dot"
 
 # What each column holds: the table's head, and its description in BIDS.
 COLUMNS = {
@@ -96,8 +99,11 @@ class Traces:
         known = trace.ticks["line"]
         if trace.damage is not None and not (known.size and known[-1] > max(lines)):
             return None
-        first, stop = np.searchsorted(known, (min(lines), max(lines) + 1))
+        # By steps in Python: numpy would copy the whole column, for each trial.
+        first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
         part = trace.ticks[first:stop]
+        if max(lines) - min(lines) < len(set(lines)):  # there are none between them
+            return part
         return part[np.isin(part["line"], lines)]
 
 
@@ -112,16 +118,44 @@ def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
         Its traces, for who wants to know what is wrong with them. What they do not tell
         is left empty.
     """
+    return [row for row, _ in walk(record, traces)]
+
+
+def walk(
+    record: Record, traces: Traces | None = None
+) -> Iterator[tuple[dict[str, Any], Trajectory | str | None]]:
+    """Go through a session trial by trial.
+
+    Parameters
+    ----------
+    record, traces
+        As of `rows`.
+
+    Yields
+    ------
+    row : dict[str, Any]
+        Of `rows`.
+    trajectory : Trajectory, str or None
+        What the row's duration is of; why there is none; None for what has no trace
+        to be read: comparisons, what is on paper, what is not answered.
+    """
     progress = Progress(record.plan, record.told.events)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
-    return [
-        _row(record, trial, progress.trials[trial.number], traces) | fields
-        for trial in record.plan.trials
-    ]
+    for trial in record.plan.trials:
+        told = progress.trials[trial.number]
+        row, seen = _row(record, trial, told), None
+        strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
+        if strings and told.answer is not None:
+            seen = _trajectory(record, trial, told, traces)
+        if isinstance(seen, Trajectory):
+            row["duration_s"] = round(seen.duration.seconds, 6)
+            row["returned"] = int(seen.duration.returned)
+        yield row | fields, seen
 
 
-def _row(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, Any]:
+def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
+    """Row of a trial, without what its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
@@ -159,11 +193,8 @@ def _row(record: Record, trial: Trial, told: Told, traces: Traces) -> dict[str, 
         row["first_answer"] = told.first_answer or ""
         if told.answer is not None:
             row["correct"] = int(told.answer == trial.presented)
-        if record.protocol.medium == "paper":
-            if "read" in t_s and "cue" in t_s:
-                row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
-        elif told.answer is not None and row["trace"]:
-            row |= _trajectory(record, trial, told, traces, row["trace"])
+        if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
+            row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
 
 
@@ -171,36 +202,37 @@ def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
 
-def _trajectory(
-    record: Record, trial: Trial, told: Told, traces: Traces, trace: str
-) -> dict[str, Any]:
-    """What the trace tells of the last attempt."""
+def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Trajectory | str:
+    """What the trace tells of the last attempt; why, if it tells nothing."""
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
-    edge_mm = first_edge_mm(line, protocol.mapping, stimulus.geometry)
-    shown = [showing.line for showing in told.last_attempt]
-    ticks = traces.of(trace, shown)
-    if edge_mm is None or ticks is None:
-        return {}
+    edges = edges_mm(line, protocol.mapping, stimulus.geometry)
+    trace = told.showings[-1].trace if told.showings else None
+    if not trace:
+        return "it has no trace"
+    ticks = traces.of(trace, [showing.line for showing in told.last_attempt])
+    if ticks is None:
+        return f"{trace} is damaged before the end of it"
+    if not edges:
+        return "no dot of it is shown"
     felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
     ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
+    x_mm, time_ns = ticks["x_mm"].copy(), ticks["time_ns"].copy()
+    span_mm = protocol.model.array.span_mm
 
     def moved() -> NDArray[np.bool_]:
+        # Few sessions need it, and numba takes its time to be imported.
+        from vbraille.sessions.planning.pictures import render
+
         renderer = render(protocol, stimulus, replace(stimulus.tuning, **told.tuning))
-        frames = renderer.path(ticks["x_mm"])
+        frames = renderer.path(x_mm)
         idle = renderer.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
 
-    found = duration(
-        ticks["x_mm"],
-        ticks["time_ns"],
-        moved,
-        edge_mm=edge_mm,
-        span_mm=protocol.model.array.span_mm,
-    )
+    found = duration(x_mm, time_ns, moved, edge_mm=edges[0], span_mm=span_mm)
     if found is None:
-        return {}
-    return {"duration_s": round(found.seconds, 6), "returned": int(found.returned)}
+        return NEVER_CAME
+    return Trajectory(x_mm, time_ns, edges, stimulus.geometry.dot_width_mm, span_mm, found)
 
 
 def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:

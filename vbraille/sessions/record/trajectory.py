@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from vbraille.geometry import Geometry
     from vbraille.render.mappings import Mapping
 
+_COLUMNS = (0b01000111, 0b10111000)  # masks of a cell's left dots, 1, 2, 3, 7, and its right ones
+
 
 @dataclass(frozen=True, slots=True)
 class Duration:
@@ -37,14 +39,48 @@ class Duration:
     returned: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Trajectory:
+    """The way of the array in the last attempt of a trial that the hand came to the string in.
+
+    Parameters
+    ----------
+    x_mm : float64[n]
+        Where the array's left column was, NaN where that is not known; up to the answer.
+    time_ns : int64[n]
+        When, by the host's clock.
+    edges_mm
+        Left edges of the dot columns that are shown; one at least.
+    dot_mm
+        Width of a dot.
+    span_mm
+        S, from the array's left column to its right one.
+    duration
+        Which of the ticks count.
+    """
+
+    x_mm: NDArray[np.float64]
+    time_ns: NDArray[np.int64]
+    edges_mm: tuple[float, ...]
+    dot_mm: float
+    span_mm: float
+    duration: Duration
+
+
+def edges_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> tuple[float, ...]:
+    """Left edges of the dot columns that are shown of a line of cells, from left to right."""
+    shown = mapping.shown_dots()
+    return tuple(
+        cell * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
+        for cell, mask in enumerate(masks)
+        for side, dots in enumerate(_COLUMNS)
+        if mask & shown & dots
+    )
+
+
 def first_edge_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> float | None:
     """Left edge of the leftmost dot that is shown of a line of cells; None if none is."""
-    rows = mapping.row_bits()
-    for cell, mask in enumerate(masks):
-        for side in (0, 1):
-            if rows[mask, side]:
-                return cell * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
-    return None
+    return next(iter(edges_mm(masks, mapping, geometry)), None)
 
 
 def duration(

@@ -1,0 +1,91 @@
+"""Results by hand: names that no page may take for its own, and all that a table can have."""
+
+from dataclasses import replace
+
+from tests.pictures.charts import bars, matrix, runs
+from vbraille.analysis.results import Picture, Results, Section
+from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Table
+
+SCRIPT = "<script>alert('1')</script>"
+NASTY = (
+    f"S1 {SCRIPT}",
+    'S"2" & \'co\' onerror="x"',
+    "S3\udc80\0|`*_[a](http://evil.example)",
+    "S4\n\n# 1. ~~x~~ $y$ \\ ]]> &amp; www.evil.example",
+)
+
+LEGIBILITY = Table(
+    "legibility",
+    "Legibility, by participant & condition",
+    "Legibility is the share of strings that are right, <as in 3.4>.",
+    (
+        Column("participant", "participant", "pseudonym"),
+        Column("condition", "condition", "as in the protocol"),
+        Column("trials", "trials", "answered", Kind.COUNT),
+        Column("legibility", "legibility (%)", "right by answered", Kind.PERCENT),
+        Column("duration_s", "mean duration (s)", "their mean", Kind.SECONDS),
+        Column("p", "p", "of a test", Kind.P),
+        NOTE_COLUMN,
+    ),
+    tuple(
+        row
+        for number, name in enumerate(NASTY)
+        for row in (
+            (name, "nominal", 80, 0.8625, 4.75 + number, 0.0004, ""),
+            (name, "textured", 0, None, None, None, f"no trials of {name}"),
+        )
+    ),
+    ("The order of conditions: all began with nominal.", f"Why {SCRIPT}?"),
+)
+CONFUSIONS = Table(
+    "confusions",
+    "Confusions of letters",
+    "",
+    (
+        Column("presented", "presented", "letter presented"),
+        *(Column(f"answered_{letter}", letter, "answered so", Kind.COUNT) for letter in "abc"),
+    ),
+    (("a", 30, 5, 0), ("b", 10, 28, 4)),
+    marks=(4, 9),
+)
+TRIALS = Table(
+    "trials",
+    "All trials",
+    "",
+    (Column("trial", "trial", "number", Kind.COUNT), Column("strain", "strain", "", Kind.NUMBER)),
+    tuple((number, number / 3) for number in range(1, 151)),
+)
+NOTHING = Table(
+    "patterns", "Reading patterns", "", (Column("a", "a", ""),), (), ("No traces were given.",)
+)
+
+RESULTS = Results(
+    f"Legibility of {SCRIPT}",
+    (("data", "2 sessions of “a & b”"), ("versions", "vbraille 0.1"), ("left out", NASTY[2])),
+    ("The device was simulated.", SCRIPT),
+    (
+        Section(
+            "Legibility",
+            "Who read what.",
+            (LEGIBILITY, CONFUSIONS),
+            (
+                Picture(
+                    "legibility",
+                    "Legibility",
+                    f"S1 reads best. {SCRIPT}",
+                    "legibility",
+                    bars(NASTY),
+                ),
+                Picture("confusions", "Confusions", "a is taken for b.", "confusions", matrix()),
+            ),
+        ),
+        Section(
+            "Over <time>",
+            "How it went on.",
+            (TRIALS, NOTHING),
+            (Picture("runs", "Over time", "It falls.", "trials", runs()),),
+        ),
+    ),
+)
+BARE = Results("Nothing", (), (), (Section("Patterns", "None.", (NOTHING,)),))
+ONE_MARK = replace(CONFUSIONS, marks=(4,))

@@ -1,0 +1,260 @@
+import json
+import os
+import re
+import subprocess
+import sys
+from base64 import b64decode
+from itertools import pairwise
+
+import html5lib
+import pytest
+
+from tests.analysis.report.made import (
+    BARE,
+    CONFUSIONS,
+    LEGIBILITY,
+    NASTY,
+    NOTHING,
+    ONE_MARK,
+    RESULTS,
+    TRIALS,
+)
+from vbraille.analysis.report import shown, to_html, to_json, to_markdown
+from vbraille.analysis.report.tomarkdown import escape
+from vbraille.analysis.results import Results, Section
+
+SVG = b"<svg xmlns='http://www.w3.org/2000/svg'/>"
+FIGURES = dict.fromkeys(("legibility", "confusions", "runs"), SVG)
+PAGE = to_html(RESULTS, FIGURES, ("report.md", "a file.csv"))
+TREE = html5lib.HTMLParser(strict=True, namespaceHTMLElements=False).parse(PAGE)
+HEADINGS = [f"h{level}" for level in range(1, 7)]
+TEXTS = """
+import sys
+from tests.analysis.report.test_texts import FIGURES, RESULTS, to_html, to_json, to_markdown
+made = to_html(RESULTS, FIGURES) + to_json(RESULTS) + to_markdown(RESULTS)
+assert "matplotlib" not in sys.modules
+sys.stdout.buffer.write(made.encode("utf-8", "backslashreplace"))
+"""
+
+
+def text(element):
+    return "".join(element.itertext())
+
+
+def one(tag):
+    (found,) = TREE.iter(tag)
+    return found
+
+
+def table(name):
+    """Table of the page under its heading."""
+    places = [element for element in TREE.iter() if element.tag in ("h3", "table")]
+    at = next(n for n, element in enumerate(places) if element.get("id") == f"table-{name}")
+    return places[at + 1]
+
+
+def test_headings_skip_no_level():
+    levels = [HEADINGS.index(each.tag) + 1 for each in TREE.iter() if each.tag in HEADINGS]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+
+
+def test_the_page_has_its_parts():
+    assert TREE.get("lang") == "en"
+    assert text(one("title")) == RESULTS.title
+    assert text(one("h1")) == RESULTS.title
+    assert [text(word) for word in one("dl").iter("dt")] == ["data", "versions", "left out"]
+    assert one("nav").get("aria-label") == "Contents"
+    skip = next(TREE.iter("a"))
+    assert skip.get("href") == f"#{one('main').get('id')}"
+    header = [text(item) for item in one("header").iter("li")]
+    assert header == list(RESULTS.warnings)
+
+
+def test_all_tables_are_headed():
+    tables = list(TREE.iter("table"))
+    assert len(tables) == 3  # and one without rows
+    for each in tables:
+        (caption,) = each.iter("caption")
+        assert text(caption)
+        (head,) = each.iter("thead")
+        names = list(head.iter("th"))
+        assert {name.get("scope") for name in names} == {"col"}
+        (body,) = each.iter("tbody")
+        for row in body.iter("tr"):
+            cells = list(row)
+            assert len(cells) == len(names)
+            assert cells[0].tag == "th"
+            assert {cell.get("scope") for cell in cells if cell.tag == "th"} == {"row"}
+            assert not any(cell.get("colspan") for cell in cells)
+
+
+def test_as_many_columns_head_a_row_as_tell_it_from_others():
+    assert shown.heads(LEGIBILITY) == 2
+    assert shown.heads(CONFUSIONS) == 1
+    assert shown.heads(TRIALS) == 1
+    rows = list(table("legibility").iter("tr"))
+    assert [text(cell) for cell in rows[1].iter("th")][1] == "nominal"
+
+
+def test_values_are_printed_and_what_is_missing_is_told_in_words():
+    first, second = (list(row) for row in list(table("legibility").iter("tr"))[1:3])
+    assert [text(cell) for cell in first][2:] == ["80", "86.3", "4.8", "< 0.001", ""]
+    assert [text(cell) for cell in second][2:6] == ["0", *["not known"] * 3]
+    assert [cell.get("class") for cell in first] == [None, None, *["number"] * 4, None]
+
+
+def test_marks_are_told_and_right_answers_are_none():
+    cells = [[text(cell) for cell in row] for row in table("confusions").iter("tr")]
+    assert cells[1:] == [["a", "30", "5 above 4", "0"], ["b", "10 above 9", "28", "4"]]
+    assert "wrong answers above 4 and above 9" in PAGE
+    looks = {text(cell): cell.get("class") for cell in table("confusions").iter("td")}
+    assert looks["30"] == "number right"
+    assert looks["5 above 4"] == "number marked"
+    assert looks["10 above 9"] == "number marked most"
+
+
+def test_a_table_without_marks_has_none():
+    assert LEGIBILITY.mark(LEGIBILITY.rows[0], 2) is None
+    assert not shown.marking(LEGIBILITY)
+    assert ONE_MARK.mark(ONE_MARK.rows[1], 1) == 4
+
+
+def test_long_tables_say_how_many_rows_there_are():
+    body = next(table("trials").iter("tbody"))
+    assert len(list(body)) == shown.ROWS
+    (caption,) = table("trials").iter("caption")
+    assert text(caption) == "All trials: the first 60 of 150 rows"
+    assert "Shown are the first 60 of 150 rows" in PAGE
+    assert "Shown are the first 60 of 150 rows" in to_markdown(RESULTS)
+
+
+def test_figures_have_texts_and_their_numbers():
+    figures = {figure.get("id"): figure for figure in TREE.iter("figure")}
+    assert list(figures) == ["figure-legibility", "figure-confusions", "figure-runs"]
+    for picture in RESULTS.pictures():
+        figure = figures[f"figure-{picture.name}"]
+        (image,) = figure.iter("img")
+        assert picture.title in image.get("alt")
+        assert b64decode(image.get("src").partition("base64,")[2]) == SVG
+        (caption,) = figure.iter("figcaption")
+        assert picture.text in text(caption)
+        links = [link.get("href") for link in caption.iter("a")]
+        stem = f"figures/{picture.name}"
+        assert links == [f"#table-{picture.table}", f"{stem}.svg", f"{stem}.png"]
+
+
+def test_links_within_the_page_have_a_target():
+    ids = [element.get("id") for element in TREE.iter() if element.get("id")]
+    assert len(ids) == len(set(ids))
+    assert not any(re.search(r"\s", each) for each in ids)
+    inner = [link.get("href")[1:] for link in TREE.iter("a") if link.get("href")[0] == "#"]
+    assert set(inner) <= set(ids)
+    assert {f"table-{each.name}" for each in RESULTS.tables()} <= set(inner)
+    labelled = {each.get("aria-labelledby") for each in TREE.iter()} - {None}
+    assert labelled == {"table-legibility"}
+    assert labelled <= set(ids)
+
+
+def test_names_are_text_and_nothing_is_fetched():
+    assert not re.search(r"<script|https?://(?!evil)|url\(|@import", PAGE)
+    for element in TREE.iter():
+        assert not [name for name in element.attrib if name.startswith("on")]
+        for name in ("href", "src"):
+            target = element.get(name, "#")
+            assert target.startswith(
+                ("#", "tables/", "figures/", "data:image/", "report.md", "a%20")
+            )
+    names = [text(cell) for cell in table("legibility").iter("th")]
+    assert NASTY[0] in names
+    assert NASTY[1] in names
+    assert "S3\\udc80\\x00|`*_[a](http://evil.example)" in names
+
+
+def test_bare_results_have_a_page_too():
+    page = to_html(BARE, {})
+    html5lib.HTMLParser(strict=True).parse(page)
+    assert "<table" not in page
+    assert "This table has no rows." in page
+    assert "No traces were given." in page
+
+
+def test_json_has_all_rows():
+    content = json.loads(to_json(RESULTS))
+    assert list(content) == ["title", "about", "warnings", "tables", "figures"]
+    for each in RESULTS.tables():
+        found = content["tables"][each.name]
+        assert found["rows"] == each.records()
+        assert list(found["columns"]) == list(each.names)
+        assert found["notes"] == list(each.notes)
+    assert list(content["figures"]) == ["legibility", "confusions", "runs"]
+    assert content["figures"]["runs"]["table"] == "trials"
+    assert content["tables"]["legibility"]["rows"][1]["legibility"] is None
+    assert content["about"] == dict(RESULTS.about)
+
+
+def cells(line):
+    """Cells of a line of a Markdown table, by the bars that are not escaped."""
+    assert line.startswith("| ")
+    assert line.endswith(" |")
+    return re.split(r"(?<!\\)\|", line)[1:-1]
+
+
+def test_markdown_tables_have_as_many_cells_everywhere():
+    blocks = [block.splitlines() for block in to_markdown(RESULTS).split("\n\n")]
+    tables = [block for block in blocks if block[0].startswith("|")]
+    assert [len(lines) for lines in tables] == [2 + 8, 2 + 2, 2 + shown.ROWS]
+    for lines, columns in zip(tables, (7, 4, 2), strict=True):
+        assert {len(cells(line)) for line in lines} == {columns}
+        assert all(re.fullmatch(r" ---:? ", cell) for cell in cells(lines[1]))
+
+
+def test_markdown_marks_errors_and_points_to_the_numbers():
+    made = to_markdown(RESULTS, ("results.json",))
+    assert "| a | 30 | **5** (\\> 4) | 0 |" in made
+    assert "| b | **10** (\\> 9) | 28 | 4 |" in made
+    assert (
+        "](figures/runs.svg)\n\nIt falls.\n\nIts numbers: [All trials](tables/trials.csv)" in made
+    )
+    assert "- [results.json](results.json)" in made
+    assert "This table has no rows." in made
+    assert f"- {NOTHING.notes[0]}" in made
+
+
+@pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("a|b", "a\\|b"),
+        ("# a\n# b", "\\# a # b"),
+        ("1. a 12.5 %", "1\\. a 12.5 %"),
+        ("2009) a", "2009\\) a"),
+        ("86.3", "86.3"),
+        ("3.", "3\\."),
+        ("  - a", "\\- a"),
+        ("<b>&amp;", "\\<b\\>\\&amp;"),
+        ("[a](http://b)", "\\[a\\](http:\\//b)"),
+        ("www.b", "www\\.b"),
+        ("\\|", "\\\\\\|"),
+        ("\udc80", "\\\\udc80"),
+    ],
+)
+def test_names_are_no_markdown(name, made):
+    assert escape(name) == made
+
+
+def test_texts_are_the_same_in_every_process_and_need_no_drawing():
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", TEXTS],
+        env=os.environ | {"PYTHONHASHSEED": "4711"},
+        capture_output=True,
+        check=True,
+    )
+    made = to_html(RESULTS, FIGURES) + to_json(RESULTS) + to_markdown(RESULTS)
+    assert run.stdout == made.encode("utf-8", "backslashreplace")
+
+
+def test_a_mark_needs_a_count():
+    results = Results("Confusions", (), (), (Section("All", "", (ONE_MARK,)),))
+    assert "**28**" not in to_markdown(results)
+    assert "**10** (\\> 4)" in to_markdown(results)

@@ -1,0 +1,294 @@
+import time
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.stats import binom
+from statsmodels.genmod.families import Binomial
+from statsmodels.genmod.generalized_linear_model import GLM
+
+from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
+from vbraille.analysis.statistics.firth import connected, fit
+from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+# Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
+# Stigler 1994; Agresti 2002, p. 448.
+CITATIONS = np.array([[0, 730, 498, 221], [33, 0, 68, 17], [320, 813, 0, 142], [284, 276, 325, 0]])
+WIDTHS_MM = [0.5, 1, 1.5, 2, 2.5, 3]
+
+
+def design(k):
+    """Which of k values come against each other: rows of 1 and -1."""
+    pairs = [(i, j) for i in range(k) for j in range(i)]
+    rows = np.zeros((len(pairs), k))
+    for row, (i, j) in zip(rows, pairs, strict=True):
+        row[i], row[j] = 1, -1
+    return rows, pairs
+
+
+def penalised(wins):
+    """Firth's strengths by maximising the likelihood with Jeffreys' prior."""
+    k = len(wins)
+    x, pairs = design(k)
+    won = np.array([wins[i, j] for i, j in pairs])
+    n = won + np.array([wins[j, i] for i, j in pairs])
+
+    def loss(free):
+        p = 1 / (1 + np.exp(-x[:, 1:] @ free))
+        information = (x[:, 1:].T * (n * p * (1 - p))) @ x[:, 1:]
+        likelihood = won @ np.log(p) + (n - won) @ np.log(1 - p)
+        return -likelihood - np.linalg.slogdet(information)[1] / 2
+
+    found = np.r_[0, minimize(loss, np.zeros(k - 1), tol=1e-10, method="Powell").x]
+    return found - found.mean()
+
+
+def comparisons(wins_of_each):
+    """Columns first, second, chosen, groups of tables of wins."""
+    rows = [
+        (i, j, 0, who) if n % 2 else (j, i, 1, who)
+        for who, wins in enumerate(wins_of_each)
+        for i, j in permutations(range(len(wins)), 2)
+        for n in range(wins[i, j])
+    ]
+    return np.array(rows, dtype=int).reshape(-1, 4).T
+
+
+def test_the_published_scale_of_statistics_journals():
+    # Turner and Firth 2012, p. 4: by maximum likelihood, from which many comparisons
+    # take the penalty's part away; errors are those of the counts as they are.
+    s = bradley_terry(1000 * CITATIONS).strengths
+    np.testing.assert_allclose(s - s[0], [0, -2.94907, -0.47957, 0.26895], atol=2e-5)
+    scale = bradley_terry(CITATIONS)
+    np.testing.assert_allclose(scale.strengths - scale.strengths[0], s - s[0], atol=0.005)
+    c = scale.covariance
+    errors = np.sqrt(c[0, 0] + np.diag(c) - 2 * c[0])
+    np.testing.assert_allclose(errors, [0, 0.10255, 0.06059, 0.07083], atol=2e-4)
+    assert scale.comparisons == CITATIONS.sum()
+
+
+@pytest.mark.parametrize("k", [3, 6])
+def test_many_comparisons_give_the_likelihood_of_a_binomial_regression(rng, k):
+    wins = rng.integers(3000, 9000, (k, k)) * (1 - np.eye(k, dtype=int))
+    x, pairs = design(k)
+    counts = [(wins[i, j], wins[j, i]) for i, j in pairs]
+    theirs = GLM(np.array(counts), x[:, 1:], family=Binomial()).fit()
+    scale = bradley_terry(wins)
+    np.testing.assert_allclose(scale.strengths[1:] - scale.strengths[0], theirs.params, atol=3e-4)
+    to_first = np.eye(k)[1:] - np.eye(k)[0]
+    np.testing.assert_allclose(
+        to_first @ scale.covariance @ to_first.T, theirs.cov_params(), rtol=1e-3
+    )
+    np.testing.assert_allclose(scale.errors, np.sqrt(np.diag(scale.covariance)))
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("k", [2, 3, 4])
+def test_few_comparisons_give_firths_likelihood(rng, k):
+    for _ in range(3):
+        wins = rng.poisson(1.5, (k, k)) * (1 - np.eye(k, dtype=int))
+        wins[np.arange(k - 1), np.arange(1, k)] += 1  # connected
+        np.testing.assert_allclose(bradley_terry(wins).strengths, penalised(wins), atol=1e-5)
+
+
+def test_one_comparison_is_known_in_closed_form():
+    # Half a win each way: odds (1 + 1/2) to 1/2.
+    found = bradley_terry([[0, 1], [0, 0]])
+    np.testing.assert_allclose(found.strengths, [np.log(3) / 2, -np.log(3) / 2])
+
+
+def test_values_always_or_never_chosen_stay_finite_and_in_order():
+    for times in (1, 3, 1000):
+        s = bradley_terry(times * np.triu(np.ones((6, 6), dtype=int), 1)).strengths
+        assert (np.diff(s) < 0).all()
+        np.testing.assert_allclose(s, -s[::-1], atol=1e-6)
+
+
+@pytest.mark.no_cover
+def test_sparse_comparisons_settle(rng):
+    wins = rng.poisson(rng.gamma(0.3, 3, (800, 6, 6))) * (1 - np.eye(6))
+    wins = wins[connected(wins)]
+    strengths, _ = fit(wins)
+    assert len(wins) > 300
+    assert np.isfinite(strengths).all()
+    assert np.abs(strengths.sum(axis=1)).max() < 1e-9
+    one, _ = fit(wins[7:8])
+    np.testing.assert_allclose(one[0], strengths[7])
+
+
+def test_a_scale_that_does_not_settle_is_no_scale():
+    with pytest.raises(RuntimeError, match="1 scales"):
+        fit(CITATIONS[None].astype(float), most_steps=2)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "whether"),
+    [
+        ([(0, 1), (1, 2), (2, 3), (3, 4)], True),
+        ([(0, 1), (2, 1), (2, 3), (4, 3)], True),
+        ([(0, 1), (1, 2), (3, 4)], False),
+        ([(0, 1), (1, 2), (2, 3)], False),
+    ],
+)
+def test_which_values_hang_together(pairs, whether):
+    wins = np.zeros((1, 5, 5))
+    wins[0, *zip(*pairs, strict=True)] = 1
+    assert connected(wins).tolist() == [whether]
+
+
+@pytest.mark.parametrize(
+    ("wins", "error", "reason"),
+    [
+        (np.zeros((3, 3), dtype=int), Unanswerable, "no comparisons"),
+        ([[0, 1, 0], [1, 0, 0], [0, 0, 0]], Unanswerable, "never compared"),
+        (np.ones((2, 3), dtype=int), ValueError, "square"),
+        (np.eye(2, dtype=int), ValueError, "itself"),
+        ([[0, -1], [1, 0]], ValueError, "0 or more"),
+        ([[0, 0.5], [1, 0]], ValueError, "not integers"),
+    ],
+)
+def test_what_is_no_table_of_comparisons(wins, error, reason):
+    with pytest.raises(error, match=reason):
+        bradley_terry(wins)
+
+
+def test_a_scale_checks_itself():
+    scale = bradley_terry(CITATIONS)
+    with pytest.raises(ValueError, match="of 4 strengths"):
+        replace(scale, errors=scale.errors[:2])
+    with pytest.raises(ValueError, match="sum 0"):
+        replace(scale, strengths=scale.strengths + 1)
+
+
+def wins_by(strengths, times=10_000):
+    """Expected wins of values of these strengths."""
+    s = np.array(strengths, dtype=float)
+    return np.rint(times / (1 + np.exp(s - s[:, None]))).astype(int) * (
+        1 - np.eye(len(s), dtype=int)
+    )
+
+
+def best(wins, values=WIDTHS_MM, **options):
+    return preferred(values, *comparisons([wins]), seed=1, resamples=20, **options)
+
+
+def test_the_vertex_of_a_parabola_is_found():
+    values = np.array([0.5, 1.2, 1.5, 2, 2.2, 3])  # not evenly spaced
+    wins = wins_by(-((values - 1.73) ** 2), 500)
+    assert best(wins, values).value == pytest.approx(1.73, abs=0.01)
+    # In whatever order the values are named.
+    order = np.array([3, 0, 5, 1, 4, 2])
+    again = best(wins[np.ix_(order, order)], values[order])
+    assert again.value == pytest.approx(best(wins, values).value)
+
+
+def test_two_equally_chosen_neighbours_give_the_value_between():
+    spacings_mm = [1, 1.3, 1.6, 1.9, 2.2, 2.5]
+    wins = wins_by([-2, -1, 0, 1, 1, -0.5], 60)
+    assert wins[3, 4] == wins[4, 3]
+    assert best(wins, spacings_mm).value == pytest.approx(2.05)
+    # At the end as well, though one of them is the end.
+    assert best(wins_by([1, 1, 0, -1], 60), [1, 2, 3, 4]).value == pytest.approx(1.5)
+    assert best(wins_by([-1, 0, 1, 1], 60), [1, 2, 3, 4]).value == pytest.approx(3.5)
+
+
+def test_at_an_end_it_is_the_end():
+    assert best(wins_by([3, 2, 1], 30), [1, 2, 3]).value == 1
+    assert best(wins_by([1, 2, 3], 30), [1, 2, 3]).value == 3
+    assert best(wins_by([0, 1], 30), [1, 2]).value == 2
+
+
+def test_three_equals_give_the_middle_one():
+    found = best(wins_by([0, 1, 1, 1, 0], 30), [1, 2, 3, 4, 5])
+    assert found.value in (2.5, 3)
+
+
+def test_six_participants_are_resampled_whole(rng):
+    s = -((np.array(WIDTHS_MM) - 2) ** 2)
+    tables = [wins_by(s + rng.normal(0, 0.3, 6), 3) for _ in range(6)]
+    found = preferred(WIDTHS_MM, *comparisons(tables), seed=3, resamples=300)
+    assert found.how == "bootstrap over 6 participants"
+    assert found.interval.low <= found.value <= found.interval.high
+    assert found == preferred(WIDTHS_MM, *comparisons(tables), seed=3, resamples=300)
+    # Participants who all choose alike leave nothing to resample; comparisons would.
+    alike = preferred(WIDTHS_MM, *comparisons([tables[0]] * 6), seed=3, resamples=50)
+    assert alike.interval.low == pytest.approx(alike.interval.high, abs=1e-6)
+
+
+def test_fewer_are_resampled_within():
+    s = -((np.array(WIDTHS_MM) - 2) ** 2)
+    found = preferred(WIDTHS_MM, *comparisons([wins_by(s, 3)] * 4), seed=3, resamples=300)
+    assert found.how == (
+        "bootstrap over the comparisons within 4 participants, too few to resample"
+    )
+    assert found.interval.low < found.value < found.interval.high
+    one = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300)
+    assert one.how == "bootstrap over the comparisons of one participant"
+    narrow = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300, level=0.5)
+    assert narrow.interval.high - narrow.interval.low < one.interval.high - one.interval.low
+
+
+def test_resamples_that_leave_values_uncompared_are_told():
+    wins = np.array([[0, 4, 0], [4, 0, 3], [0, 1, 0]])
+    found = preferred([1, 2, 3], *comparisons([wins]), seed=3, resamples=400)
+    left_out = int(found.how.split("without ")[1].split()[0])
+    # All of twelve draws miss the last pair's four in (2/3)^12 of the resamples.
+    assert found.how.endswith("of 400 resamples that left some values uncompared")
+    assert 0 < left_out < binom.ppf(0.999, 400, (2 / 3) ** 12 + (1 / 3) ** 12)
+
+
+@pytest.mark.no_cover
+def test_the_bootstrap_of_a_session_is_quick(rng):
+    s = -((np.array(WIDTHS_MM) - 2) ** 2)
+    columns = comparisons([rng.binomial(6, wins_by(s, 1000) / 1000)])
+    began = time.perf_counter()
+    preferred(WIDTHS_MM, *columns, seed=1)
+    assert time.perf_counter() - began < 5  # 0.4 s on two quiet processors
+
+
+def test_what_has_no_preferred_value():
+    alike = np.ones((3, 3), dtype=int) - np.eye(3, dtype=int)
+    with pytest.raises(Unanswerable, match="equally often"):
+        best(alike, [1, 2, 3])
+    with pytest.raises(Unanswerable, match="no comparisons"):
+        best(0 * alike, [1, 2, 3])
+    with pytest.raises(Unanswerable, match="most resamples"):
+        best(np.diag([1] * 5, 1), [1, 2, 3, 4, 5, 6])
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"values_mm": [1, 1]}, "twice"),
+        ({"first": [0, 2]}, "first must be in 0…1"),
+        ({"first": [0.0, 1.0]}, "whole numbers"),
+        ({"first": [1, 1]}, "with itself"),
+        ({"chosen": [0, 2]}, "chosen must be"),
+        ({"groups": [0]}, "one length"),
+        ({"resamples": 0}, "resamples"),
+        ({"level": 0}, "level"),
+    ],
+)
+def test_what_are_no_comparisons(change, reason):
+    good = {
+        "values_mm": [1, 2],
+        "first": [0, 1],
+        "second": [1, 0],
+        "chosen": [0, 0],
+        "groups": [0, 0],
+    }
+    with pytest.raises(ValueError, match=reason):
+        preferred(**{**good, "seed": 1, **change})
+
+
+def test_position_bias_is_the_binomial_test():
+    found = position_bias([0] * 9 + [1])
+    assert found.share_first == 0.9
+    assert found.p == pytest.approx(2 * 11 / 1024)
+    assert found.interval == wilson(9, 10)
+    assert position_bias([0, 1]).p == 1
+    with pytest.raises(Unanswerable, match="no comparisons"):
+        position_bias([])

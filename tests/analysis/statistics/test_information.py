@@ -1,0 +1,119 @@
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import entropy
+
+from vbraille.analysis.statistics.information import (
+    accuracy,
+    cohen_kappa,
+    presented_bits,
+    transmitted_bits,
+    transmitted_bits_corrected,
+)
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+ALL = [accuracy, cohen_kappa, presented_bits, transmitted_bits, transmitted_bits_corrected]
+PUBLISHED = Path(__file__).parent.parent / "published.json"
+
+
+def test_the_published_confusions():
+    table = json.loads(PUBLISHED.read_text(encoding="utf-8"))["table_3_4"]
+    counts, derived = table["counts"], table["derived"]
+    assert accuracy(counts) == derived["accuracy"]
+    # The note's last digit is one too high: in fractions kappa is 0.8666858.
+    assert cohen_kappa(counts) == pytest.approx(derived["cohen_kappa"], abs=2e-6)
+    assert cohen_kappa(counts) == pytest.approx(0.8666858, abs=5e-8)
+    assert transmitted_bits(counts) == pytest.approx(derived["mutual_information_bits"], abs=5e-6)
+
+
+def test_kappa_is_agreement_beyond_chance():
+    counts = np.array([[25, 13, 12], [12, 2, 16], [3, 15, 2]])
+    p = counts / 100
+    by_chance = p.sum(axis=0) @ p.sum(axis=1)
+    assert cohen_kappa(counts) == pytest.approx((0.29 - by_chance) / (1 - by_chance))
+
+
+def test_a_column_of_what_was_not_read_counts_against():
+    counts = np.array([[8, 0, 2], [0, 5, 5]])
+    assert accuracy(counts) == 0.65
+    # By chance: 10 · 8 and 10 · 5 of 400.
+    assert cohen_kappa(counts) == pytest.approx((0.65 - 0.325) / (1 - 0.325))
+    square = np.vstack([counts, np.zeros((1, 3), dtype=int)])
+    for measure in ALL:
+        assert measure(counts) == pytest.approx(measure(square))
+
+
+@pytest.mark.parametrize("letters", [1, 2, 4, 26])
+def test_all_comes_through_without_error(letters):
+    counts = 5 * np.eye(letters, dtype=int)
+    assert presented_bits(counts) == pytest.approx(np.log2(letters))
+    assert transmitted_bits(counts) == pytest.approx(np.log2(letters))
+    assert transmitted_bits_corrected(counts) == pytest.approx(np.log2(letters))
+
+
+def test_nothing_comes_through_of_guesses():
+    assert transmitted_bits(np.full((4, 5), 7)) == pytest.approx(0, abs=1e-12)
+    assert transmitted_bits_corrected(np.full((4, 5), 7)) == 0
+    assert cohen_kappa(np.full((4, 4), 7)) == 0
+
+
+def test_information_is_symmetric_and_the_divergence_from_independence(rng):
+    counts = rng.integers(0, 9, (6, 6))
+    joint = counts / counts.sum()
+    apart = np.outer(joint.sum(axis=1), joint.sum(axis=0))
+    found = transmitted_bits(counts)
+    assert found == pytest.approx(entropy(joint.ravel(), apart.ravel(), base=2))
+    assert found == pytest.approx(transmitted_bits(counts.T))
+
+
+def test_the_correction_by_hand():
+    counts = [[6, 2, 0], [1, 7, 0]]
+    # Four cells, two rows and two columns are filled: one spare of 32 ln 2.
+    less = transmitted_bits(counts) - transmitted_bits_corrected(counts)
+    assert less == pytest.approx(1 / (32 * np.log(2)))
+
+
+@pytest.mark.no_cover
+def test_the_correction_takes_most_of_the_bias_away(rng):
+    joint = (np.eye(4) * 0.7 + 0.075) / 4
+    truth = 2 - entropy([0.775, 0.075, 0.075, 0.075], base=2)
+    tables = rng.multinomial(150, joint.ravel(), size=400).reshape(-1, 4, 4)
+    raw = np.mean([transmitted_bits(t) for t in tables]) - truth
+    corrected = np.mean([transmitted_bits_corrected(t) for t in tables]) - truth
+    assert raw > 0.03
+    assert abs(corrected) < raw / 3
+
+
+@pytest.mark.parametrize("measure", ALL)
+def test_what_is_no_table_of_answers(measure):
+    with pytest.raises(Unanswerable, match="no answers"):
+        measure(np.zeros((2, 3), dtype=int))
+    with pytest.raises(Unanswerable, match="no answers"):
+        measure(np.zeros((0, 0), dtype=int))
+    with pytest.raises(ValueError, match="column of its own"):
+        measure([[1], [2]])
+    with pytest.raises(ValueError, match="not integers"):
+        measure([[1.5, 0.5]])
+    with pytest.raises(ValueError, match="below 0"):
+        measure([[1, -1], [0, 1]])
+
+
+def test_one_character_alone_has_no_kappa():
+    with pytest.raises(Unanswerable, match="one character"):
+        cohen_kappa([[9, 0], [0, 0]])
+    assert cohen_kappa([[0, 9]]) == 0  # never read: no better than chance
+
+
+def test_it_needs_numpy_only():
+    loaded = (
+        "import sys, vbraille.analysis.statistics.information; "
+        "print([m for m in ('scipy', 'statsmodels', 'pandas') if m in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", loaded], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"

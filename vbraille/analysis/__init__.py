@@ -1,0 +1,1 @@
+"""Journals in, tables and figures out. Sees no device and no engine."""

@@ -1,0 +1,222 @@
+"""All that is said of a study, and of a table of scores."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vbraille.analysis import (
+    characters,
+    confusion,
+    errors,
+    figures,
+    legibility,
+    levels,
+    motion,
+    overtime,
+    tuning,
+)
+from vbraille.analysis.results import Results, Section
+from vbraille.analysis.scores import of_trials
+from vbraille.analysis.statistics.correction import METHODS
+from vbraille.analysis.trials import Places
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.analysis.results import Picture
+    from vbraille.analysis.scores import Scores
+    from vbraille.analysis.study import Study
+    from vbraille.analysis.tables import Table
+    from vbraille.analysis.trials import Comparisons, LeftOut, Trials
+
+SEED = 20090618
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What may be chosen.
+
+    Parameters
+    ----------
+    factors
+        Columns by which trials are compared.
+    correction
+        Of the p-values of t-tests, of `METHODS`.
+    marks
+        Errors above these counts are marked in confusion matrices.
+    seed
+        Of bootstraps.
+
+    Raises
+    ------
+    ValueError
+        If there is no such correction.
+    """
+
+    factors: tuple[str, ...] = ("condition",)
+    correction: str = "none"
+    marks: tuple[int, ...] = confusion.MARKS
+    seed: int = SEED
+
+    def __post_init__(self) -> None:
+        if self.correction not in METHODS:
+            raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
+
+    def told(self) -> list[tuple[str, str]]:
+        """What was chosen, for the report's head."""
+        return [
+            ("Correction of t-tests", METHODS[self.correction]),
+            ("Compared by", ", ".join(self.factors)),
+            ("Intervals", f"95 %; bootstraps with seed {self.seed}"),
+        ]
+
+
+def analyse(study: Study, options: Options) -> Results:
+    """Analyse trials and comparisons.
+
+    Raises
+    ------
+    InputError
+        If the trials have no such factor.
+    """
+    sections: list[Section] = []
+    left_out = list(study.left_out)
+    if study.trials is not None:
+        sections += _of_trials(study, study.trials, options, left_out)
+    if study.comparisons is not None:
+        sections.append(_of_comparisons(study.comparisons, options))
+    about = (*study.about, *_excluded(left_out), *options.told())
+    return Results("Legibility sessions", about, study.warnings, tuple(sections))
+
+
+def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
+    """Compare the levels of a table of scores.
+
+    Parameters
+    ----------
+    about
+        Where it comes from.
+    """
+    left_out: list[LeftOut] = []
+    section = _compared([scores], options, left_out)
+    told = [pair for pair in options.told() if pair[0] != "Compared by"]
+    compared = ("Compared by", ", ".join(scores.factors))
+    head = (*about, *_excluded(left_out), compared, *told)
+    return Results("Scores", head, (), (section,))
+
+
+def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
+    told = "; ".join(f"{left.what}: {left.reason}" for left in left_out)
+    return [("Excluded", told or "nothing")]
+
+
+def _of_trials(
+    study: Study, trials: Trials, options: Options, left_out: list[LeftOut]
+) -> list[Section]:
+    places = Places.of(trials)
+    scores = of_trials(trials, places, options.factors)
+    return [
+        _legibility(trials, places, options),
+        _characters(trials, places),
+        _confusions(trials, places, options),
+        _errors(places),
+        _over_time(trials),
+        _motion(study, trials),
+        _compared(scores, options, left_out),
+    ]
+
+
+def _legibility(trials: Trials, places: Places, options: Options) -> Section:
+    table = legibility.legibility(trials, places)
+    averages = legibility.averages(table, seed=options.seed)
+    return Section(
+        "Legibility",
+        "Who read how much of it right, and how long it took.",
+        (table, averages),
+        (figures.legibility(table, averages),),
+    )
+
+
+def _characters(trials: Trials, places: Places) -> Section:
+    by_dots = characters.dots(trials, places)
+    tables = (characters.characters(trials, places), by_dots, characters.strings(trials))
+    pictures = (figures.dots(by_dots),) if by_dots.rows else ()
+    return Section(
+        "Characters and strings", "What is easy to read, and what is not.", tables, pictures
+    )
+
+
+def _confusions(trials: Trials, places: Places, options: Options) -> Section:
+    tables: list[Table] = [confusion.transmitted(trials, places)]
+    pictures: list[Picture] = []
+    for counts, schema, reason in (
+        (
+            confusion.of_characters(places),
+            confusion.CONFUSION_CHARACTERS,
+            "no answer has as many places as its string",
+        ),
+        (
+            confusion.of_pairs(trials),
+            confusion.CONFUSION_PAIRS,
+            "not every string has two places; a matrix is made of pairs alone",
+        ),
+    ):
+        if counts is None:
+            tables.append(schema.fill([], [reason]))
+        else:
+            tables.append(confusion.to_table(counts, places, options.marks))
+            pictures.append(figures.confusion(counts, tables[-1]))
+    return Section("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
+
+
+def _errors(places: Places) -> Section:
+    table = errors.errors(places)
+    pictures = (figures.errors(table),) if table.rows else ()
+    return Section("Errors", "What is wrong with wrong answers.", (table,), pictures)
+
+
+def _over_time(trials: Trials) -> Section:
+    table, slopes = overtime.over_time(trials), overtime.slopes(trials)
+    return Section(
+        "Over time",
+        "Whether reading became harder or easier.",
+        (slopes, table),
+        (figures.over_time(table, slopes),),
+    )
+
+
+def _motion(study: Study, trials: Trials) -> Section:
+    table = motion.trajectories(study.sittings)
+    tables = [motion.patterns(table), motion.correlations(trials), table]
+    drawn = figures.examples(study.sittings)
+    if drawn is not None:
+        tables.append(drawn[0])
+    return Section(
+        "How strings were read",
+        "What the hand did, from the traces of sessions.",
+        tuple(tables),
+        () if drawn is None else (drawn[1],),
+    )
+
+
+def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Section:
+    means = levels.level_means(scores, seed=options.seed)
+    table, dropped = levels.analyses(scores)
+    left_out += dropped
+    return Section(
+        "Levels compared",
+        "Differences within participants.",
+        (means, levels.t_tests(scores, options.correction), table),
+        tuple(figures.level_means(means)) if means.rows else (),
+    )
+
+
+def _of_comparisons(comparisons: Comparisons, options: Options) -> Section:
+    table, preferred = tuning.tuning(comparisons, seed=options.seed)
+    return Section(
+        "Which of two was chosen",
+        "What participants took for closer to the reference.",
+        (table, preferred),
+        tuple(figures.choices(table, preferred)),
+    )

@@ -1,0 +1,58 @@
+"""Averages over participants' own means, so that unequal numbers of trials weigh the same."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+
+def mean_or_none(values: Sequence[float]) -> float | None:
+    """Mean; None of nothing."""
+    return float(np.mean(values)) if len(values) else None
+
+
+def over_participants(
+    level: NDArray[np.int64],
+    value: NDArray,
+    participant: NDArray[np.int64],
+    condition: NDArray[np.int64],
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Mean of each level over conditions within a participant, then over participants.
+
+    As tables 3.2 and 3.3 of Lévesque 2009 were most likely found: "computed across all
+    subjects using individual subject means to compensate for the unequal number of trials
+    under the different conditions".
+
+    Parameters
+    ----------
+    level, value, participant, condition : [n]
+        Codes of each observation, and what was observed.
+
+    Returns
+    -------
+    levels : int64[k]
+        Codes of the levels that there are, ascending.
+    participants : int64[k]
+        How many participants have each.
+    means : float64[k]
+    """
+    (level, participant, _), means = _means((level, participant, condition), value)
+    (level, _), means = _means((level, participant), means)
+    levels, participants = np.unique(level, return_counts=True)
+    return levels, participants, _means((level,), means)[1]
+
+
+def _means(
+    codes: tuple[NDArray[np.int64], ...], value: NDArray
+) -> tuple[tuple[NDArray[np.int64], ...], NDArray[np.float64]]:
+    """Mean of the observations that have the same codes; the codes, in order."""
+    shape = tuple(int(code.max()) + 1 for code in codes)
+    cells, cell = np.unique(np.ravel_multi_index(codes, shape), return_inverse=True)
+    sums = np.bincount(cell, value, cells.size)
+    return np.unravel_index(cells, shape), sums / np.bincount(cell, minlength=cells.size)

@@ -1,0 +1,133 @@
+"""Legibility of characters, of strings and by number of dots: Lévesque 2009, 3.4 and fig. 4.8."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.analysis.averages import over_participants
+from vbraille.analysis.legibility import unequal_notes
+from vbraille.analysis.statistics.intervals import wilson_each
+from vbraille.analysis.tables import Column, Kind, Schema
+from vbraille.analysis.trials import name_cell, name_string
+from vbraille.translate.cells import UNICODE_BLANK
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.tables import Row, Table
+    from vbraille.analysis.trials import Places, Trials
+
+_ABOUT = (
+    "Legibility is the mean of the participants' own means, conditions averaged within a "
+    "participant first (Lévesque 2009, tables 3.2 and 3.3; inferred from the print). Pooled is the "
+    "share of all, with Wilson's interval."
+)
+_COUNTS = (
+    Column("presented", "presented", "how often it was presented", Kind.COUNT),
+    Column("correct", "correct", "how often the answer was right", Kind.COUNT),
+    Column("participants", "participants", "to how many participants", Kind.COUNT),
+    Column("legibility", "legibility (%)", "mean of participants' means", Kind.PERCENT),
+    Column("pooled", "pooled (%)", "correct by presented", Kind.PERCENT),
+    Column("low", "from (%)", "lower end of the 95 % interval of pooled", Kind.PERCENT),
+    Column("high", "to (%)", "upper end", Kind.PERCENT),
+)
+CHARACTERS = Schema(
+    "characters",
+    "Legibility of each character",
+    _ABOUT,
+    (
+        Column("name", "character", "letter, or the dots"),
+        Column("braille", "braille", "Unicode braille"),
+        Column("dots", "dots", "how many it has", Kind.COUNT),
+        *_COUNTS,
+    ),
+)
+STRINGS = Schema(
+    "strings",
+    "Legibility of each string",
+    _ABOUT,
+    (
+        Column("name", "string", "its letters, or its cells' names"),
+        Column("braille", "braille", "Unicode braille"),
+        *_COUNTS,
+    ),
+)
+DOTS = Schema(
+    "dots",
+    "Legibility by number of dots",
+    "Legibility of the characters that have so many dots (Lévesque 2009, fig. 4.8). " + _ABOUT,
+    (Column("dots", "dots", "dots of the character", Kind.COUNT), *_COUNTS),
+)
+
+
+def characters(trials: Trials, places: Places) -> Table:
+    """Table 3.2, a row a character."""
+    rows = [
+        {"name": name_cell(mask), "braille": chr(UNICODE_BLANK + mask), "dots": mask.bit_count()}
+        | counts
+        for mask, counts in _counts(trials, places, places.presented)
+    ]
+    rows.sort(key=lambda row: cell_order(ord(row["braille"]) - UNICODE_BLANK))
+    return CHARACTERS.fill(rows, _notes(rows, places))
+
+
+def strings(trials: Trials) -> Table:
+    """Table 3.3, a row a string."""
+    codes, names = trials.presented.codes, trials.presented.levels
+    found = _count(codes, trials.correct, trials.participant.codes, trials.condition.codes)
+    rows = [
+        {"name": name_string(names[code]), "braille": names[code]} | counts
+        for code, counts in found
+    ]
+    return STRINGS.fill(sorted(rows, key=lambda row: row["name"]))
+
+
+def dots(trials: Trials, places: Places) -> Table:
+    """Legibility by number of dots, a row a number."""
+    many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
+    rows = [{"dots": number} | counts for number, counts in _counts(trials, places, many)]
+    return DOTS.fill(rows, _notes(rows, places))
+
+
+def cell_order(mask: int) -> tuple[bool, str, int]:
+    """Key by which letters come before other cells, and a place not read last."""
+    name = name_cell(mask)
+    return len(name) > 1 or not name.isalpha(), name if len(name) == 1 else "", mask
+
+
+def _counts(trials: Trials, places: Places, level: NDArray[np.int64]) -> list[tuple[int, Row]]:
+    participant, condition = (
+        factor.codes[places.at] for factor in (trials.participant, trials.condition)
+    )
+    return _count(level, places.correct, participant, condition)
+
+
+def _count(
+    level: NDArray[np.int64],
+    correct: NDArray[np.bool_],
+    participant: NDArray[np.int64],
+    condition: NDArray[np.int64],
+) -> list[tuple[int, Row]]:
+    """Each level, with the values of `_COUNTS`."""
+    if not level.size:
+        return []
+    levels, participants, means = over_participants(level, correct, participant, condition)
+    index = np.searchsorted(levels, level)
+    shown, right = np.bincount(index), np.bincount(index, correct).astype(np.int64)
+    lows, highs = wilson_each(right, shown)
+    names = [column.name for column in _COUNTS]
+    columns = (shown, right, participants, means, right / shown, lows, highs)
+    found = zip(*(column.tolist() for column in columns), strict=True)
+    return [
+        (code, dict(zip(names, values, strict=True)))
+        for code, values in zip(levels.tolist(), found, strict=True)
+    ]
+
+
+def _notes(rows: Sequence[object], places: Places) -> list[str]:
+    none = [] if rows else ["no answer has as many places as its string"]
+    return none + unequal_notes(places)

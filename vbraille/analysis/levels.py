@@ -1,0 +1,252 @@
+"""Levels compared within participants: Lévesque 2009, 4.3 and its supplementary analysis."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.analysis.averages import mean_or_none
+from vbraille.analysis.statistics.anova import anova
+from vbraille.analysis.statistics.correction import adjust
+from vbraille.analysis.statistics.intervals import bootstrap_mean
+from vbraille.analysis.statistics.paired import PairedTest, paired_t
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.trials import LeftOut, natural
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from vbraille.analysis.scores import Scores
+    from vbraille.analysis.tables import Row, Table
+
+NOTHING = "there are no scores to compare"
+MOST_LEVELS = 12  # 66 pairs: more t-tests than anybody should make of one table
+MEANS = Schema(
+    "level_means",
+    "Means of the levels",
+    "Over participants' own means; scores are averaged over other factors, and repeated ones "
+    "within the participant; who misses a cell of a level is left out of it. The interval is a "
+    "percentile bootstrap over participants.",
+    (
+        Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
+        Column("factor", "factor", "by what"),
+        Column("level", "level", "of the factor"),
+        Column("participants", "participants", "who have it", Kind.COUNT),
+        Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("high", "to", "upper end", Kind.NUMBER),
+        NOTE_COLUMN,
+    ),
+)
+T_TESTS = Schema(
+    "t_tests",
+    "Paired t-tests",
+    "First less second, over participants; scores are averaged over other factors, and repeated "
+    "ones within the participant. d_z is the mean difference by the standard deviation of the "
+    "differences; g_z is d_z with Hedges's correction for few participants.",
+    (
+        Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
+        Column("factor", "factor", "by what"),
+        Column("first", "first", "level"),
+        Column("second", "second", "level"),
+        Column("participants", "participants", "who have both", Kind.COUNT),
+        Column("mean_difference", "mean difference", "in the measure's unit", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("high", "to", "upper end", Kind.NUMBER),
+        Column("t", "t", "Student's", Kind.NUMBER),
+        Column("df", "df", "degrees of freedom", Kind.COUNT),
+        Column("p", "p", "two-sided", Kind.P),
+        Column("p_corrected", "p corrected", "for the tests of this measure and factor", Kind.P),
+        Column("d_z", "d_z", "effect size", Kind.NUMBER),
+        Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
+        NOTE_COLUMN,
+    ),
+)
+ANOVA = Schema(
+    "anova",
+    "Repeated-measures analysis of variance",
+    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon; "
+    "Mauchly's test is of sphericity. A participant with a missing cell is left out whole; "
+    "repeated scores of a cell are averaged first.",
+    (
+        Column("measure", "measure", "what is compared, with its unit"),
+        Column("effect", "effect", "factors that act together"),
+        Column("participants", "participants", "who have every cell", Kind.COUNT),
+        Column("df1", "df1", "degrees of freedom of the effect", Kind.COUNT),
+        Column("df2", "df2", "degrees of freedom of its error", Kind.COUNT),
+        Column("f", "F", "mean square of the effect by that of its error", Kind.NUMBER),
+        Column("p", "p", "if sphericity holds", Kind.P),
+        Column("epsilon", "epsilon", "Greenhouse and Geisser's", Kind.NUMBER),
+        Column("p_corrected", "p corrected", "with both degrees of freedom times epsilon", Kind.P),
+        Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
+        Column("mauchly_p", "p of W", "that sphericity holds", Kind.P),
+        Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
+        Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
+        NOTE_COLUMN,
+    ),
+)
+
+
+def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
+    """Mean of every level of every factor.
+
+    Parameters
+    ----------
+    measures
+        What is compared.
+    seed
+        Of the bootstrap.
+    """
+    rows: list[Row] = []
+    for scores in measures:
+        for factor in scores.factors:
+            means = _means(scores, factor)
+            for level in sorted(means, key=natural):
+                own = list(means[level].values())
+                row: Row = {
+                    "measure": scores.measure,
+                    "factor": factor,
+                    "level": level,
+                    "participants": len(own),
+                    "mean": mean_or_none(own),
+                }
+                try:
+                    interval = bootstrap_mean(own, seed=seed)
+                    row |= {"low": interval.low, "high": interval.high}
+                except Unanswerable as reason:
+                    row["note"] = f"no interval: {reason}" if own else "no scores"
+                rows.append(row)
+    return MEANS.fill(rows, [] if rows else [NOTHING])
+
+
+def t_tests(measures: Sequence[Scores], correction: str) -> Table:
+    """Paired t-tests of every pair of levels of every factor.
+
+    Parameters
+    ----------
+    measures
+        What is compared.
+    correction
+        Of the p-values of one measure and factor; see `statistics.correction.METHODS`.
+    """
+    rows: list[Row] = []
+    notes: list[str] = []
+    for scores in measures:
+        for factor in scores.factors:
+            means = _means(scores, factor)
+            levels = sorted(means, key=natural)
+            if len(levels) < 2:
+                notes.append(f"{scores.measure}: {factor} is {levels[0]} alone; nothing to compare")
+            elif len(levels) > MOST_LEVELS:
+                notes.append(
+                    f"{scores.measure}: {factor} has {len(levels)} levels; the pairs of more than "
+                    f"{MOST_LEVELS} are not tested"
+                )
+            else:
+                rows += _pairs(scores, factor, levels, means, correction)
+    return T_TESTS.fill(rows, notes if rows or notes else [NOTHING])
+
+
+def analyses(measures: Sequence[Scores]) -> tuple[Table, list[LeftOut]]:
+    """Analysis of variance of each measure, and who was left out of it."""
+    rows: list[Row] = []
+    notes: list[str] = []
+    left_out: list[LeftOut] = []
+    for scores in measures:
+        try:
+            found = anova(scores.participants, scores.factors, scores.scores)
+        except ValueError as reason:  # Unanswerable, or more factors than can be compared
+            notes.append(f"{scores.measure}: {reason}")
+            continue
+        for who, cells in found.dropped:
+            missing = ", ".join(" and ".join(cell) for cell in cells)
+            left_out.append(
+                LeftOut(f"participant {who}, of the analysis of {scores.measure}", f"no {missing}")
+            )
+        if found.averaged:
+            who = ", ".join(name for name, _ in found.averaged)
+            notes.append(f"{scores.measure}: repeated scores were averaged first, of {who}")
+        rows += [
+            {
+                "measure": scores.measure,
+                "effect": effect.name,
+                "participants": len(found.participants),
+                **{column.name: getattr(effect, column.name) for column in ANOVA.columns[3:]},
+            }
+            for effect in found.effects
+        ]
+    return ANOVA.fill(rows, notes if rows or notes else [NOTHING]), left_out
+
+
+def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
+    """Mean of each participant at each level of a factor: cells averaged, then over cells.
+
+    Who has not all of a level's cells has no mean there: it would be of other things than
+    the others' are.
+    """
+    cells: dict[tuple[str, str, tuple[str, ...]], list[float]] = {}
+    others = [column for name, column in scores.factors.items() if name != factor]
+    cell_of = zip(*others, strict=True) if others else ((),) * len(scores.scores)
+    columns = (scores.participants, scores.factors[factor], cell_of, scores.scores)
+    for who, level, cell, score in zip(*columns, strict=True):
+        if not math.isnan(score):
+            cells.setdefault((level, who, tuple(cell)), []).append(score)
+    means: dict[str, dict[str, list[float]]] = {level: {} for level in scores.factors[factor]}
+    for (level, who, _), values in cells.items():
+        means[level].setdefault(who, []).append(float(np.mean(values)))
+    full = math.prod(len(set(column)) for column in others)
+    return {
+        level: {who: float(np.mean(values)) for who, values in of.items() if len(values) == full}
+        for level, of in means.items()
+    }
+
+
+def _pairs(
+    scores: Scores,
+    factor: str,
+    levels: Sequence[str],
+    means: dict[str, dict[str, float]],
+    correction: str,
+) -> Iterator[Row]:
+    """Rows of all pairs of levels, p corrected for their number."""
+    rows: list[Row] = []
+    tested: list[Row] = []
+    for first, second in combinations(levels, 2):
+        have = [means[first].keys(), means[second].keys()]
+        both = sorted(have[0] & have[1], key=natural)
+        without = sorted({*scores.participants} - set(both), key=natural)
+        row: Row = {
+            "measure": scores.measure,
+            "factor": factor,
+            "first": first,
+            "second": second,
+            "participants": len(both),
+        }
+        notes = [f"without {', '.join(without)}, who have not both"] if without else []
+        try:
+            test = paired_t(
+                [means[first][who] for who in both], [means[second][who] for who in both]
+            )
+        except Unanswerable as reason:
+            notes.append(str(reason))
+        else:
+            row |= _tested(test)
+            tested.append(row)
+            if test.g_z is None:
+                notes.append("no g_z of two participants")
+        rows.append(row | {"note": "; ".join(notes)})
+    corrected = adjust([float(row["p"]) for row in tested], correction)
+    known = {
+        (row["first"], row["second"]): p for row, p in zip(tested, corrected.tolist(), strict=True)
+    }
+    for row in rows:
+        yield row | {"p_corrected": known.get((row["first"], row["second"]))}
+
+
+def _tested(test: PairedTest) -> Row:
+    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "g_z")
+    return {name: getattr(test, name) for name in names}

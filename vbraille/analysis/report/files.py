@@ -1,0 +1,98 @@
+"""The report's directory: whole, or not at all."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from vbraille.analysis.report.shown import csv_name, picture_name
+from vbraille.analysis.report.tohtml import to_html
+from vbraille.analysis.report.tojson import to_json
+from vbraille.analysis.report.tomarkdown import to_markdown
+from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions.record.export import encode
+from vbraille.sessions.record.folder import check_free, missing
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from vbraille.analysis.results import Results
+
+PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
+_DPI = 110  # of the PNGs: sharp on a screen and quick; the SVGs are for print
+
+
+def write_report(
+    results: Results, folder: Path, extra: Mapping[str, bytes] | None = None
+) -> list[Path]:
+    """Make a directory with the report, its numbers and its figures; the files, in their order.
+
+    Parameters
+    ----------
+    folder
+        Not there yet, or empty.
+    extra
+        Contents of other files, by their paths in the directory; the report links to them.
+
+    Raises
+    ------
+    InputError
+        If there is something already, or no directory can be made there.
+    VbrailleError
+        If the disk does not take it; nothing is left then.
+    """
+    folder = folder.absolute()
+    check_free(folder)
+    files = _files(results, extra or {})
+    partial = folder.with_name(f".{folder.name}.partial")
+    made: list[Path] = []  # each in the one before
+    try:
+        for parent in missing(folder.parent):
+            parent.mkdir()
+            made.append(parent)
+        if partial.exists():  # of a report that was killed being written
+            shutil.rmtree(partial)
+        partial.mkdir()
+        made.append(partial)
+        for name, content in files.items():
+            path = partial / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            # Not forced onto the disk, as a session is: a report can be made again.
+            path.write_bytes(content)
+        partial.rename(folder)
+    except BaseException as fault:
+        if partial in made:
+            shutil.rmtree(partial, ignore_errors=True)
+        for parent in reversed(made):
+            with suppress(OSError):  # what is in use stays
+                parent.rmdir()
+        if isinstance(fault, OSError):
+            kind = VbrailleError if partial in made else InputError
+            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
+        raise
+    return [folder / name for name in files]
+
+
+def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Contents of all files, by their paths in the directory."""
+    # Here, as matplotlib takes longer to import than all else to be written.
+    from vbraille.pictures.drawcharts import draw_chart
+    from vbraille.pictures.figures import to_bytes
+
+    drawn: dict[str, bytes] = {}
+    pictures: dict[str, bytes] = {}
+    for picture in results.pictures():
+        figure = draw_chart(picture.chart)
+        pictures[picture.name] = to_bytes(figure, "svg")
+        drawn[picture_name(picture, "svg")] = pictures[picture.name]
+        drawn[picture_name(picture, "png")] = to_bytes(figure, "png", _DPI)
+    return {
+        PAGE: encode(to_html(results, pictures, (TEXT, NUMBERS, *extra))),
+        TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *extra))),
+        NUMBERS: encode(to_json(results)),
+        **extra,
+        **{csv_name(table): encode(table.to_csv()) for table in results.tables()},
+        **drawn,
+    }

@@ -1,0 +1,85 @@
+"""What the page and the text have in common: which rows they show, in which words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.analysis.tables import NOTE, Kind, to_print
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.analysis.results import Picture
+    from vbraille.analysis.tables import Table, Value
+
+ROWS = 60  # of a table that a report shows: more are heard by nobody, and its CSV has all
+WARNINGS = "Read this first"
+CONTENTS = "Contents"
+UNKNOWN = "What cannot be said here"
+NO_ROWS = "This table has no rows."
+FILES = "Files beside this report"
+
+
+def rows(table: Table) -> Sequence[tuple[Value, ...]]:
+    """Rows that are shown."""
+    return table.rows[:ROWS]
+
+
+def caption(table: Table) -> str:
+    """Title of a table, and how many rows it has."""
+    return f"{table.title}: {_count(table)}"
+
+
+def numbers(table: Table) -> str:
+    """Where all of a table is, before the name of its file."""
+    if len(table.rows) > ROWS:
+        return f"Shown are {_count(table)}. All rows, in full precision:"
+    return "In full precision:"
+
+
+def marking(table: Table) -> str:
+    """How errors of a confusion matrix are marked; empty if none are."""
+    if not table.marks:
+        return ""
+    above = " and ".join(f"above {mark}" for mark in table.marks)
+    return f"Marked are counts of wrong answers {above}."
+
+
+def heads(table: Table) -> int:
+    """How many of the first columns head a row: the fewest of words that tell the rows apart."""
+    words = 1
+    while words < len(table.columns) and table.columns[words].kind is Kind.TEXT:
+        if table.columns[words].name == NOTE or _tell_apart(table, words):
+            break
+        words += 1
+    return words
+
+
+def values(table: Table, row: Sequence[Value]) -> list[str]:
+    """Texts of a row, a missing value in words."""
+    return [to_print(value, column.kind) for value, column in zip(row, table.columns, strict=True)]
+
+
+def alternative(picture: Picture) -> str:
+    """What stands for a picture, next to its text."""
+    return f"Figure: {picture.title}. What it shows is told beside it."
+
+
+def csv_name(table: Table) -> str:
+    """Path of a table's file in the report's directory."""
+    return f"tables/{table.name}.csv"
+
+
+def picture_name(picture: Picture, kind: str) -> str:
+    """Path of a picture's file in the report's directory."""
+    return f"figures/{picture.name}.{kind}"
+
+
+def _tell_apart(table: Table, columns: int) -> bool:
+    return len({row[:columns] for row in table.rows}) == len(table.rows)
+
+
+def _count(table: Table) -> str:
+    if len(table.rows) > ROWS:
+        return f"the first {ROWS} of {len(table.rows)} rows"
+    return "1 row" if len(table.rows) == 1 else f"{len(table.rows)} rows"

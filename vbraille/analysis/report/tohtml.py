@@ -1,0 +1,230 @@
+"""Results as one page that needs nothing else: no script, no network.
+
+A screen reader comes first: headings in their order, tables whose cells are headed, and
+beside each figure what is to be seen in it. Elements are built as a tree, whose text
+the standard library escapes.
+"""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+from xml.etree import ElementTree
+
+from vbraille.analysis.report import shown
+from vbraille.analysis.tables import Kind
+from vbraille.pictures.words import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from vbraille.analysis.results import Picture, Results, Section
+    from vbraille.analysis.tables import Table, Value
+
+Element = ElementTree.Element
+_INLINE = {"a", "span", "strong"}  # after all others the source has a new line
+_WIDE = 6  # columns; a table of more can be scrolled with the keyboard
+# Nothing is fetched, whatever a name in the data should be.
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'"
+_STYLE = """
+:root { color-scheme: light dark; --ink: #111; --paper: #fff; --line: #767676; --shade: #e2e2e2;
+  --faint: #595959; --link: #00408f; }
+@media (prefers-color-scheme: dark) { :root { --ink: #eee; --paper: #161616; --line: #8c8c8c;
+  --shade: #3a3a3a; --faint: #a8a8a8; --link: #9ec5ff; } }
+body { color: var(--ink); background: var(--paper); font: 1rem/1.5 sans-serif; margin: 0 auto;
+  max-width: 80rem; padding: 1rem; }
+p, li, dd, figcaption { max-width: 45rem; }
+a { color: var(--link); }
+dt { font-weight: bold; }
+.skip { position: absolute; left: -100rem; }
+.skip:focus { position: static; }
+.hidden { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%);
+  white-space: nowrap; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+caption { text-align: left; padding: 0.3rem 0; }
+th, td { border: 1px solid var(--line); padding: 0.2rem 0.5rem; text-align: left;
+  vertical-align: top; }
+thead th { vertical-align: bottom; }
+.number { text-align: right; }
+.zero { color: var(--faint); }
+.right { background: var(--shade); }
+.marked { outline: 1px solid var(--ink); outline-offset: -3px; }
+.most { outline-width: 3px; outline-offset: -4px; }
+figure { margin: 1rem 0; }
+img { max-width: 100%; height: auto; background: #fff; }
+@media print { nav, .skip { display: none; } body { max-width: none; padding: 0; }
+  figure, tr { break-inside: avoid; } .wide { overflow: visible; } }
+"""
+
+
+def to_html(results: Results, figures: Mapping[str, bytes], beside: Sequence[str] = ()) -> str:
+    """Page of the results.
+
+    Parameters
+    ----------
+    figures
+        SVG of each picture, by its name.
+    beside
+        Names of other files in the report's directory, which the page links to.
+    """
+    titles = {table.name: table.title for table in results.tables()}
+    main = _e("main", id="results", tabindex="-1")
+    for number, section in enumerate(results.sections, 1):
+        main.append(_section(section, number, titles, figures))
+    if beside:
+        main.append(_e("h2", shown.FILES, id="files"))
+        main.append(_list(_e("li", _link(name)) for name in beside))
+    style = _e("style")
+    style.text = _STYLE
+    page = _e(
+        "html",
+        _e(
+            "head",
+            _e("meta", charset="utf-8"),
+            _e("meta", http_equiv="Content-Security-Policy", content=_POLICY),
+            _e("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            _e("title", results.title),
+            style,
+        ),
+        _e(
+            "body",
+            _e("a", "Skip to the results", href="#results", class_="skip"),
+            _header(results),
+            _contents(results),
+            main,
+        ),
+        lang="en",
+    )
+    return "<!DOCTYPE html>\n" + ElementTree.tostring(page, encoding="unicode", method="html")
+
+
+def _header(results: Results) -> Element:
+    about = _e("dl")
+    for word, what in results.about:
+        about.extend([_e("dt", word), _e("dd", what)])
+    header = _e("header", _e("h1", results.title), about)
+    if results.warnings:
+        header.append(_e("h2", shown.WARNINGS, id="warnings"))
+        header.append(_list(_e("li", warning) for warning in results.warnings))
+    return header
+
+
+def _contents(results: Results) -> Element:
+    items = []
+    for number, section in enumerate(results.sections, 1):
+        inner = [(f"#table-{table.name}", table.title) for table in section.tables]
+        inner += [(f"#figure-{each.name}", f"Figure: {each.title}") for each in section.pictures]
+        links = _list(_e("li", _e("a", title, href=to)) for to, title in inner)
+        items.append(_e("li", _e("a", section.title, href=f"#section-{number}"), links))
+    return _e("nav", _e("h2", shown.CONTENTS), _list(items), aria_label=shown.CONTENTS)
+
+
+def _section(
+    section: Section, number: int, titles: Mapping[str, str], figures: Mapping[str, bytes]
+) -> Element:
+    made = _e("section", _e("h2", section.title, id=f"section-{number}"), _e("p", section.text))
+    for table in section.tables:
+        made.extend(_table(table))
+    for picture in section.pictures:
+        made.append(_figure(picture, titles[picture.table], figures[picture.name]))
+    return made
+
+
+def _table(table: Table) -> Iterator[Element]:
+    yield _e("h3", table.title, id=f"table-{table.name}")
+    for text in filter(None, (table.about, shown.marking(table))):
+        yield _e("p", text)
+    if table.rows:
+        heads = shown.heads(table)
+        names = _e("tr")
+        for column in table.columns:
+            names.append(_e("th", column.heading, scope="col", class_=_side(column.kind)))
+        body = _e("tbody")
+        for row in shown.rows(table):
+            body.append(_row(table, row, heads))
+        made = _e("table", _e("caption", shown.caption(table)), _e("thead", names), body)
+        if len(table.columns) > _WIDE:
+            about = f"table-{table.name}"
+            made = _e("div", made, class_="wide", tabindex="0", role="group", aria_labelledby=about)
+        yield made
+    else:
+        yield _e("p", shown.NO_ROWS)
+    if table.notes:
+        yield _e("p", f"{shown.UNKNOWN}:")
+        yield _list(_e("li", note) for note in table.notes)
+    yield _e("p", f"{shown.numbers(table)} ", _link(shown.csv_name(table)))
+
+
+def _row(table: Table, row: tuple[Value, ...], heads: int) -> Element:
+    made = _e("tr")
+    for at, (text, column) in enumerate(zip(shown.values(table, row), table.columns, strict=True)):
+        if at < heads:
+            made.append(_e("th", text or "(empty)", scope="row", class_=_side(column.kind)))
+            continue
+        looks = [_side(column.kind)]
+        content: list[Element | str] = [text]
+        if (mark := table.mark(row, at)) is not None:
+            looks.append("marked most" if mark == table.marks[-1] else "marked")
+            content = [_e("strong", text), _e("span", f" above {mark}", class_="hidden")]
+        elif table.is_right(row, at):
+            looks.append("right")
+        elif table.marks and row[at] == 0:
+            looks.append("zero")
+        made.append(_e("td", *content, class_=" ".join(filter(None, looks))))
+    return made
+
+
+def _figure(picture: Picture, title: str, svg: bytes) -> Element:
+    source = f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
+    return _e(
+        "figure",
+        _e("h3", f"Figure: {picture.title}"),
+        _e("img", src=source, alt=shown.alternative(picture)),
+        _e(
+            "figcaption",
+            _e("p", picture.text),
+            _e(
+                "p",
+                "Its numbers: ",
+                _e("a", f"table “{title}”", href=f"#table-{picture.table}"),
+                ". The figure: ",
+                _link(shown.picture_name(picture, "svg")),
+                ", ",
+                _link(shown.picture_name(picture, "png")),
+                ".",
+            ),
+        ),
+        id=f"figure-{picture.name}",
+    )
+
+
+def _side(kind: Kind) -> str:
+    return "" if kind is Kind.TEXT else "number"
+
+
+def _link(name: str) -> Element:
+    return _e("a", name, href=quote(name))
+
+
+def _list(items: Iterable[Element]) -> Element:
+    return _e("ul", *items)
+
+
+def _e(tag: str, *content: Element | str, **attributes: str) -> Element:
+    """Element with text and elements in it; attributes that are empty are left out."""
+    made = Element(tag)
+    for name, value in attributes.items():
+        if value:
+            made.set(name.rstrip("_").replace("_", "-"), plain(value))
+    for part in content:
+        if isinstance(part, Element):
+            made.append(part)
+        elif len(made):
+            made[-1].tail = (made[-1].tail or "") + plain(part)
+        else:
+            made.text = (made.text or "") + plain(part)
+    if tag not in _INLINE:
+        made.tail = "\n"
+    return made

@@ -1,0 +1,57 @@
+"""Results one line a thing, for a terminal that speaks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.analysis.report.shown import ROWS
+from vbraille.analysis.tables import NOTE, to_print
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.analysis.results import Results
+    from vbraille.analysis.tables import Column, Table, Value
+
+_UNIT = " (%)"
+
+
+def to_lines(results: Results) -> Iterator[str]:
+    """Lines of text: a heading or a row each.
+
+    A row says its first columns as they are, the others with their headings. Tables of over
+    `ROWS` rows are counted, not told; so is what each number means, which the report has.
+    """
+    yield results.title
+    for word, sentence in results.about:
+        yield f"{word}: {sentence}"
+    for warning in results.warnings:
+        yield f"warning: {warning}"
+    for section in results.sections:
+        for table in section.tables:
+            yield f"table {table.name}: {table.title}"
+            yield from _rows(table)
+            for note in table.notes:
+                yield f"note: {note}"
+
+
+def _rows(table: Table) -> Iterator[str]:
+    if len(table.rows) > ROWS:
+        yield f"{len(table.rows)} rows; --out writes them"
+        return
+    for row in table.rows:
+        said = (
+            _said(column, value)
+            for column, value in zip(table.columns, row, strict=True)
+            if value is not None and value != "" and not (table.marks and value == 0)
+        )
+        yield "; ".join(said)
+
+
+def _said(column: Column, value: Value) -> str:
+    text = to_print(value, column.kind)
+    if column.name == NOTE:
+        return text
+    if column.heading.endswith(_UNIT):
+        return f"{column.heading.removesuffix(_UNIT)} {text} %"
+    return f"{column.heading} {text}"

@@ -1,0 +1,95 @@
+"""Results as a Markdown text, with tables as GitHub and Pandoc read them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from vbraille.analysis.report import shown
+from vbraille.analysis.tables import Kind
+from vbraille.pictures.words import plain
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from vbraille.analysis.results import Picture, Results
+    from vbraille.analysis.tables import Table, Value
+
+# What Markdown does something with: anywhere, in an address, at the beginning of a line.
+_ACTIVE = re.compile(r"[\\`*_{}\[\]<>|~$&]|(?<=:)//|(?<=www)\.|^[#+=-]")
+_NUMBERED = re.compile(r"^(\d+)(?=[.)](?: |$))")  # a list begins so
+
+
+def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
+    """Text of the results, paragraphs apart by an empty line.
+
+    Parameters
+    ----------
+    beside
+        Names of other files in the report's directory.
+    """
+    titles = {table.name: table.title for table in results.tables()}
+    parts = [f"# {escape(results.title)}"]
+    parts.append(_items(f"**{escape(word)}**: {escape(what)}" for word, what in results.about))
+    if results.warnings:
+        parts += [f"## {shown.WARNINGS}", _items(map(escape, results.warnings))]
+    for section in results.sections:
+        parts += [f"## {escape(section.title)}", escape(section.text)]
+        for table in section.tables:
+            parts += _table(table)
+        for picture in section.pictures:
+            parts += _picture(picture, titles[picture.table])
+    if beside:
+        parts += [f"## {shown.FILES}", _items(map(_link, beside))]
+    return "\n\n".join(filter(None, parts)) + "\n"
+
+
+def escape(text: str) -> str:
+    """Text that Markdown leaves as it is, on one line."""
+    escaped = _ACTIVE.sub(lambda found: f"\\{found[0]}", plain(text).strip())
+    return _NUMBERED.sub(r"\1\\", escaped)
+
+
+def _table(table: Table) -> Iterator[str]:
+    yield f"### {escape(table.title)}"
+    yield escape(table.about)
+    yield escape(shown.marking(table))
+    if table.rows:
+        sides = ["---" if column.kind is Kind.TEXT else "---:" for column in table.columns]
+        lines = [[escape(column.heading) for column in table.columns], sides]
+        lines += [_row(table, row) for row in shown.rows(table)]
+        yield "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    else:
+        yield shown.NO_ROWS
+    if table.notes:
+        yield f"{shown.UNKNOWN}:"
+        yield _items(map(escape, table.notes))
+    yield f"{shown.numbers(table)} {_link(shown.csv_name(table))}"
+
+
+def _row(table: Table, row: tuple[Value, ...]) -> list[str]:
+    texts = [escape(text) for text in shown.values(table, row)]
+    for at, text in enumerate(texts):
+        if (mark := table.mark(row, at)) is not None:
+            texts[at] = f"**{text}** (\\> {mark})"
+    return texts
+
+
+def _picture(picture: Picture, title: str) -> Iterator[str]:
+    yield f"### Figure: {escape(picture.title)}"
+    yield f"![{escape(shown.alternative(picture))}]({quote(shown.picture_name(picture, 'svg'))})"
+    yield escape(picture.text)
+    yield (
+        f"Its numbers: [{escape(title)}]({quote(f'tables/{picture.table}.csv')}). "
+        f"The figure: {_link(shown.picture_name(picture, 'svg'))}, "
+        f"{_link(shown.picture_name(picture, 'png'))}."
+    )
+
+
+def _items(texts: Iterable[str]) -> str:
+    return "\n".join(f"- {text}" for text in texts)
+
+
+def _link(name: str) -> str:
+    return f"[{escape(name)}]({quote(name)})"

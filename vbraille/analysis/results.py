@@ -1,0 +1,89 @@
+"""What an analysis has found, in the order in which a report tells it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.analysis.tables import Table
+    from vbraille.pictures.charts import Chart
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure of the report.
+
+    Parameters
+    ----------
+    name
+        Of its files: "legibility".
+    title
+        What it shows, in a line.
+    text
+        What is to be seen in it, in sentences, for who does not see it.
+    table
+        Name of the table that has its numbers.
+    chart
+        What is drawn.
+    """
+
+    name: str
+    title: str
+    text: str
+    table: str
+    chart: Chart
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of the report.
+
+    Parameters
+    ----------
+    title
+        Its heading.
+    text
+        What it is about: a sentence or two.
+    tables, pictures
+        In the order in which they are shown: a picture stands after the tables.
+    """
+
+    title: str
+    text: str
+    tables: tuple[Table, ...]
+    pictures: tuple[Picture, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """All that is reported.
+
+    Parameters
+    ----------
+    title
+        Of the report.
+    about
+        What was analysed, as pairs of a word and a sentence: data, sessions, versions, rules.
+    warnings
+        What the reader must know before all numbers: damage, what is simulated.
+    sections
+        In their order.
+    """
+
+    title: str
+    about: tuple[tuple[str, str], ...]
+    warnings: tuple[str, ...]
+    sections: tuple[Section, ...]
+
+    def tables(self) -> Iterator[Table]:
+        """All tables, in the order of the report."""
+        for section in self.sections:
+            yield from section.tables
+
+    def pictures(self) -> Iterator[Picture]:
+        """All pictures, in the order of the report."""
+        for section in self.sections:
+            yield from section.pictures

@@ -1,0 +1,14 @@
+"""What is worked out of legibility sessions: intervals, tests, scales, information.
+
+`unanswerable`
+    The error of a question that the scores cannot answer.
+`intervals`, `paired`, `correction`, `anova`
+    Proportions and means with their intervals; tests between conditions.
+`bradleyterry`
+    Scales and preferred values of paired comparisons.
+`information`
+    How much of what was presented came through, from a table of answers.
+
+Nothing is re-exported here: statsmodels takes over a second to import, and
+`information` needs numpy only.
+"""

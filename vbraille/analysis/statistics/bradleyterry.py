@@ -1,0 +1,297 @@
+"""Paired comparisons: a scale of the values, the preferred one, the side that was favoured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.stats import binomtest
+
+from vbraille.analysis.statistics.firth import connected, fit
+from vbraille.analysis.statistics.intervals import Interval, wilson
+from vbraille.analysis.statistics.scores import check_level, finite_scores
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+# Fewer participants than this say little of how participants differ.
+FEWEST_PARTICIPANTS = 5
+SAME = 1e-8
+"""Strengths that differ by less are equal; the fit goes on until steps are far below it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scale:
+    """Bradley and Terry's scale: value i is chosen over j with odds exp(s_i - s_j) to 1.
+
+    Parameters
+    ----------
+    strengths : float64[k]
+        Natural logarithms, of sum 0; bias-reduced (Firth 1993), see `bradley_terry`.
+    errors : float64[k]
+        Their standard errors.
+    covariance : float64[k, k]
+        Of the strengths. That of s_i - s_j is c_ii + c_jj - 2 c_ij.
+    comparisons
+        How many the scale comes from.
+    """
+
+    strengths: NDArray[np.float64]
+    errors: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    comparisons: int
+
+    def __post_init__(self) -> None:
+        k = len(self.strengths)
+        if self.errors.shape != (k,) or self.covariance.shape != (k, k):
+            raise ValueError(f"errors or covariance are not those of {k} strengths")
+        if not np.isfinite(self.strengths).all() or abs(self.strengths.sum()) > 1e-6:
+            raise ValueError(f"strengths {self.strengths} are not finite and of sum 0")
+
+
+@dataclass(frozen=True, slots=True)
+class Preference:
+    """The value that is liked best.
+
+    Parameters
+    ----------
+    value, interval
+        In the unit of the values, mm.
+    how
+        What the interval comes from, a clause for a report.
+    """
+
+    value: float
+    interval: Interval
+    how: str
+
+
+class PositionBias(NamedTuple):
+    """How often the first of a pair was chosen: its share, Wilson's interval, exact p."""
+
+    share_first: float
+    interval: Interval
+    p: float
+
+
+def bradley_terry(wins: ArrayLike) -> Scale:
+    """Scale of values that were compared in pairs (Bradley and Terry 1952).
+
+    The likelihood is fitted with Jeffreys' prior as a penalty (Firth 1993), which takes
+    away the first-order bias of the strengths and keeps them finite when a value
+    is always or never chosen (Kosmidis and Firth 2021); it is the `br` of R's
+    BradleyTerry2 (Turner and Firth 2012). With many comparisons it is the plain
+    maximum-likelihood scale.
+
+    Parameters
+    ----------
+    wins : int[k, k]
+        wins[i, j] is how often value i was chosen over value j; the diagonal is 0.
+
+    Raises
+    ------
+    Unanswerable
+        If there are no comparisons, or they fall into groups of values that were
+        never compared with each other.
+    ValueError
+        If these are no counts of pairs.
+    """
+    table = np.asarray(wins)
+    if table.ndim != 2 or table.shape[0] != table.shape[1]:
+        raise ValueError(f"wins of shape {table.shape}; a square is needed")
+    if table.size and not np.issubdtype(table.dtype, np.integer):
+        raise ValueError(f"wins are {table.dtype}, not integers")
+    if (table < 0).any() or np.diag(table).any():
+        raise ValueError("wins must be 0 or more, and 0 of a value over itself")
+    if table.sum() == 0:
+        raise Unanswerable("no comparisons")
+    counts = table.astype(np.float64)[None]
+    if not connected(counts)[0]:
+        raise Unanswerable(
+            "some values were never compared with the others, even by way of a third"
+        )
+    strengths, covariance = fit(counts)
+    errors = np.sqrt(np.diag(covariance[0]))
+    return Scale(strengths[0], errors, covariance[0], int(table.sum()))
+
+
+def preferred(
+    values_mm: Sequence[float] | NDArray[np.float64],
+    first: ArrayLike,
+    second: ArrayLike,
+    chosen: ArrayLike,
+    groups: ArrayLike,
+    *,
+    seed: int,
+    resamples: int = 2000,
+    level: float = 0.95,
+) -> Preference:
+    """Preferred value: the vertex of a parabola through the top of the scale.
+
+    The parabola goes through the highest strength and its two neighbours among the
+    ordered values, so that two neighbours chosen equally often give the value
+    between them; at an end it is the end. The interval is the percentile
+    bootstrap (Efron and Tibshirani 1993, ch. 13) over participants if there are five,
+    else over each participant's own comparisons, which says nothing of how
+    other participants would choose.
+
+    Parameters
+    ----------
+    values_mm : float[k]
+        What was compared, in any order, no value twice.
+    first, second : int[n]
+        Which value came first and which second, 0…k - 1.
+    chosen : int[n]
+        0 if the first was chosen, 1 if the second.
+    groups : int[n]
+        Whose comparison each is.
+    seed
+        Of the resampling: the same seed, the same interval.
+    resamples
+        How many. Those that leave some values uncompared are left out, and `how`
+        says how many.
+    level
+        Confidence.
+
+    Raises
+    ------
+    Unanswerable
+        If there are no comparisons, `bradley_terry` cannot make a scale of them,
+        all values are as strong, or more than half of the resamples leave some
+        values uncompared.
+    ValueError
+        If the columns are not those of comparisons of these values.
+    """
+    check_level(level)
+    if resamples < 1:
+        raise ValueError(f"{resamples} resamples; one at least is needed")
+    values = finite_scores("values_mm", values_mm)
+    if np.unique(values).size != values.size:
+        raise ValueError(f"a value occurs twice in {values.tolist()}")
+    wins = _wins_of_each(values.size, first, second, chosen, groups)
+    order = np.argsort(values)
+    values, wins = values[order], wins[:, order][:, :, order]
+    scale = bradley_terry(wins.sum(axis=0))
+    if np.ptp(scale.strengths) <= SAME:
+        raise Unanswerable("all values were chosen equally often; none is preferred")
+    rng = np.random.default_rng(seed)
+    drawn = _resampled(wins, resamples, rng)
+    usable = connected(drawn)
+    if usable.mean() < 0.5:
+        raise Unanswerable("too few comparisons; most resamples leave some values uncompared")
+    peaks = _peaks(values, fit(drawn[usable])[0])
+    tail = (1 - level) / 2
+    low, high = np.quantile(peaks, [tail, 1 - tail])
+    left_out = resamples - int(usable.sum())
+    return Preference(
+        float(_peaks(values, scale.strengths[None])[0]),
+        Interval(float(low), float(high), level),
+        _how(len(wins), left_out, resamples),
+    )
+
+
+def position_bias(chosen: ArrayLike) -> PositionBias:
+    """Whether the first of two is chosen more or less often than the second.
+
+    Parameters
+    ----------
+    chosen : int[n]
+        0 if the first was chosen, 1 if the second.
+
+    Returns
+    -------
+    PositionBias
+        Share of the first, 0…1; its interval; p of the exact binomial test against a half.
+
+    Raises
+    ------
+    Unanswerable
+        If there are no comparisons.
+    ValueError
+        If a choice is neither 0 nor 1.
+    """
+    choice = _column("chosen", chosen, 2)
+    n = choice.size
+    if n == 0:
+        raise Unanswerable("no comparisons")
+    firsts = int((choice == 0).sum())
+    return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+
+
+def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
+    """A column of whole numbers in 0…count - 1."""
+    whole = np.asarray(column)
+    if whole.ndim != 1 or (whole.size and whole.dtype.kind not in "iub"):
+        raise ValueError(f"{name} must be one column of whole numbers")
+    if whole.size and not 0 <= whole.min() <= whole.max() < count:
+        raise ValueError(f"{name} must be in 0…{count - 1}")
+    return whole.astype(np.int64)
+
+
+def _wins_of_each(
+    k: int, first: ArrayLike, second: ArrayLike, chosen: ArrayLike, groups: ArrayLike
+) -> NDArray[np.int64]:
+    """How often each participant chose one value over another, int64[participants, k, k]."""
+    one, two = _column("first", first, k), _column("second", second, k)
+    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
+    if not one.shape == two.shape == choice.shape == who.shape:
+        raise ValueError("first, second, chosen and groups must be of one length")
+    if (one == two).any():
+        raise ValueError("a value was compared with itself")
+    names, index = np.unique(who, return_inverse=True)
+    wins = np.zeros((len(names), k, k), dtype=np.int64)
+    np.add.at(wins, (index, np.where(choice, two, one), np.where(choice, one, two)), 1)
+    return wins
+
+
+def _resampled(
+    wins: NDArray[np.int64], resamples: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Wins of as many made-up studies, float64[resamples, k, k]."""
+    people, k, _ = wins.shape
+    if people >= FEWEST_PARTICIPANTS:
+        times = rng.multinomial(people, np.full(people, 1 / people), size=resamples)
+        return np.tensordot(times, wins, axes=1).astype(np.float64)
+    # Comparisons drawn with replacement are multinomial counts of their outcomes.
+    flat = wins.reshape(people, -1)
+    drawn = sum(rng.multinomial(int(w.sum()), w / w.sum(), size=resamples) for w in flat)
+    return np.reshape(drawn, (resamples, k, k)).astype(np.float64)
+
+
+def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where each scale is highest, float64[r] of float64[k] ascending and float64[r, k]."""
+    k = values.size
+    level = strengths >= strengths.max(axis=1, keepdims=True) - SAME
+    # Of equals an inner one, so that the parabola sees both.
+    inner = np.r_[0, np.ones(max(0, k - 2), dtype=int), 0][:k]
+    top = np.argmax(level * (1 + inner), axis=1)
+    at_end = (top == 0) | (top == k - 1)
+    middle = np.where(at_end, 1, top) if k > 2 else top
+    if k <= 2:
+        return values[top]
+    rows = np.arange(len(strengths))
+    left, mid, right = (values[middle + i] for i in (-1, 0, 1))
+    down_left, down_right = (strengths[rows, middle] - strengths[rows, middle + i] for i in (-1, 1))
+    # Newton's divided differences: slopes of the two chords, and the bend between them.
+    slope_left, slope_right = down_left / (mid - left), -down_right / (right - mid)
+    bend = slope_left - slope_right
+    flat = np.abs(down_left) + np.abs(down_right) <= 2 * SAME
+    share = slope_left / np.where(flat | at_end, 1, bend)
+    vertex = (left + mid) / 2 + share * (right - left) / 2
+    return np.where(at_end, values[top], np.where(flat, mid, vertex))
+
+
+def _how(people: int, left_out: int, resamples: int) -> str:
+    """What an interval comes from."""
+    if people >= FEWEST_PARTICIPANTS:
+        over = f"bootstrap over {people} participants"
+    elif people == 1:
+        over = "bootstrap over the comparisons of one participant"
+    else:
+        over = f"bootstrap over the comparisons within {people} participants, too few to resample"
+    rest = f", without {left_out} of {resamples} resamples that left some values uncompared"
+    return over + (rest if left_out else "")

@@ -1,0 +1,60 @@
+"""Several tests at once: p-values adjusted for their number."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from statsmodels.stats.multitest import multipletests
+
+from vbraille.analysis.statistics.scores import finite_scores
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+METHODS: Mapping[str, str] = MappingProxyType(
+    {
+        "none": "no correction",
+        "bonferroni": "Bonferroni's correction",
+        "holm": "Holm's step-down",
+        "fdr": "Benjamini and Hochberg's false discovery rate",
+    }
+)
+"""What may be asked for, with the title of each."""
+
+_STATSMODELS = {"bonferroni": "bonferroni", "holm": "holm", "fdr": "fdr_bh"}
+
+
+def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDArray[np.float64]:
+    """Adjusted p-values, to be held against the level one would hold a single one against.
+
+    Holm 1979; Benjamini and Hochberg 1995; by statsmodels.
+
+    Parameters
+    ----------
+    p_values : float[n], 0…1
+        Of the tests that belong together; there may be none.
+    method
+        A key of `METHODS`.
+
+    Returns
+    -------
+    float64[n], 0…1
+        In the order given.
+
+    Raises
+    ------
+    ValueError
+        If the method is not known, or a p-value is outside 0…1.
+    """
+    if method not in METHODS:
+        raise ValueError(f"no correction {method!r}; there are {', '.join(METHODS)}")
+    p = finite_scores("p-values", p_values)
+    if ((p < 0) | (p > 1)).any():
+        raise ValueError(f"p-values {p.tolist()} are not all in 0…1")
+    if method == "none" or p.size == 0:
+        return p.copy()
+    return np.asarray(multipletests(p, method=_STATSMODELS[method])[1], dtype=np.float64)

@@ -1,0 +1,133 @@
+"""Two conditions of the same participants: the paired t-test."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import gammaln
+from scipy.stats import ttest_rel
+
+from vbraille.analysis.statistics.scores import check_level, finite_scores
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+# Differences that vary by less than this share of the scores vary by rounding only.
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class PairedTest:
+    """A paired t-test, first condition minus second.
+
+    Parameters
+    ----------
+    n
+        Participants.
+    mean_difference, low, high
+        Mean of the differences and its confidence interval, in the unit of the scores.
+    level
+        Confidence of the interval.
+    sd
+        Standard deviation of the differences (n - 1 in the denominator).
+    t, df, p
+        Student's t, its degrees of freedom, the two-sided p.
+    d_z
+        Cohen's d of the differences, mean / sd (Cohen 1988, 2.3.5).
+    g_z
+        `d_z` with Hedges' correction for few participants; None for two
+        participants, where the correction leaves nothing of it.
+    """
+
+    n: int
+    mean_difference: float
+    low: float
+    high: float
+    level: float
+    sd: float
+    t: float
+    df: int
+    p: float
+    d_z: float
+    g_z: float | None
+
+    def __post_init__(self) -> None:
+        if self.n < 2 or self.df != self.n - 1:
+            raise ValueError(f"{self.df} degrees of freedom of {self.n} participants")
+        if not self.sd > 0:
+            raise ValueError(f"sd {self.sd} is not above 0")
+        if not 0 <= self.p <= 1:
+            raise ValueError(f"p {self.p} is not in 0…1")
+
+
+def hedges_correction(df: int) -> float:
+    """Factor that makes a standardised mean difference unbiased, below 1.
+
+    J = Γ(df/2) / (√(df/2) · Γ((df - 1)/2)), Hedges 1981, equation 6e: the exact
+    one, not 1 - 3/(4 df - 1).
+
+    Raises
+    ------
+    ValueError
+        If `df` is below 2.
+    """
+    if df < 2:
+        raise ValueError(f"{df} degrees of freedom; the correction needs two")
+    return math.exp(float(gammaln(df / 2) - gammaln((df - 1) / 2)) - math.log(df / 2) / 2)
+
+
+def paired_t(
+    first: Sequence[float] | NDArray[np.float64],
+    second: Sequence[float] | NDArray[np.float64],
+    level: float = 0.95,
+) -> PairedTest:
+    """Student's t-test of the differences between two conditions.
+
+    Parameters
+    ----------
+    first, second : float[n]
+        Scores of the same participants, in the same order and unit.
+    level
+        Confidence of the interval.
+
+    Raises
+    ------
+    Unanswerable
+        If there are fewer than two participants, or all differences are the same.
+    ValueError
+        If the two are not of one length, or a score is not finite.
+    """
+    check_level(level)
+    one, two = finite_scores("first scores", first), finite_scores("second scores", second)
+    if one.size != two.size:
+        raise ValueError(f"{one.size} first scores and {two.size} second ones")
+    n = one.size
+    if n < 2:
+        raise Unanswerable(f"{'one participant' if n else 'no participants'}; a t-test needs two")
+    differences = one - two
+    sd = float(np.std(differences, ddof=1))
+    largest = float(max(np.abs(one).max(), np.abs(two).max()))
+    if sd == 0 or np.ptp(differences) <= ROUNDING * largest:
+        raise Unanswerable("all differences are the same; t has no value")
+    test = ttest_rel(one, two)
+    interval = test.confidence_interval(level)
+    mean = float(differences.mean())
+    return PairedTest(
+        n=n,
+        mean_difference=mean,
+        low=float(interval.low),
+        high=float(interval.high),
+        level=level,
+        sd=sd,
+        t=float(test.statistic),
+        df=n - 1,
+        p=float(test.pvalue),
+        d_z=mean / sd,
+        g_z=hedges_correction(n - 1) * mean / sd if n > 2 else None,
+    )

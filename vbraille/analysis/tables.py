@@ -1,0 +1,220 @@
+"""Tables of results: one description for the CSV, the JSON, the report and the document."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+from decimal import MAX_PREC, ROUND_HALF_UP, Context, Decimal
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+Value = str | int | float | None
+Row = dict[str, Any]  # a row's values, by the columns' names
+NOTE = "note"
+_DIGITS = 12  # more than a measurement has, fewer than rounding in binary spoils
+
+
+class Kind(Enum):
+    """How a column's values are printed; its CSV and JSON have them in full.
+
+    The value is the number of decimals, after the factor of `_FACTORS`.
+    """
+
+    TEXT = "text"
+    COUNT = "count"
+    PERCENT = "percent"
+    SECONDS = "seconds"
+    NUMBER = "number"
+    SPEED = "speed"
+    P = "p"
+
+
+_FACTORS = {Kind.PERCENT: 100}
+_DECIMALS = {
+    Kind.PERCENT: 1,
+    Kind.SECONDS: 1,
+    Kind.SPEED: 1,
+    Kind.NUMBER: 3,
+    Kind.P: 3,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column.
+
+    Parameters
+    ----------
+    name
+        In CSV and JSON, with the unit: "duration_s".
+    heading
+        In the report, with the unit that is printed: "legibility (%)".
+    meaning
+        What it holds, for the document.
+    kind
+        How its values are printed.
+    """
+
+    name: str
+    heading: str
+    meaning: str
+    kind: Kind = Kind.TEXT
+
+
+# Where a value may be missing: why it is.
+NOTE_COLUMN = Column(NOTE, "note", "why a value is missing, or what to know of the row")
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of one kind.
+
+    Parameters
+    ----------
+    name
+        Of its CSV file and its key in the JSON: "legibility".
+    title
+        What it shows, in a line.
+    about
+        How its numbers were found, in sentences.
+    columns
+        In their order.
+    rows
+        Values in the columns' order; numbers are finite, and None is a value that is not known.
+    notes
+        What cannot be said, with the reason; for a table without rows at least one.
+    marks
+        Of a confusion matrix, in ascending order: errors above each are marked in the report.
+        All columns of counts are answers then, but for the first column, what was presented.
+
+    Raises
+    ------
+    ValueError
+        If a row has another length, a number that is not finite or a missing value without
+        a word, or a table has neither rows nor notes.
+    """
+
+    name: str
+    title: str
+    about: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Value, ...], ...]
+    notes: tuple[str, ...] = ()
+    marks: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.rows and not self.notes:
+            raise ValueError(f"table {self.name} has no rows, and no note that says why")
+        noted = self.names.index(NOTE) if NOTE in self.names else None
+        for row in self.rows:
+            if len(row) != len(self.columns):
+                raise ValueError(f"table {self.name}: {row} has not {len(self.columns)} values")
+            if any(isinstance(value, float) and not math.isfinite(value) for value in row):
+                raise ValueError(f"table {self.name}: {row} has a number that is not finite")
+            if None in row and (noted is None or not row[noted]):
+                raise ValueError(f"table {self.name}: {row} misses a value without a word")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the columns."""
+        return tuple(column.name for column in self.columns)
+
+    def column(self, name: str) -> list[Value]:
+        """Values of a column."""
+        at = self.names.index(name)
+        return [row[at] for row in self.rows]
+
+    def records(self) -> list[Row]:
+        """Row by row, by the columns' names."""
+        return [dict(zip(self.names, row, strict=True)) for row in self.rows]
+
+    def is_right(self, row: Sequence[Value], at: int) -> bool:
+        """Whether a column of a confusion matrix has a row's right answers."""
+        return bool(self.marks) and at > 0 and self.columns[at].heading == row[0]
+
+    def mark(self, row: Sequence[Value], at: int) -> int | None:
+        """Largest of `marks` that a row's count of a wrong answer is above; None if none is."""
+        count = row[at]
+        answers = at > 0 and self.columns[at].kind is Kind.COUNT and not self.is_right(row, at)
+        if not answers or not isinstance(count, int):
+            return None
+        return max((mark for mark in self.marks if count > mark), default=None)
+
+    def to_csv(self) -> str:
+        """Text of its CSV: full precision, a missing value empty."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.names)
+        writer.writerows(
+            ["" if value is None else _plain(value) for value in row] for row in self.rows
+        )
+        return text.getvalue()
+
+
+@dataclass(frozen=True, slots=True)
+class Schema:
+    """What a table has in every analysis: name, title and columns are known before any trial.
+
+    Parameters
+    ----------
+    name, title, about, columns
+        As of `Table`.
+    grows
+        What the columns after these are, where that depends on the trials; else empty.
+    """
+
+    name: str
+    title: str
+    about: str
+    columns: tuple[Column, ...]
+    grows: str = ""
+
+    def fill(
+        self,
+        rows: Sequence[Mapping[str, Any]],
+        notes: Sequence[str] = (),
+        more: Sequence[Column] = (),
+    ) -> Table:
+        """Make a table of rows by the columns' names; a name left out is a missing value."""
+        columns = (*self.columns, *more)
+        names = [column.name for column in columns]
+        for row in rows:
+            if not row.keys() <= set(names):
+                raise ValueError(f"table {self.name} has no columns {row.keys() - set(names)}")
+        filled = tuple(
+            tuple(row.get(name, "" if name == NOTE else None) for name in names) for row in rows
+        )
+        return Table(self.name, self.title, self.about, columns, filled, tuple(notes))
+
+
+def to_print(value: Value, kind: Kind) -> str:
+    """Text of a value in the report; numbers are rounded half up, which nothing else is.
+
+    Half to even would print 86.25 % as 86.2, where Lévesque 2009, table 3.1, has 86.3.
+    """
+    if value is None:
+        return "not known"
+    if isinstance(value, str):
+        return value
+    if kind in (Kind.TEXT, Kind.COUNT):
+        return f"{value:g}" if isinstance(value, float) else str(value)
+    decimals = _DECIMALS[kind]
+    if kind is Kind.P and value < 0.001:
+        return "< 0.001"
+    return round_half_up(value * _FACTORS.get(kind, 1), decimals)
+
+
+def round_half_up(value: float, decimals: int) -> str:
+    """Text of a number rounded half away from 0: of the decimal that was meant, not the binary."""
+    exact = Decimal(f"{value:.{_DIGITS}g}")
+    rounded = exact.quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, Context(MAX_PREC))
+    return f"{abs(rounded) if rounded == 0 else rounded}".replace("-", "−")
+
+
+def _plain(value: Any) -> Any:
+    return repr(float(value)) if isinstance(value, float) else value

@@ -1,0 +1,122 @@
+"""Which of two was chosen: Lévesque 2009, 3.3 and fig. 3.12."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
+
+if TYPE_CHECKING:
+    from vbraille.analysis.tables import Row, Table
+    from vbraille.analysis.trials import Comparisons
+
+CHOICES = Schema(
+    "choices",
+    "How often each value was chosen",
+    "The scale is Bradley and Terry's (1952), with Firth's penalty (1993): one value is chosen "
+    "over another with odds of e to the difference of their strengths.",
+    (
+        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
+        Column("value", "value", "of the parameter", Kind.COUNT),
+        Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
+        Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
+        Column("share", "chosen (%)", "chosen by presented", Kind.PERCENT),
+        Column("strength", "strength", "on the scale; all add up to 0", Kind.NUMBER),
+        Column("error", "its standard error", "of the strength", Kind.NUMBER),
+        NOTE_COLUMN,
+    ),
+)
+PREFERRED = Schema(
+    "preferred",
+    "Preferred value",
+    "Where a parabola through the strongest value and its neighbours is highest. Half of the "
+    "choices should be of what came first: p is that of an exact binomial test.",
+    (
+        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
+        Column("participants", "participants", "how many", Kind.COUNT),
+        Column("comparisons", "comparisons", "how many", Kind.COUNT),
+        Column("preferred", "preferred", "value of the parameter", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("high", "to", "upper end", Kind.NUMBER),
+        Column("how", "interval", "what the interval comes from"),
+        Column("first_share", "first chosen (%)", "choices of what came first", Kind.PERCENT),
+        Column("first_low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
+        Column("first_high", "to (%)", "upper end", Kind.PERCENT),
+        Column("first_p", "p", "that first and second are chosen alike", Kind.P),
+        NOTE_COLUMN,
+    ),
+)
+
+
+def tuning(comparisons: Comparisons, *, seed: int) -> tuple[Table, Table]:
+    """Choices and preferred value of each parameter.
+
+    Parameters
+    ----------
+    seed
+        Of the bootstrap.
+    """
+    rows: list[Row] = []
+    liked: list[Row] = []
+    for code, parameter in enumerate(comparisons.parameter.levels):
+        part = comparisons[comparisons.parameter.codes == code]
+        values, at = np.unique(np.concatenate((part.first, part.second)), return_inverse=True)
+        first, second = np.split(at, 2)
+        rows += _choices(parameter, values, first, second, part)
+        row: Row = {
+            "parameter": parameter,
+            "participants": len(part.participant),
+            "comparisons": len(part),
+        }
+        bias = position_bias(part.chosen)
+        row |= {
+            "first_share": bias.share_first,
+            "first_low": bias.interval.low,
+            "first_high": bias.interval.high,
+            "first_p": bias.p,
+        }
+        try:
+            found = preferred(values, first, second, part.chosen, part.participant.codes, seed=seed)
+        except Unanswerable as reason:
+            row |= {"note": f"no preferred value: {reason}"}
+        else:
+            ends = found.interval
+            row |= {"preferred": found.value, "low": ends.low, "high": ends.high, "how": found.how}
+        liked.append(row)
+    return CHOICES.fill(rows), PREFERRED.fill(liked)
+
+
+def _choices(
+    parameter: str, values: np.ndarray, first: np.ndarray, second: np.ndarray, part: Comparisons
+) -> list[Row]:
+    """One row a value."""
+    won = np.where(part.chosen == 0, first, second)
+    lost = np.where(part.chosen == 0, second, first)
+    wins = np.zeros((values.size, values.size), np.int64)
+    np.add.at(wins, (won, lost), 1)
+    try:
+        scale = bradley_terry(wins)
+        strengths = [
+            {"strength": strength, "error": error}
+            for strength, error in zip(scale.strengths.tolist(), scale.errors.tolist(), strict=True)
+        ]
+    except Unanswerable as reason:
+        strengths = [{"note": f"no strength: {reason}"}] * values.size
+    chosen, presented = wins.sum(axis=1), wins.sum(axis=1) + wins.sum(axis=0)
+    return [
+        {
+            "parameter": parameter,
+            "value": value,
+            "presented": shown,
+            "chosen": times,
+            "share": times / shown,
+        }
+        | strength
+        for value, shown, times, strength in zip(
+            values.tolist(), presented.tolist(), chosen.tolist(), strengths, strict=True
+        )
+    ]

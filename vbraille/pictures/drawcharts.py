@@ -1,0 +1,271 @@
+"""Figures of the charts of results: matplotlib, and never pyplot.
+
+Everything is told apart by place, hatch, line style or grey, so that it holds in print.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from vbraille.pictures.charts import Bars, Matrix, Paths, Runs
+from vbraille.pictures.figures import FAINT, MIDDLE, styled
+from vbraille.pictures.words import plain, short
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.typing import ColorType
+    from numpy.typing import NDArray
+
+    from vbraille.pictures.charts import Chart, Numbers, Path, Run, Series
+
+# Fill and hatch of each series' bars: light enough for the black of their error bars.
+FILLS: tuple[tuple[ColorType, str], ...] = (
+    ("white", ""),
+    ("0.8", ""),
+    ("white", "////"),
+    ("0.6", ""),
+    ("white", "...."),
+    ("0.8", r"\\\\"),
+)
+MISSING = "n/a"
+SHADE = "0.85"  # of the band in `Paths`, of the diagonal in `Matrix`
+_INCHES = 0.085  # across a character of a label
+_LABEL = 24  # characters of a label that are drawn; its table has all
+_SAMPLES = 500  # of a path: more than a panel has pixels to show
+_DOT = {"color": MIDDLE, "linewidth": 2.6, "solid_capstyle": "round", "snap": False}
+_PERCENT = (0, 50, 100)
+# Width and height of a panel, in inches, by how many stand side by side.
+_PANELS = ((6.5, 3.0), (3.6, 2.4), (2.9, 2.0), (2.5, 1.7), (2.2, 1.5))
+
+
+def draw_chart(chart: Chart) -> Figure:
+    """Draw a chart; what its words have that no picture can have is spelled."""
+    with styled():
+        match chart:
+            case Bars():
+                figure = _bars(chart)
+            case Runs():
+                figure = _runs(chart)
+            case Paths():
+                figure = _paths(chart)
+            case Matrix():
+                figure = _matrix(chart)
+        width = int(9 * figure.get_figwidth())  # characters
+        figure.suptitle("\n".join(textwrap.wrap(plain(chart.title), width)))
+        # Placed once, and not at each saving: that takes longer than the drawing.
+        ConstrainedLayoutEngine().execute(figure)
+    return figure
+
+
+def _bars(chart: Bars) -> Figure:
+    """Figs. 3.12, 4.7, 4.8 and 4.9: a panel a measure."""
+    groups = [short(group, _LABEL) for group in chart.groups]
+    most = max((len(series) for _, series in chart.panels), default=1)
+    across = 0.13 * (most + 1) if most > 1 else 0.3  # inches a group needs for its bars
+    width = min(max(len(groups) * across, 5.5), 20)
+    # Labels lie, in lines, where they have room: upright ones are harder to read.
+    room = int(0.95 * width / max(len(groups), 1) / _INCHES)  # characters
+    upright = any(len(word) > room for group in groups for word in group.split())
+    if not upright:
+        groups = ["\n".join(textwrap.wrap(group, room)) for group in groups]
+    figure = _figure(1 + width, 1.6 + 2.6 * len(chart.panels))
+    panels = figure.subplots(len(chart.panels), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (label, several) in zip(panels, chart.panels, strict=True):
+        for number, series in enumerate(several):
+            _draw_series(axes, series, number, 0.8 / len(several))
+        axes.set_ylabel("\n".join(textwrap.wrap(plain(label), 30)))
+        axes.grid(axis="y", color=FAINT, linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.set_xlim(-0.6, len(groups) - 0.4)
+        if all(value is None for series in several for value in series.values):
+            axes.set(ylim=(0, 1), yticks=[])
+    panels[-1].set_xticks(range(len(groups)), groups, rotation=90 if upright else 0)
+    panels[-1].set_xlabel(plain(chart.across))
+    names = dict.fromkeys(series.name for _, several in chart.panels for series in several)
+    if most > 1:
+        keys = [_fill(number) for number in range(len(names))]
+        _legend(figure, keys, [short(name, 2 * _LABEL) for name in names])
+    return figure
+
+
+def _draw_series(axes: Axes, series: Series, number: int, width: float) -> None:
+    """One series' bars, beside those of the others; each bar is 0.8 / their number wide."""
+    values = _numbers(series.values)
+    at = np.arange(values.size) - 0.4 + (number + 0.5) * width
+    known = np.isfinite(values)
+    fill, hatch = FILLS[number % len(FILLS)]
+    axes.bar(at[known], values[known], width, color=fill, hatch=hatch, edgecolor="black")
+    if series.lows and series.highs:
+        lows, highs = _numbers(series.lows), _numbers(series.highs)
+        spread = np.maximum([values - lows, highs - values], 0)
+        whole = np.isfinite(spread).all(axis=0)
+        axes.errorbar(
+            at[whole],
+            values[whole],
+            spread[:, whole],
+            fmt="none",
+            ecolor="black",
+            elinewidth=0.9,
+            capsize=2.5,
+        )
+    for x in at[~known]:
+        axes.annotate(
+            MISSING, (x, 0), (0, 3), textcoords="offset points", rotation=90, ha="center", size=8
+        )
+
+
+def _fill(number: int) -> Patch:
+    fill, hatch = FILLS[number % len(FILLS)]
+    return Patch(facecolor=fill, hatch=hatch, edgecolor="black")
+
+
+def _runs(chart: Runs) -> Figure:
+    """Fig. 3.14: a panel a run, a dot a trial."""
+    figure, panels = _grid(len(chart.runs), most=5, across="trial", sharey=True)
+    for axes, run in zip(panels, chart.runs, strict=True):
+        _draw_run(axes, run)
+        axes.set_title(short(run.name, _LABEL))
+    panels[0].set_yticks(_PERCENT)
+    panels[0].set_ylim(-8, 108)
+    figure.supylabel("legibility (%)")
+    dot = Line2D([], [], marker="o", markersize=3, linestyle="none", color=MIDDLE)
+    curve = Line2D([], [], color="black")
+    _legend(figure, [dot, curve], ["a trial: right at 100 %, wrong at 0 %", "moving average"])
+    return figure
+
+
+def _draw_run(axes: Axes, run: Run) -> None:
+    # Dots are short strokes with round ends: one path, where marks were thousands.
+    dots = np.repeat(np.array(run.trials, float), 3) + np.tile(
+        [-0.05, 0.05, math.nan], len(run.trials)
+    )
+    axes.plot(dots, np.repeat(100 * _numbers(run.correct), 3), **_DOT)
+    axes.plot(run.trials, 100 * _numbers(run.average), color="black")
+    axes.grid(axis="y", color=FAINT, linewidth=0.6)
+
+
+def _paths(chart: Paths) -> Figure:
+    """Fig. 3.15: the array's band over time, place across, from below upwards."""
+    figure, panels = _grid(
+        len(chart.paths), most=3, across="place on the line, x (mm)", sharey=False
+    )
+    for axes, path in zip(panels, chart.paths, strict=True):
+        _draw_path(axes, path)
+        axes.set_title("\n".join(textwrap.wrap(plain(path.name), 34)))
+    figure.supylabel("time (s)")
+    keys = [
+        Patch(facecolor=SHADE, edgecolor="black"),
+        Line2D([], [], color="black", linestyle="dotted"),
+        Line2D([], [], color=MIDDLE, linestyle="dashed", linewidth=0.8),
+    ]
+    _legend(figure, keys, ["the array, left to right column", "not of the trial", "a dot's centre"])
+    return figure
+
+
+def _draw_path(axes: Axes, path: Path) -> None:
+    for dot in path.dots_mm:
+        axes.axvline(dot, color=MIDDLE, linestyle="dashed", linewidth=0.8)
+    time, x = np.asarray(path.time_s), np.asarray(path.x_mm)
+    if not time.size:
+        return
+    # The trial's ends are samples of their own, so that the parts meet there.
+    ends = [t for t in (path.start_s, path.end_s) if time[0] <= t <= time[-1]]
+    kept = np.union1d(time[:: -(-time.size // _SAMPLES)], [time[-1], *ends])
+    x = np.interp(kept, time, x)
+    axes.fill_betweenx(kept, x, x + path.span_mm, color=SHADE, linewidth=0, zorder=0)
+    for part, line in (
+        (kept <= path.start_s, "dotted"),
+        ((kept >= path.start_s) & (kept <= path.end_s), "solid"),
+        (kept >= path.end_s, "dotted"),
+    ):
+        if part.any():
+            for edge in (x, x + path.span_mm):
+                axes.plot(edge[part], kept[part], color="black", linestyle=line)
+    axes.set_ylim(kept[0], max(kept[-1], kept[0] + 1e-3))
+
+
+def _matrix(chart: Matrix) -> Figure:
+    """Tables 3.4, 3.5 and 4.1: presented from above, answered from the left."""
+    rows, columns = (
+        [short(label, 12) for label in labels] for labels in (chart.rows, chart.columns)
+    )
+    cell = 0.32 if max(len(rows), len(columns)) > 8 else 0.6  # inches
+    longest = max(map(len, columns), default=0)
+    upright = longest * _INCHES > 0.9 * cell
+    beside = 1 + max(map(len, rows), default=0) * _INCHES
+    above = 1.2 + (longest * _INCHES if upright else 0.2)
+    figure = _figure(max(len(columns) * cell + beside, 4.5), len(rows) * cell + above)
+    axes = figure.subplots()
+    axes.set(xlim=(0, len(columns)), ylim=(len(rows), 0), aspect="equal")
+    axes.hlines(range(len(rows) + 1), 0, len(columns), color=FAINT, linewidth=0.6)
+    axes.vlines(range(len(columns) + 1), 0, len(rows), color=FAINT, linewidth=0.6)
+    size = 9 if cell < 0.5 else 11
+    for down, (counts, right) in enumerate(zip(chart.counts, chart.diagonal, strict=True)):
+        for across, count in enumerate(counts):
+            if across == right:
+                axes.add_patch(_cell(down, across, color=SHADE, linewidth=0))
+            elif frame := _frame(count, chart.marks):
+                axes.add_patch(_cell(down, across, fill=False, linewidth=frame))
+            if count:
+                axes.text(across + 0.5, down + 0.5, str(count), ha="center", va="center", size=size)
+    for within in (*axes.texts, *axes.patches):
+        within.set_in_layout(False)  # hundreds, that need no room of their own
+    axes.spines[:].set_visible(False)
+    axes.tick_params(length=0, labelsize=size + 1)
+    axes.xaxis.tick_top()
+    axes.xaxis.set_label_position("top")
+    axes.set_xticks(np.arange(len(columns)) + 0.5, columns, rotation=90 if upright else 0)
+    axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
+    axes.set(xlabel=plain(chart.across), ylabel=plain(chart.down))
+    return figure
+
+
+def _frame(count: int, marks: tuple[int, ...]) -> float:
+    """Width of an error's frame, in points: 0 for none."""
+    return (0.0, 0.9, 2.6)[min(sum(count > mark for mark in marks), 2)]
+
+
+def _cell(down: int, across: int, **look: Any) -> Rectangle:
+    """Frame just within a cell, so that two neighbours have two."""
+    inset = 0.08
+    return Rectangle((across + inset, down + inset), 1 - 2 * inset, 1 - 2 * inset, **look)
+
+
+def _figure(width: float, height: float) -> Figure:
+    """Figure of a size in inches, whose parts `draw_chart` places."""
+    return Figure(figsize=(width, height), constrained_layout=False)
+
+
+def _grid(panels: int, most: int, across: str, sharey: bool) -> tuple[Figure, list[Axes]]:
+    """Figure with a grid of panels, at most so many side by side; the lowest ones are labelled."""
+    columns = min(most, math.ceil(math.sqrt(panels)) if most > 3 else panels)
+    wide, high = _PANELS[columns - 1]
+    rows = -(-panels // columns)
+    figure = _figure(1 + wide * columns, 1.6 + high * rows)
+    grid = figure.subplots(rows, columns, sharex=True, sharey=sharey, squeeze=False)
+    for axes in grid.flat[panels:]:
+        axes.set_axis_off()
+    for axes in grid.flat[max(panels - columns, 0) : panels]:
+        axes.tick_params(labelbottom=True)
+        axes.set_xlabel(across)
+    return figure, list(grid.flat[:panels])
+
+
+def _legend(figure: Figure, keys: list, words: list[str]) -> None:
+    """Explain below the panels what is drawn."""
+    width = sum(map(len, words)) * _INCHES + 0.9 * len(words)
+    columns = max(1, int(len(words) * min(1, figure.get_figwidth() / width)))
+    figure.legend(keys, words, loc="outside lower center", ncols=columns, frameon=False)
+
+
+def _numbers(values: Numbers | tuple[int, ...]) -> NDArray[np.float64]:
+    """As an array, NaN for None."""
+    return np.array([math.nan if value is None else value for value in values])

@@ -1,0 +1,99 @@
+"""How all figures look and how they are kept: the same figure gives the same bytes."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import warnings
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matplotlib import rc_context, style
+
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.figure import Figure
+
+# No date, no version and no reader's own matplotlibrc: the same table gives the same bytes.
+METADATA = {"png": {"Software": "vbraille"}, "svg": {"Creator": "vbraille", "Date": None}}
+STYLE = {
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": "medium",
+    "figure.constrained_layout.use": True,
+    "figure.labelsize": "medium",
+    "figure.titlesize": "large",
+    "font.sans-serif": ["DejaVu Sans"],  # an SVG names all at each text
+    "font.size": 11,
+    "hatch.linewidth": 0.7,
+    "lines.linewidth": 1.4,
+    "svg.fonttype": "none",  # text stays text, for search and screen readers
+    "svg.hashsalt": "vbraille",
+    "text.parse_math": False,  # a dollar in a name is a dollar
+}
+FAINT, MIDDLE = "0.8", "0.45"
+DPI = 150
+# Where an SVG has its places; no text is in these, as a "<" in a text is escaped.
+_PLACES = re.compile(rb"<(?:path|use|text) [^>]*>")
+_NEEDLESS = re.compile(rb"(?<=\.\d\d)\d+| transform=\"rotate\(-0 [^)]*\)\"")
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Have figures made and written in the style of the house."""
+    with style.context(["default", STYLE]), warnings.catch_warnings():
+        # A name in a script that the font has not: SVG keeps it, PNG shows boxes.
+        warnings.filterwarnings("ignore", r"Glyph .* missing from font", UserWarning)
+        yield
+
+
+def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
+    """Content of a figure's file.
+
+    Parameters
+    ----------
+    kind
+        Of `METADATA`: png or svg.
+    dpi
+        Dots per inch of a PNG.
+    """
+    content = io.BytesIO()
+    # A figure that is laid out already would be so again, and come out otherwise.
+    with styled(), rc_context({"figure.constrained_layout.use": False}):
+        metadata = {"Title": figure.get_suptitle().replace("\n", " "), **METADATA[kind]}
+        figure.savefig(content, format=kind, dpi=dpi, metadata=metadata)
+    if kind == "svg":
+        # Hundredths of a point will do: that is half as much to load.
+        return _PLACES.sub(lambda tag: _NEEDLESS.sub(b"", tag[0]), content.getvalue())
+    return content.getvalue()
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure as PNG or SVG, by the suffix of the path; wholly or not at all.
+
+    Raises
+    ------
+    InputError
+        If the suffix is another one, or the file cannot be written.
+    """
+    path = Path(path)
+    kind = path.suffix.lower()[1:]
+    if kind not in METADATA:
+        raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
+    content = to_bytes(figure, kind)
+    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        partial.write_bytes(content)
+        partial.replace(path)
+    except OSError as error:
+        raise InputError(
+            f"cannot write {path} ({error.strerror}): name a file in a folder that you can write to"
+        ) from error
+    finally:
+        with suppress(OSError):
+            partial.unlink()
