@@ -93,7 +93,9 @@ class Session:
         self.plan = make_plan(self.protocol, participant, seed)
         self.hand = hand
         head = {
-            "format": 1, "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
+            "format": 1, "protocol": self.protocol.name, "participant": participant,
+            "seed": seed, "order": self.plan.order, "model": self.protocol.model.name,
+            "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
             "hand": hand, "device": "sim", "versions": versions(),
         }  # fmt: skip
         create(folder, self.protocol, self.plan, head)
@@ -124,7 +126,8 @@ class Session:
                 real=display is None,
             )  # fmt: skip
             try:
-                course.start(why="test", torn_bytes=torn)
+                source = "typed" if script else f"simulated:{noise:g}"
+                course.start(why="test", torn_bytes=torn, answers=source)
                 Console(course, answers, say=said.append, real=False).run()
             finally:
                 if display is not None:

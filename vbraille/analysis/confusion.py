@@ -89,14 +89,18 @@ def of_characters(places: Places) -> Confusion | None:
     return _confusion("characters", places.presented, places.answered, cell_order, name_cell)
 
 
-def of_pairs(trials: Trials) -> Confusion | None:
-    """Counts of pairs; None unless every string has two places."""
-    if any(len(string) != 2 for string in trials.presented.levels):
+def of_pairs(trials: Trials, chosen: NDArray[np.bool_] | None = None) -> Confusion | None:
+    """Counts of pairs, of all trials or some; None unless every string of them has two places."""
+    shown = trials.presented
+    used = range(len(shown)) if chosen is None else np.unique(shown.codes[chosen]).tolist()
+    if any(len(shown.levels[code]) != 2 for code in used):
         return None
     strings = sorted({*trials.presented.levels, *trials.answered.levels}, key=_string_order)
     code = {string: n for n, string in enumerate(strings)}
     presented, answered = (
-        np.array([code[string] for string in factor.levels], np.int64)[factor.codes]
+        np.array([code[string] for string in factor.levels], np.int64)[
+            factor.codes if chosen is None else factor.codes[chosen]
+        ]
         for factor in (trials.presented, trials.answered)
     )
     return _confusion("pairs", presented, answered, lambda n: n, lambda n: name_string(strings[n]))
@@ -132,7 +136,10 @@ def transmitted(trials: Trials, places: Places) -> Table:
         chosen = np.full(len(trials), True)
         if condition is not None:
             chosen = trials.condition.codes == condition
-        for confusion in (of_characters(places.where(chosen[places.at])), of_pairs(trials[chosen])):
+        for confusion in (
+            of_characters(places.where(chosen[places.at])),
+            of_pairs(trials, chosen),
+        ):
             if confusion is not None:
                 name = "all" if condition is None else trials.condition.levels[condition]
                 rows.append({"of": confusion.of, "condition": name} | _measures(confusion.counts))

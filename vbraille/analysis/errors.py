@@ -38,11 +38,14 @@ def errors(places: Places) -> Table:
     added = _BITS[read.answered & ~read.presented]
     removed = _BITS[read.presented & ~read.answered]
     moved = np.minimum(added, removed)
-    kinds, counts = np.unique(
-        np.stack((added - moved, removed - moved, moved)), axis=1, return_counts=True
-    )
+    shape = (9, 9, 9)  # a cell has eight dots
+    codes = np.ravel_multi_index((added - moved, removed - moved, moved), shape)
+    kinds, counts = np.unique(codes, return_counts=True)
     found = [
-        (*kind, number) for kind, number in zip(kinds.T.tolist(), counts.tolist(), strict=True)
+        (*kind, number)
+        for kind, number in zip(
+            np.transpose(np.unravel_index(kinds, shape)).tolist(), counts.tolist(), strict=True
+        )
     ]
     rows: list[Row] = [
         {

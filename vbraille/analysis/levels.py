@@ -18,7 +18,7 @@ from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import LeftOut, natural
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from vbraille.analysis.scores import Scores
     from vbraille.analysis.tables import Row, Table
@@ -114,12 +114,13 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
                     "participants": len(own),
                     "mean": mean_or_none(own),
                 }
+                notes = _without(scores.participants, means[level])
                 try:
                     interval = bootstrap_mean(own, seed=seed)
                     row |= {"low": interval.low, "high": interval.high}
                 except Unanswerable as reason:
-                    row["note"] = f"no interval: {reason}" if own else "no scores"
-                rows.append(row)
+                    notes.append(f"no interval: {reason}")
+                rows.append(row | {"note": "; ".join(notes)})
     return MEANS.fill(rows, [] if rows else [NOTHING])
 
 
@@ -218,7 +219,6 @@ def _pairs(
     for first, second in combinations(levels, 2):
         have = [means[first].keys(), means[second].keys()]
         both = sorted(have[0] & have[1], key=natural)
-        without = sorted({*scores.participants} - set(both), key=natural)
         row: Row = {
             "measure": scores.measure,
             "factor": factor,
@@ -226,7 +226,7 @@ def _pairs(
             "second": second,
             "participants": len(both),
         }
-        notes = [f"without {', '.join(without)}, who have not both"] if without else []
+        notes = _without(scores.participants, both)
         try:
             test = paired_t(
                 [means[first][who] for who in both], [means[second][who] for who in both]
@@ -245,6 +245,12 @@ def _pairs(
     }
     for row in rows:
         yield row | {"p_corrected": known.get((row["first"], row["second"]))}
+
+
+def _without(participants: Iterable[str], having: Iterable[str]) -> list[str]:
+    """Who is left out, as a note; empty if nobody is."""
+    without = sorted({*participants} - {*having}, key=natural)
+    return [f"without {', '.join(without)}: a score is missing"] if without else []
 
 
 def _tested(test: PairedTest) -> Row:

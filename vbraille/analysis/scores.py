@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.trials import Places, Trials
 
 MOST_LEVELS = 50  # a factor of more was not varied by an experimenter
+MOST_CELLS = 1_000_000  # of all participants
 _MISSING = {"", "na", "n/a", "nan"}
 
 
@@ -65,6 +66,8 @@ def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Sc
                 f"{name} has {len(factor)} levels, more than can be compared; "
                 f"give a factor of a few, such as condition"
             )
+    if math.prod(map(len, found)) > MOST_CELLS:
+        raise InputError(f"{', '.join(factors)} have too many levels together; give fewer factors")
     timed = ~np.isnan(trials.duration_s)
     measures = [
         ("legibility of strings", np.arange(len(trials)), trials.correct),

@@ -97,7 +97,7 @@ def read_csv(path: Path) -> Sheet:
     try:
         return _columns(reader, path.name, decimal_comma=delimiter == ";")
     except csv.Error as error:
-        raise InputError(f"{path} line {reader.line_num} is no CSV: {error}") from None
+        raise InputError(f"{path.name} line {reader.line_num} is no CSV: {error}") from None
 
 
 def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:

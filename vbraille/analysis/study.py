@@ -229,7 +229,7 @@ def _describe_sitting(sitting: Sitting) -> str:
     answered = sum(row["answered"] != "" for row in sitting.rows)
     return (
         f"participant {head['participant']}, protocol {head['protocol']}, seed {head['seed']}, "
-        f"model {head['model']}, device {head['device']}, answers {head['answers']}, "
+        f"model {head['model']}, device {head['device']}, answers {', '.join(sitting.answers)}, "
         f"{answered} of {len(sitting.rows)} trials answered, {sitting.state}"
     )
 
@@ -251,7 +251,7 @@ def _listed(versions: Mapping[str, str]) -> str:
 
 def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
     told = []
-    simulated = [_name(s) for s in sittings if s.head["answers"].startswith("simulated")]
+    simulated = [_name(s) for s in sittings if any(map(_is_simulated, s.answers))]
     if simulated:
         told.append(
             f"A simulated reader answered in {', '.join(simulated)}: that is no data about people."
@@ -259,7 +259,7 @@ def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
     scripted = [
         _name(s)
         for s in sittings
-        if s.head["answers"] != "typed" and not s.head["answers"].startswith("simulated")
+        if any(source != "typed" and not _is_simulated(source) for source in s.answers)
     ]
     if scripted:
         told.append(f"Answers came from a file in {', '.join(scripted)}.")
@@ -275,6 +275,10 @@ def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
             f"characters, strings and errors pools them (--protocol takes one)."
         )
     return told
+
+
+def _is_simulated(answers: str) -> bool:
+    return answers.partition(":")[0] == "simulated"
 
 
 def _sum(path: Path) -> str:

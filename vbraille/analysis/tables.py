@@ -11,7 +11,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
 Value = str | int | float | None
 Row = dict[str, Any]  # a row's values, by the columns' names
@@ -114,7 +114,7 @@ class Table:
         for row in self.rows:
             if len(row) != len(self.columns):
                 raise ValueError(f"table {self.name}: {row} has not {len(self.columns)} values")
-            if any(isinstance(value, float) and not math.isfinite(value) for value in row):
+            if not math.isfinite(sum([value for value in row if isinstance(value, float)])):
                 raise ValueError(f"table {self.name}: {row} has a number that is not finite")
             if None in row and (noted is None or not row[noted]):
                 raise ValueError(f"table {self.name}: {row} misses a value without a word")
@@ -131,7 +131,8 @@ class Table:
 
     def records(self) -> list[Row]:
         """Row by row, by the columns' names."""
-        return [dict(zip(self.names, row, strict=True)) for row in self.rows]
+        names = self.names
+        return [dict(zip(names, row, strict=True)) for row in self.rows]
 
     def is_right(self, row: Sequence[Value], at: int) -> bool:
         """Whether a column of a confusion matrix has a row's right answers."""
@@ -176,20 +177,21 @@ class Schema:
 
     def fill(
         self,
-        rows: Sequence[Mapping[str, Any]],
+        rows: Sequence[Row],
         notes: Sequence[str] = (),
         more: Sequence[Column] = (),
     ) -> Table:
         """Make a table of rows by the columns' names; a name left out is a missing value."""
         columns = (*self.columns, *more)
         names = [column.name for column in columns]
+        empty: Row = {name: "" if name == NOTE else None for name in names}
+        filled = []
         for row in rows:
-            if not row.keys() <= set(names):
+            whole = empty | row
+            if len(whole) > len(names):
                 raise ValueError(f"table {self.name} has no columns {row.keys() - set(names)}")
-        filled = tuple(
-            tuple(row.get(name, "" if name == NOTE else None) for name in names) for row in rows
-        )
-        return Table(self.name, self.title, self.about, columns, filled, tuple(notes))
+            filled.append(tuple(whole.values()))
+        return Table(self.name, self.title, self.about, columns, tuple(filled), tuple(notes))
 
 
 def to_print(value: Value, kind: Kind) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 UNREAD_MASK = 0x100  # one more than masks of eight dots
+_LETTER_AT = {UNICODE_BLANK + mask: letter for letter, mask in LETTERS.items()}
 _LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
 
 
@@ -255,8 +256,10 @@ def masks_of(text: str) -> list[int]:
 
 def name_string(text: str) -> str:
     """Name of a string: "word" if all of it is letters, else its cells' names."""
-    names = [name_cell(mask) for mask in masks_of(text)]
-    return "".join(names) if all(len(name) == 1 for name in names) else ", ".join(names)
+    word = text.translate(_LETTER_AT)
+    if word.isascii():
+        return word
+    return ", ".join([name_cell(mask) for mask in masks_of(text)])
 
 
 def count(number: int, noun: str) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.analyse import Options, analyse, analyse_scores
+from vbraille.analysis.study import load_scores, load_study, trials_file
 from vbraille.cli.printable import printable
 from vbraille.errors import InputError, VbrailleError
 
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     import argparse
 
     from vbraille.analysis.results import Results
+    from vbraille.analysis.study import Study
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,15 +37,15 @@ def run(arguments: argparse.Namespace) -> int:
         from vbraille.sessions.record.folder import check_free
 
         check_free(folder)
-    results, trials, faults = _analysed(arguments, options)
+    results, study = _analysed(arguments, options)
     if folder is not None:
         from vbraille.analysis.report.files import write_report
 
-        write_report(results, folder, trials)
+        write_report(results, folder, {} if study is None else trials_file(study))
     if arguments.json:
         from vbraille.analysis.report.tojson import to_json
 
-        print(to_json(results), end="")
+        sys.stdout.writelines(to_json(results))
     elif folder is not None:
         print(printable(f"written: {folder / 'report.html'}"))
     else:
@@ -50,28 +53,22 @@ def run(arguments: argparse.Namespace) -> int:
 
         for line in to_lines(results):
             print(printable(line))
-    if faults:
-        raise VbrailleError(f"analysed is what is whole; {'; '.join(faults)}")
+    if study is not None and study.faults:
+        raise VbrailleError(f"analysed is what is whole; {'; '.join(study.faults)}")
     return 0
 
 
-def _analysed(
-    arguments: argparse.Namespace, options: Options
-) -> tuple[Results, dict[str, bytes], tuple[str, ...]]:
-    """Results, the trials they come from as a file, and what is damaged."""
+def _analysed(arguments: argparse.Namespace, options: Options) -> tuple[Results, Study | None]:
+    """Results, and the study that they are of; None of a table of scores."""
     if arguments.scores is not None:
         for name in ("factors", "protocol", "exclude", "marks"):
             if getattr(arguments, name):
                 raise InputError(f"--{name} is of trials, not of scores; leave it out")
-        from vbraille.analysis.study import load_scores
-
         scores, about = load_scores(Path(arguments.scores))
-        return analyse_scores(scores, about, options), {}, ()
-    from vbraille.analysis.study import load_study, trials_file
-
+        return analyse_scores(scores, about, options), None
     study = load_study(
         [Path(path) for path in arguments.paths],
         exclude=arguments.exclude,
         protocol=arguments.protocol,
     )
-    return analyse(study, options), trials_file(study), study.faults
+    return analyse(study, options), study

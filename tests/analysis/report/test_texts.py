@@ -31,7 +31,7 @@ HEADINGS = [f"h{level}" for level in range(1, 7)]
 TEXTS = """
 import sys
 from tests.analysis.report.test_texts import FIGURES, RESULTS, to_html, to_json, to_markdown
-made = to_html(RESULTS, FIGURES) + to_json(RESULTS) + to_markdown(RESULTS)
+made = to_html(RESULTS, FIGURES) + "".join(to_json(RESULTS)) + to_markdown(RESULTS)
 assert "matplotlib" not in sys.modules
 sys.stdout.buffer.write(made.encode("utf-8", "backslashreplace"))
 """
@@ -181,8 +181,8 @@ def test_bare_results_have_a_page_too():
 
 
 def test_json_has_all_rows():
-    content = json.loads(to_json(RESULTS))
-    assert list(content) == ["title", "about", "warnings", "tables", "figures"]
+    content = json.loads("".join(to_json(RESULTS)))
+    assert list(content) == ["title", "about", "warnings", "figures", "tables"]
     for each in RESULTS.tables():
         found = content["tables"][each.name]
         assert found["rows"] == each.records()
@@ -250,7 +250,7 @@ def test_texts_are_the_same_in_every_process_and_need_no_drawing():
         capture_output=True,
         check=True,
     )
-    made = to_html(RESULTS, FIGURES) + to_json(RESULTS) + to_markdown(RESULTS)
+    made = to_html(RESULTS, FIGURES) + "".join(to_json(RESULTS)) + to_markdown(RESULTS)
     assert run.stdout == made.encode("utf-8", "backslashreplace")
 
 

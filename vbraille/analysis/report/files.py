@@ -91,7 +91,7 @@ def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
     return {
         PAGE: encode(to_html(results, pictures, (TEXT, NUMBERS, *extra))),
         TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *extra))),
-        NUMBERS: encode(to_json(results)),
+        NUMBERS: encode("".join(to_json(results))),
         **extra,
         **{csv_name(table): encode(table.to_csv()) for table in results.tables()},
         **drawn,

@@ -1,0 +1,66 @@
+"""Trials in a few words, and all the tables that are made of them."""
+
+from vbraille.analysis import characters, confusion, errors, legibility, levels, motion, overtime
+from vbraille.analysis.parsing import parse
+from vbraille.analysis.scores import of_trials
+from vbraille.analysis.sheets import from_rows
+from vbraille.analysis.trials import Places
+
+COLUMNS = "participant condition presented answered duration_s"
+
+
+def sheet(*lines, columns=COLUMNS, name="made"):
+    """A row a line: values with white space between, - for an empty one."""
+    rows = [line.split() for line in lines]
+    return from_rows(
+        name,
+        [
+            dict(zip(columns.split(), ["" if v == "-" else v for v in row], strict=True))
+            for row in rows
+        ],
+    )
+
+
+def made(*lines, columns=COLUMNS):
+    """Trials of such lines, and their places."""
+    trials = parse([sheet(*lines, columns=columns)]).trials
+    return trials, Places.of(trials)
+
+
+def answers(*lines, timed="-"):
+    """The same, of lines without a duration: "P1 T0 ac aa"."""
+    return made(*(f"{line} {timed}" for line in lines))
+
+
+def record(table, **where):
+    """The one row that has these values."""
+    (found,) = [
+        row for row in table.records() if all(row[name] == value for name, value in where.items())
+    ]
+    return found
+
+
+def all_tables(trials, places):
+    """Every table of trials."""
+    by_participant = legibility.legibility(trials, places)
+    measures = of_trials(trials, places, ["condition"])
+    seen = motion.trajectories([])
+    matrices = [confusion.of_characters(places), confusion.of_pairs(trials)]
+    return [
+        by_participant,
+        legibility.averages(by_participant, seed=1),
+        characters.characters(trials, places),
+        characters.strings(trials),
+        characters.dots(trials, places),
+        *(confusion.to_table(matrix, places) for matrix in matrices if matrix is not None),
+        confusion.transmitted(trials, places),
+        errors.errors(places),
+        overtime.over_time(trials),
+        overtime.slopes(trials),
+        seen,
+        motion.patterns(seen),
+        motion.correlations(trials),
+        levels.level_means(measures, seed=1),
+        levels.t_tests(measures, "holm"),
+        levels.analyses(measures)[0],
+    ]
