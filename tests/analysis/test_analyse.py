@@ -158,13 +158,19 @@ def test_only_one_protocol(sessions):
         load_study(paths, protocol="letters")
 
 
-def test_several_protocols_are_told_of(sessions, tmp_path):
-    other = Session(tmp_path / "other", MINI.replace('"mini"', '"other"'), "P2").folder
+def test_several_protocols_are_told_of_and_kept_apart(sessions, tmp_path):
     Session(tmp_path / "one", MINI, "P2").sit()
     study = load_study([tmp_path / "one", sessions / "read-P2"])
     assert not any("protocols" in warning for warning in study.warnings)
+    other = Session(tmp_path / "other", MINI.replace('"mini"', '"other"'), "P2")
     with pytest.raises(InputError, match="other: no answered trial, and so nothing to analyse"):
-        load_study([other])
+        load_study([other.folder])
+    other.sit()
+    study = load_study([tmp_path / "one", other.folder])
+    assert any("2 protocols, mini, other" in warning for warning in study.warnings)
+    found = tables(analyse(study, Options()))
+    for name in ("legibility", "trajectories", "patterns"):
+        assert {row["condition"] for row in found[name].records()} == {"mini", "other"}
 
 
 def test_a_session_broken_off_is_told_of(tmp_path):
@@ -175,6 +181,25 @@ def test_a_session_broken_off_is_told_of(tmp_path):
     assert len(study.trials) == 1
     assert "trials of broken: no answer" in study.left_out[0].what + ": " + study.left_out[0].reason
     assert tables(analyse(study, Options()))["legibility"].records()[0]["trials"] == 1
+
+
+def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
+    session = Session(tmp_path / "paused", MINI, "P1")
+    session.sit(("cue: trial 1", "pause"), ("pause", ""), ("go", "a"), ("cue: trial 2", "stop"))
+    study = load_study([session.folder])
+    (told,) = [row for row in study.sittings[0].rows if row["answered"]]
+    assert told["paused_s"] > 0
+    assert told["duration_s"] > 0
+    assert [left.reason for left in study.left_out] == [
+        "no answer",
+        "the trial was paused meanwhile",
+    ]
+    found = tables(analyse(study, Options()))
+    (row,) = found["legibility"].records()
+    assert (row["trials"], row["timed"]) == (1, 0)
+    (row,) = found["trajectories"].records()
+    assert row["note"].startswith("it was paused for ")
+    assert row["duration_s"] is None
 
 
 def test_a_damaged_session_is_analysed_as_far_as_it_is_whole(tmp_path):

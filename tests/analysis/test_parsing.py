@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from tests.analysis.making import sheet
-from vbraille.analysis.parsing import parse, parse_cells
+from vbraille.analysis.parsing import parse
 from vbraille.analysis.sheets import Sheet, from_rows, read_csv
 from vbraille.analysis.trials import LeftOut
+from vbraille.analysis.values import parse_cells
 from vbraille.errors import InputError
 
 NAMED = "participant condition session trial presented answered"

@@ -187,7 +187,7 @@ def _over_time(trials: Trials) -> Section:
 
 
 def _motion(study: Study, trials: Trials) -> Section:
-    table = motion.trajectories(study.sittings)
+    table = motion.trajectories(study.sittings, trials)
     tables = [motion.patterns(table), motion.correlations(trials), table]
     drawn = figures.examples(study.sittings)
     if drawn is not None:

@@ -10,7 +10,7 @@ from scipy import stats
 from vbraille.analysis.averages import mean_or_none
 from vbraille.analysis.reading import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
 from vbraille.analysis.statistics.intervals import LEVEL
-from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema, to_print
 from vbraille.analysis.trials import count, name_string, natural
 
 if TYPE_CHECKING:
@@ -84,8 +84,20 @@ CORRELATIONS = Schema(
 )
 
 
-def trajectories(sittings: Iterable[Sitting]) -> Table:
-    """Row a trial of strings on a device, by participant, session and trial."""
+def trajectories(sittings: Iterable[Sitting], trials: Trials | None = None) -> Table:
+    """Row a trial of strings on a device, by participant, session and trial.
+
+    Parameters
+    ----------
+    sittings
+        Sessions.
+    trials
+        Whose conditions' names count, where several protocols have one of the same name.
+    """
+    named: dict[tuple[str, int], str] = {}
+    if trials is not None:
+        columns = (trials.session.names(), trials.trial.tolist(), trials.condition.names())
+        named = {(session, n): condition for session, n, condition in zip(*columns, strict=True)}
     rows: list[Row] = []
     for sitting in sittings:
         of = {row["trial"]: row for row in sitting.rows}
@@ -93,11 +105,13 @@ def trajectories(sittings: Iterable[Sitting]) -> Table:
             told = of[number]
             row: Row = {
                 "participant": told["participant"],
-                "condition": told["condition"],
+                "condition": named.get((told["session"], number), told["condition"]),
                 "session": told["session"],
                 "trial": number,
                 "presented": name_string(told["presented"]),
             }
+            if isinstance(seen, Reading) and told["paused_s"] > 0:
+                seen = f"it was paused for {to_print(told['paused_s'], Kind.SECONDS)} s"
             rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))
     return TRAJECTORIES.fill(rows, [] if rows else ["no trial has a trajectory"])
 

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-import re
+import math
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.statistics.scores import LARGEST
 from vbraille.analysis.trials import Comparisons, Factor, LeftOut, Trials, count, natural
+from vbraille.analysis.values import (
+    is_pair,
+    parse_cells,
+    parse_name,
+    parse_pair,
+    parse_presented,
+    parse_seconds,
+    parse_whole,
+)
 from vbraille.errors import InputError
-from vbraille.sessions.planning.spelling import LETTERS, UNREAD, to_braille
-from vbraille.translate.cells import UNICODE_BLANK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,16 +29,8 @@ if TYPE_CHECKING:
 NEEDED = ("participant", "condition", "presented", "answered")
 # What is understood beside these, all optional.
 _KNOWN = {*NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct"}
-UNKNOWN = frozenset(("", "n/a", "na", "nan"))  # a value that is not known, in any case
 _OPEN = {"", "n/a"}  # of a trial that was not answered
 ALL = "all"  # the condition of a protocol that compares none
-_PAIR = re.compile(r"\s*([0-9.,]+)\s+([0-9.,]+)\s*")
-_CELLS = {
-    UNREAD: UNREAD,
-    **{chr(UNICODE_BLANK + mask): chr(UNICODE_BLANK + mask) for mask in range(256)},
-    **{letter: to_braille((mask,)) for letter, mask in LETTERS.items()},
-    **{letter.upper(): to_braille((mask,)) for letter, mask in LETTERS.items()},
-}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,26 +71,13 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
         warnings += _scored_otherwise(sheet, strings, before)
+        paused = _forget_paused(strings, before)
+        if paused:
+            what = f"{count(paused, 'duration')} of {sheet.name}"
+            left_out.append(LeftOut(what, "the trial was paused meanwhile"))
     _check_once(strings)
     _check_once(pairs)
     return Parsed(_trials(strings), _comparisons(pairs), tuple(left_out), tuple(warnings))
-
-
-def parse_cells(text: str) -> str:
-    """Unicode braille of a string as a table has it: Unicode braille, or letters.
-
-    Raises
-    ------
-    ValueError
-        If something is no cell.
-    """
-    try:
-        return "".join([_CELLS[place] for place in text.strip()])
-    except KeyError as error:
-        raise ValueError(
-            f"is {text.strip()!r}, and {error.args[0]!r} is no cell; give letters a to z or "
-            f"Unicode braille, with {UNREAD} for a place not read"
-        ) from None
 
 
 @dataclass(slots=True)
@@ -121,16 +106,15 @@ def _take(sheet: Sheet, strings: _Columns, pairs: _Columns) -> int:
     answered = [row for row in range(size) if columns["answered"][row].strip().lower() not in _OPEN]
     parameters = columns.get("parameter", [""] * size)
     paired = {
-        row
-        for row in answered
-        if parameters[row].strip() or _PAIR.fullmatch(columns["presented"][row])
+        row for row in answered if parameters[row].strip() or is_pair(columns["presented"][row])
     }
     rows = [row for row in answered if row not in paired]
     if rows:
         places = {
-            "presented": _each(sheet, "presented", rows, _presented),
+            "presented": _each(sheet, "presented", rows, parse_presented),
             "answered": _each(sheet, "answered", rows, parse_cells),
-            "duration_s": _each(sheet, "duration_s", rows, partial(_seconds, sheet), np.nan),
+            "duration_s": _seconds(sheet, "duration_s", rows, np.nan),
+            "paused_s": _seconds(sheet, "paused_s", rows, 0.0),
         }
         strings.add(sheet, rows, _who(sheet, rows) | places)
     rows = sorted(paired)
@@ -150,12 +134,12 @@ def _who(sheet: Sheet, rows: list[int]) -> dict[str, list]:
     """Whose trials, and which ones."""
     told = "session" in sheet.columns and "trial" in sheet.columns
     return {
-        "participant": _each(sheet, "participant", rows, _name),
-        "session": _each(sheet, "session", rows, _name, sheet.name),
+        "participant": _each(sheet, "participant", rows, parse_name),
+        "session": _each(sheet, "session", rows, parse_name, sheet.name),
         "protocol": _each(sheet, "protocol", rows, str.strip, ""),
-        "condition": _each(sheet, "condition", rows, _name),
-        "block": _each(sheet, "block", rows, _whole, 0),
-        "trial": _each(sheet, "trial", rows, _whole)
+        "condition": _each(sheet, "condition", rows, parse_name),
+        "block": _each(sheet, "block", rows, parse_whole, 0),
+        "trial": _each(sheet, "trial", rows, parse_whole)
         if "trial" in sheet.columns
         else [row + 1 for row in rows],
         "told": [told] * len(rows),
@@ -179,53 +163,16 @@ def _each(
     return [known[texts[row]] for row in rows]
 
 
-def _name(text: str) -> str:
-    if not text.strip():
-        raise ValueError("is empty; name it")
-    return text.strip()
-
-
-def _whole(text: str) -> int:
-    if text.strip().lower() in UNKNOWN:
-        return 0
-    if not re.fullmatch(r"[0-9]{1,9}(\.0)?", text.strip()):
-        raise ValueError(f"is {text!r}; give a whole number from 1")
-    return int(float(text))
-
-
-def _seconds(sheet: Sheet, text: str) -> float:
-    if text.strip().lower() in UNKNOWN:
-        return np.nan
-    try:
-        seconds = sheet.number(text)
-    except ValueError:
-        seconds = -1.0
-    if not 0 <= seconds <= LARGEST:
-        raise ValueError(f"is {text!r}; give seconds, or nothing if they are not known")
-    return seconds
-
-
-def _presented(text: str) -> str:
-    cells = parse_cells(text)
-    if not cells or UNREAD in cells:
-        raise ValueError(f"is {text!r}; give the cells that were shown")
-    return cells
+def _seconds(sheet: Sheet, column: str, rows: list[int], absent: float) -> list[float]:
+    return _each(sheet, column, rows, partial(parse_seconds, number=sheet.number), absent)
 
 
 def _pair(sheet: Sheet, row: int) -> tuple[float, float, int]:
     presented, answered = (sheet.columns[name][row] for name in ("presented", "answered"))
-    found = _PAIR.fullmatch(presented)
     try:
-        first, second = map(sheet.number, found.groups() if found else ("", ""))
-        chosen = sheet.number(answered)
-    except ValueError:
-        first = second = chosen = np.inf
-    if first == second or chosen not in (first, second) or max(first, second) > LARGEST:
-        raise InputError(
-            f"{sheet.place(row)}: presented is {presented!r} and answered {answered!r}; "
-            f"a comparison presents two values, such as 1.5 2, and is answered by one of them"
-        )
-    return first, second, int(chosen == second)
+        return parse_pair(presented, answered, number=sheet.number)
+    except ValueError as error:
+        raise InputError(f"{sheet.place(row)}: {error}") from None
 
 
 def _scored_otherwise(sheet: Sheet, strings: _Columns, before: int) -> list[str]:
@@ -247,6 +194,19 @@ def _scored_otherwise(sheet: Sheet, strings: _Columns, before: int) -> list[str]
         f"{sheet.name}: column correct says otherwise than the answers in "
         f"{count(len(wrong), 'trial')}, first in {sheet.place(wrong[0])}; the answers count."
     ]
+
+
+def _forget_paused(strings: _Columns, before: int) -> int:
+    """Take durations away that have a pause in them; how many."""
+    if strings.size == before:
+        return 0
+    durations, pauses = strings.values["duration_s"], strings.values["paused_s"]
+    timed = [
+        n for n in range(before, strings.size) if pauses[n] > 0 and not math.isnan(durations[n])
+    ]
+    for n in timed:
+        durations[n] = np.nan
+    return len(timed)
 
 
 def _check_once(columns: _Columns) -> None:
