@@ -251,13 +251,13 @@ def choices(table: Table, preferred: Table) -> Iterator[Picture]:
         )
         yield Picture(
             f"choices_{_file_name(name)}",
-            f"How often each value of {name} was chosen",
+            f"How often each {_in_words(name)} was chosen",
             f"One bar a value. Most often chosen was {most['value']:g}, {most['chosen']} times of "
             f"{most['presented']}. {said}",
             table.name,
             Bars(
-                f"Choices of {name}",
-                name,
+                f"Choices of {_in_words(name)}",
+                _in_words(name),
                 tuple(f"{row['value']:g}" for row in rows),
                 (("times chosen", (Series("chosen", tuple(row["chosen"] for row in rows)),)),),
             ),
@@ -321,6 +321,12 @@ def _whose(row: Row) -> str:
     return (
         f"{row['participant']} in {row['condition']}, {to_print(row['legibility'], Kind.PERCENT)} %"
     )
+
+
+def _in_words(parameter: str) -> str:
+    """Words for a parameter with its unit: "dot width (mm)" for dot_width_mm."""
+    unit = " (mm)" if parameter.endswith("_mm") else ""
+    return parameter.removesuffix("_mm").replace("_", " ") + unit
 
 
 def _file_name(name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.tables import NOTE, Kind, to_print
@@ -18,6 +19,14 @@ CONTENTS = "Contents"
 UNKNOWN = "What cannot be said here"
 NO_ROWS = "This table has no rows."
 FILES = "Files beside this report"
+
+
+def without_empty_notes(table: Table) -> Table:
+    """Return the table without its notes, if no row has one: empty cells are a noise in speech."""
+    if not table.rows or table.columns[-1].name != NOTE or any(row[-1] for row in table.rows):
+        return table
+    kept = tuple(row[:-1] for row in table.rows)
+    return replace(table, columns=table.columns[:-1], rows=kept)
 
 
 def rows(table: Table) -> Sequence[tuple[Value, ...]]:

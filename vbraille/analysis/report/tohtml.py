@@ -133,6 +133,7 @@ def _section(
 
 
 def _table(table: Table) -> Iterator[Element]:
+    table = shown.without_empty_notes(table)
     yield _e("h3", table.title, id=f"table-{table.name}")
     for text in filter(None, (table.about, shown.marking(table))):
         yield _e("p", text)

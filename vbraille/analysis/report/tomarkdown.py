@@ -52,6 +52,7 @@ def escape(text: str) -> str:
 
 
 def _table(table: Table) -> Iterator[str]:
+    table = shown.without_empty_notes(table)
     yield f"### {escape(table.title)}"
     yield escape(table.about)
     yield escape(shown.marking(table))
