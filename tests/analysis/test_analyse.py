@@ -15,6 +15,8 @@ from vbraille.analysis.report.files import write_report
 from vbraille.analysis.report.tojson import to_json
 from vbraille.analysis.study import load_scores, load_study, trials_file
 from vbraille.errors import InputError
+from vbraille.sessions.record.export import rows, to_csv
+from vbraille.sessions.record.folder import load
 
 CONDITIONS = """
 [[conditions]]
@@ -144,6 +146,17 @@ def test_who_is_left_out_is_named_with_the_reason(table):
     assert "participant C: fell asleep" in dict(results.about)["Excluded"]
     with pytest.raises(InputError, match="no participant 'D' with answered trials; there are A, B"):
         load_study([table], exclude={"D": "is not there"})
+
+
+def test_a_simulated_reader_is_told_of_when_its_trials_come_as_a_table(sessions, tmp_path):
+    path = tmp_path / "exported.csv"
+    path.write_text(to_csv(rows(load(sessions / "read-P2"))))
+    (warning,) = load_study([path]).warnings
+    assert warning.startswith("A simulated reader answered in exported.csv: that is no data")
+    path.write_text(path.read_text().replace("simulated:0.6", "typed"))
+    assert load_study([path]).warnings == ()
+    path.write_text(path.read_text().replace("typed", "answers.txt"))
+    assert load_study([path]).warnings == ("Answers came from a file in exported.csv.",)
 
 
 def test_only_one_protocol(sessions):

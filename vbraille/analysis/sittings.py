@@ -91,8 +91,6 @@ class Sitting:
         What is damaged, a clause each.
     state
         How far it came.
-    answers
-        Where its runs had their answers from: typed, simulated:0.2, a file; each once.
     versions
         Of the programs it was run with, by name; several if its runs differ.
     """
@@ -105,7 +103,6 @@ class Sitting:
     examples: tuple[Example, ...]
     faults: list[str]
     state: str
-    answers: tuple[str, ...]
     versions: dict[str, str]
 
 
@@ -146,7 +143,6 @@ def read_sitting(folder: Path) -> Sitting:
         _examples(pictures),
         faults,
         _state(progress),
-        tuple(dict.fromkeys(run.get("answers", record.head["answers"]) for run in progress.runs)),
         _versions(record, progress),
     )
 

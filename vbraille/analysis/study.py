@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.analysis.scores import Scores
+    from vbraille.analysis.sheets import Sheet
     from vbraille.analysis.sittings import Sitting
     from vbraille.analysis.trials import Comparisons, Trials
 
@@ -108,6 +109,7 @@ def load_study(
     faults = tuple(f"{_name(sitting)}: {what}" for sitting in sittings for what in sitting.faults)
     warnings = (
         *parsed.warnings,
+        *_sources(sources),
         *_warnings(trials, sittings),
         *(f"Damaged, and analysed as far as it is whole: {fault}." for fault in faults),
     )
@@ -229,7 +231,7 @@ def _describe_sitting(sitting: Sitting) -> str:
     answered = sum(row["answered"] != "" for row in sitting.rows)
     return (
         f"participant {head['participant']}, protocol {head['protocol']}, seed {head['seed']}, "
-        f"model {head['model']}, device {head['device']}, answers {', '.join(sitting.answers)}, "
+        f"model {head['model']}, device {head['device']}, answers {head['answers']}, "
         f"{answered} of {len(sitting.rows)} trials answered, {sitting.state}"
     )
 
@@ -249,21 +251,27 @@ def _listed(versions: Mapping[str, str]) -> str:
     return ", ".join(f"{name} {told}" for name, told in versions.items())
 
 
-def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
+def _sources(sheets: Sequence[Sheet]) -> list[str]:
+    """What to know of answers that nobody typed."""
+    simulated, scripted = [], []
+    for sheet in sheets:
+        kinds = {source.partition(":")[0] for source in sheet.columns.get("answers_from", ())}
+        if "simulated" in kinds:
+            simulated.append(sheet.name)
+        if kinds - {"simulated", "typed", ""}:
+            scripted.append(sheet.name)
     told = []
-    simulated = [_name(s) for s in sittings if any(map(_is_simulated, s.answers))]
     if simulated:
         told.append(
             f"A simulated reader answered in {', '.join(simulated)}: that is no data about people."
         )
-    scripted = [
-        _name(s)
-        for s in sittings
-        if any(source != "typed" and not _is_simulated(source) for source in s.answers)
-    ]
     if scripted:
         told.append(f"Answers came from a file in {', '.join(scripted)}.")
-    told += [
+    return told
+
+
+def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
+    told = [
         f"Session {_name(sitting)} is not whole: {sitting.state}."
         for sitting in sittings
         if sitting.state != "ended"
@@ -275,10 +283,6 @@ def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
             f"characters, strings and errors pools them (--protocol takes one)."
         )
     return told
-
-
-def _is_simulated(answers: str) -> bool:
-    return answers.partition(":")[0] == "simulated"
 
 
 def _sum(path: Path) -> str:

@@ -4,7 +4,6 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
-import pingouin
 import pytest
 from scipy.stats import f
 from statsmodels.stats.anova import AnovaRM
@@ -52,7 +51,7 @@ def projections(cube):
 # pingouin 0.7 asks pandas 3.1 in a way it is going to drop.
 @pytest.mark.filterwarnings("ignore:The inplace keyword:DeprecationWarning")
 @pytest.mark.parametrize("shape", [(6, 2), (6, 3), (12, 4), (5, 7)])
-def test_one_factor_is_pingouins(rng, shape):
+def test_one_factor_is_pingouins(rng, pingouin, shape):
     table = long_form(random_cube(rng, *shape))
     (ours,) = anova(*table).effects
     data = frame(*table)
@@ -83,7 +82,7 @@ def test_one_factor_is_pingouins(rng, shape):
 
 
 @pytest.mark.parametrize("shape", [(6, 3, 2), (9, 2, 4), (10, 3, 3)])
-def test_two_factors_are_pingouins(rng, shape):
+def test_two_factors_are_pingouins(rng, pingouin, shape):
     table = long_form(random_cube(rng, *shape))
     named = {"data": frame(*table), "dv": "score", "within": ["A", "B"], "subject": "who"}
     theirs = pingouin.rm_anova(**named)
@@ -132,7 +131,7 @@ def test_any_number_of_factors_is_statsmodels_and_the_projections(rng, shape):
             assert ours.mauchly_w == pytest.approx(np.prod(values / values.mean()))
 
 
-def test_missing_and_repeated_cells(rng):
+def test_missing_and_repeated_cells(rng, pingouin):
     participants, factors, scores = long_form(random_cube(rng, 7, 3, 2))
     scores = scores.copy()
     scores[[1 * 6 + 4, 4 * 6, 4 * 6 + 1]] = np.nan  # S1 lacks one cell, S4 two

@@ -1,5 +1,4 @@
 import numpy as np
-import pingouin
 import pytest
 
 from vbraille.analysis.statistics.correction import METHODS, adjust
@@ -9,7 +8,7 @@ from vbraille.analysis.statistics.correction import METHODS, adjust
     ("ours", "theirs"), [("bonferroni", "bonf"), ("holm", "holm"), ("fdr", "fdr_bh")]
 )
 @pytest.mark.parametrize("n", [1, 3, 26])
-def test_it_is_pingouins(rng, ours, theirs, n):
+def test_it_is_pingouins(rng, pingouin, ours, theirs, n):
     p = rng.random(n) ** 3
     np.testing.assert_allclose(adjust(p, ours), pingouin.multicomp(p, method=theirs)[1])
 

@@ -1,7 +1,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pingouin
 import pytest
 
 from vbraille.analysis.statistics.paired import hedges_correction, paired_t
@@ -9,7 +8,7 @@ from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 
 @pytest.mark.parametrize("n", [2, 3, 6, 20])
-def test_it_is_pingouins(rng, n):
+def test_it_is_pingouins(rng, pingouin, n):
     first, second = rng.normal(50, 10, n), rng.normal(56, 10, n)
     found = paired_t(first, second)
     theirs = pingouin.ttest(first, second, paired=True).iloc[0]

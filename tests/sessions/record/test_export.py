@@ -32,6 +32,7 @@ def test_a_row_tells_what_was_shown_and_what_was_answered(sat):
         assert row["presented"] == trial.presented == row["answered"]
         assert (row["correct"], row["trace"], row["first_answer"]) == (1, "trace-001.gz", "")
         assert (row["texture"], row["contrast"], row["returned"]) == (0.0, 1.0, 1)
+        assert row["answers_from"] == "simulated:0"
 
 
 def test_durations_are_those_of_the_trace(sat):

@@ -64,6 +64,8 @@ class Told:
         The same, by the wall clock.
     paused_s
         How long it was paused since the cue.
+    source
+        Where the answer came from: typed, simulated:0.2, a file's name.
     """
 
     attempts: int = 0
@@ -75,6 +77,7 @@ class Told:
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
+    source: str = ""
 
     @property
     def last_attempt(self) -> list[Showing]:
@@ -232,6 +235,7 @@ class Progress:
     def _take_answer(self, event: Event) -> None:
         told = self._told(event)
         told.answer = event["answer"]
+        told.source = self._answers
         if self.correcting is not None:
             self.correcting = None
         elif not event.get("practice"):
