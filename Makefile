@@ -8,6 +8,9 @@ SUDO   := $(if $(filter 0,$(shell id -u)),,sudo)
 DEBS   := python3-louis python3-venv
 NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q '^Status: install ok installed' || echo $(d))))
 
+# Every test of the program would compile all of it again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DELETE_ON_ERROR:
 .PHONY: read test lint tests bench format setup clean sound
 

@@ -170,6 +170,7 @@ class TestLayout:
         with pytest.raises(ValueError, match=f"width is {width} cells; it must be at least 1"):
             lay_out("a", table, width)
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize("keep_lines", [False, True])
     @pytest.mark.parametrize("width", [5, 26, 28])
     @pytest.mark.parametrize("file", ["english.txt", "francais.txt"])
@@ -190,6 +191,7 @@ class TestLayout:
         assert max(len(line) for line in layout.lines()) <= width
         assert [line.number for line in layout.lines()] == list(range(1, layout.count() + 1))
 
+    @pytest.mark.no_cover
     def test_in_any_order(self, english, table):
         text = english + " ".join(english.split() * 6) + "\n\n" + english
         one = lay_out(text, table)
@@ -237,6 +239,7 @@ class TestLayout:
 class TestLongParagraphs:
     """A paragraph that comes in pieces is laid out as if it had come whole."""
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize("keep_lines", [False, True])
     @pytest.mark.parametrize("kind", ["words", "letters", "one letter", "no-break", "full lines"])
     def test_as_one(self, english, letters, kind, keep_lines):

@@ -259,6 +259,7 @@ def test_options_check_themselves():
         replace(Options(), correction="bonferoni")
 
 
+@pytest.mark.no_cover
 def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
     """Here, and in a process whose sets have another order, with the sessions given in another."""
     paths = [sessions / "read-P2", sessions / "compared"]

@@ -120,6 +120,7 @@ def test_a_way_is_picked_evenly_with_the_ticks_that_are_kept():
     assert pick(x_mm[:300], (150, 299)).tolist() == list(range(100, 300))
 
 
+@pytest.mark.no_cover
 def test_a_slow_hand_reads_in_all_kinds_of_ways(tmp_path):
     session = Session(tmp_path / "s", hand="device")
     session.sit()

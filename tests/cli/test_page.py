@@ -45,6 +45,7 @@ def test_a_long_text_is_all_there(call, texts):
     assert said.out.splitlines() == [line.text for line in lines]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("lines", "wanted"),
     [

@@ -165,7 +165,7 @@ def test_a_key_brings_the_next_line_and_nothing_else_does(text):
 
 def test_at_a_terminal_the_hand_brings_lines_and_the_end_waits_for_keys(text):
     text.write_text("one\n\ntwo\n")
-    arguments = ("read", text, "--hand", "sweep:60", "--echo", "text")
+    arguments = ("read", text, "--hand", "sweep:300", "--echo", "text")
     with program.Terminal(*arguments) as terminal:
         said = terminal.until("end of text.*\r\n")
         assert [s for s in said.splitlines() if s.startswith("text")] == [

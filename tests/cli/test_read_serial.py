@@ -137,19 +137,16 @@ def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     )
 
 
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
-        (("--rate", "2000"), "choose --rate 1000 or less"),
-    ],
-)
-def test_a_device_that_does_not_fit_the_page(tmp_path, text, options, sentence):
+def test_a_device_that_does_not_fit_the_page(tmp_path, text):
     with simulated(tmp_path) as (spec, _):
-        done = program.run("read", text, "--device", spec, *options)
-    assert done.returncode == 2
-    assert sentence in done.stderr
-    assert len(done.stderr.splitlines()) == 2  # the line's width, and the sentence
+        for options, sentence in (
+            (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
+            (("--rate", "2000"), "choose --rate 1000 or less"),
+        ):
+            done = program.run("read", text, "--device", spec, *options)
+            assert done.returncode == 2
+            assert sentence in done.stderr
+            assert len(done.stderr.splitlines()) == 2  # the line's width, and the sentence
 
 
 def test_a_port_that_is_not_there(text):

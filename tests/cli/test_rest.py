@@ -31,17 +31,20 @@ def read(driver, texts: Path, log: Path, fault: str, *options: str):
 @pytest.mark.parametrize(
     ("fault", "code", "said"),
     [
-        ("", 0, ""),
-        (str(int(signal.SIGINT)), 1, "stopped"),
-        (str(int(signal.SIGTERM)), 1, "stopped"),
-        (str(int(signal.SIGHUP)), 1, "stopped"),
+        ("", 0, []),
+        (str(int(signal.SIGINT)), 1, ["vbraille: stopped"]),
+        (str(int(signal.SIGTERM)), 1, ["vbraille: stopped"]),
+        (str(int(signal.SIGHUP)), 1, ["vbraille: stopped"]),
     ],
 )
 def test_an_end_and_a_signal(driver, texts, tmp_path, fault, code, said):
     done, frames = read(driver, texts, tmp_path / "log", fault)
     assert done.returncode == code
-    assert said in done.stderr
-    assert "Traceback" not in done.stderr
+    line_width, *others = done.stderr.splitlines()
+    assert line_width.startswith("line width: ")
+    assert others == said
+    assert done.stdout.startswith("line: 1\n")
+    assert ("summary" in done.stdout) == (code == 0)
     fades(frames)
 
 

@@ -214,6 +214,7 @@ def test_device_regresses_and_scans_one_and_two_cells_again():
     assert np.count_nonzero(np.isclose(back, 22.0)) > 5
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("habits", [DEVICE, FLUENT])
 def test_no_step_back_returns_to_the_start(habits):
     hand = HumanHand(habits, 5)

@@ -657,6 +657,7 @@ def test_nothing_to_feel_for_five_seconds_is_rest_until_there_is(bench):
     device.close()
 
 
+@pytest.mark.no_cover
 def test_unplugged_and_plugged_in_a_hundred_times(bench):
     made = bench()
     device = made.open()
@@ -697,6 +698,7 @@ def test_a_message_cut_by_the_loss_spoils_none_after_it(bench):
     device.close()
 
 
+@pytest.mark.no_cover
 def test_an_info_that_nobody_asked_for_begins_nothing(bench):
     made = bench()
     device = made.open()

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from vbraille.devices.fields import (
@@ -146,6 +146,7 @@ def only(kind, times=1):
 
 
 @EVERY_MESSAGE
+@settings(max_examples=50)  # of each of seven messages
 @given(choice=st.data())
 def test_what_is_encoded_is_decoded(kind, choice):
     message = choice.draw(messages_of(kind))
@@ -443,6 +444,7 @@ def packed_by_hand(levels, bits):
 
 
 @pytest.mark.parametrize("bits", range(1, 17))
+@settings(max_examples=30)  # of each of sixteen widths
 @given(choice=st.data())
 def test_levels_of_any_width(bits, choice):
     top_level = choice.draw(st.integers(1 << (bits - 1), (1 << bits) - 1))

@@ -133,6 +133,7 @@ MODELS = {"vbd": VBD, "stress2": STRESS2, "sheared": SHEARED}
 POLLS = (1000.0, 1), (300.0, 17), (200.0, 110)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("hand", range(3), ids=HANDS)
 @pytest.mark.parametrize("model", range(3), ids=MODELS)
 def test_it_gives_the_loop_s_records(hand, model):
@@ -158,6 +159,7 @@ def test_slow_ticks_are_the_loop_s_too(rate_hz):
     assert_same(STRESS2, "sweep:60", got, script, rate_hz)
 
 
+@pytest.mark.no_cover
 def test_the_size_of_a_block_does_not_matter():
     # Where actions fall is the same for all: at multiples of all sizes, no hand done before.
     script = [
@@ -174,6 +176,7 @@ def test_the_size_of_a_block_does_not_matter():
             np.testing.assert_allclose(ticks[field], polled[0][field], rtol=0, atol=atol)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("poll_ticks", [90, 1500])
 def test_it_rests_when_the_hand_stands_still(poll_ticks):
     engine = batch(SHEARED, rate_hz=200, poll_ticks=poll_ticks)
@@ -187,6 +190,7 @@ def test_it_rests_when_the_hand_stands_still(poll_ticks):
     assert not resting[script[1][0] :][:50].any()
 
 
+@pytest.mark.no_cover
 def test_unpausing_counts_as_motion():
     script = [(0, show(full(SHEARED), 1)), (900, pause(True)), (990, pause(False))]
     got, script = acted_at(batch(SHEARED, rate_hz=200, poll_ticks=90), script, 2500)
@@ -202,6 +206,7 @@ def creep(mm_s):
     return straight((0, 0), (20, 20 * mm_s))
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("motion", "rests"),
     [

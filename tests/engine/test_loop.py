@@ -169,6 +169,7 @@ def test_a_change_in_the_middle_of_a_fade_does_not_jump(clock, device):
     assert biggest_step(device.sent) <= 1 / 100 + 1e-9
 
 
+@pytest.mark.no_cover
 def test_rest_after_stillness_and_back_with_motion(clock, device):
     device.move(straight((0, 3.0), (6, 3.0), (7, 8.0), (20, 8.0)))
     loop = Loop(device, clock)

@@ -76,6 +76,7 @@ def test_what_was_overwritten_is_counted():
     assert reader.lost == 13
 
 
+@pytest.mark.no_cover
 def test_beside_a_writer_that_does_not_wait_records_are_whole_and_counted():
     writer, reader = pair(64)
     count = 30_000

@@ -28,6 +28,7 @@ def curves(axes):
     return [line for line in axes.get_lines() if len(line.get_xdata()) > 2]
 
 
+@pytest.mark.no_cover
 @KINDS
 def test_every_axis_is_labelled_with_its_unit(table):
     figure = draw.draw(table)
@@ -40,6 +41,7 @@ def test_every_axis_is_labelled_with_its_unit(table):
     assert any(axes.get_ylabel() for axes in figure.axes) or figure.get_supylabel()
 
 
+@pytest.mark.no_cover
 @KINDS
 def test_pictures_are_grey(table):
     figure = draw.draw(table)
@@ -121,12 +123,14 @@ def test_page_draws_the_raised_dots_and_numbers_the_lines():
     assert [text.get_text() for text in whole.texts] == ["1", "2"]
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("lines", [[make_line("")], [make_line("⠁")] * 150], ids=["empty", "150"])
 def test_pages_of_any_length_have_a_bounded_size(lines):
     height = draw.draw(make_page(lines)).get_size_inches()[1]
     assert 0 < height < 50
 
 
+@pytest.mark.no_cover
 @KINDS
 def test_svg_parses_and_its_text_stays_text(table, tmp_path):
     draw.save(draw.draw(table), tmp_path / "a.SVG")
@@ -135,6 +139,7 @@ def test_svg_parses_and_its_text_stays_text(table, tmp_path):
     assert content.count(table.title) >= 2  # as text and as the file's title
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_saving_twice_gives_the_same_bytes(suffix, tmp_path):
     first, second = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
@@ -166,6 +171,7 @@ def test_what_cannot_be_replaced_stays_and_nothing_is_left_beside_it(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
+@pytest.mark.no_cover
 def test_a_picture_that_cannot_be_drawn_leaves_the_old_one(tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(b"old")
@@ -178,6 +184,7 @@ def test_a_picture_that_cannot_be_drawn_leaves_the_old_one(tmp_path):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.no_cover
 def test_a_matplotlibrc_of_the_readers_own_changes_nothing(tmp_path):
     draw.save(draw.draw(PROFILE), tmp_path / "a.svg")
     with rc_context({"font.size": 30, "savefig.dpi": 10, "lines.linewidth": 9}):

@@ -59,6 +59,7 @@ def overlaps(figure):
                     yield axes, axis
 
 
+@pytest.mark.no_cover
 @KINDS
 def test_charts_are_grey(chart):
     red, green, blue = Image.open(io.BytesIO(to_bytes(draw_chart(chart), "png", 30))).split()[:3]
@@ -66,6 +67,7 @@ def test_charts_are_grey(chart):
     assert len(red.getcolors()) > 2
 
 
+@pytest.mark.no_cover
 @KINDS
 def test_every_axis_is_labelled(chart):
     figure = draw_chart(chart)
@@ -89,6 +91,7 @@ def test_bars_are_a_series_beside_the_other_with_hatches_of_their_own():
     assert [text.get_text() for text in legend.get_texts()] == names
 
 
+@pytest.mark.no_cover
 def test_bars_have_their_intervals():
     axes = draw_chart(bars(names=["all"])).axes[0]
     (spread,) = axes.collections
@@ -115,6 +118,7 @@ def test_a_panel_without_any_value_has_no_scale():
     assert not axes.get_yticks().size
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     ("groups", "names"),
     [
@@ -142,6 +146,7 @@ def test_runs_have_a_dot_a_trial_and_the_average():
     assert curve.get_ydata()[9:] == pytest.approx([70, 80, 80])
 
 
+@pytest.mark.no_cover
 def test_many_runs_share_their_axes_and_stay_apart():
     figure = draw_chart(runs(20, trials=80))
     assert len([axes for axes in figure.axes if axes.axison]) == 20
@@ -174,6 +179,7 @@ def test_a_path_is_dotted_where_it_is_not_of_the_trial():
     assert len(band.get_paths()[0].vertices) < 2500  # a long path is thinned
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(("start_s", "end_s"), [(-1, 9), (0, 8), (3, 3)])
 def test_paths_of_any_part_are_drawn(start_s, end_s):
     draw_chart(Paths("Reading patterns", (path(start_s, end_s),)))
@@ -208,6 +214,7 @@ def test_a_row_without_a_right_answer_has_no_shade():
     assert sum(patch.get_fill() for patch in axes.patches) == 1
 
 
+@pytest.mark.no_cover
 def test_a_matrix_of_letters_is_legible():
     counts = tuple(tuple(row * column % 7 // 5 * 12 for column in range(27)) for row in range(26))
     figure = draw_chart(matrix(counts, tuple(range(26))))
@@ -222,6 +229,7 @@ def test_a_matrix_of_letters_is_legible():
 NASTY = "$x$ <&> \udc80\0\n_y"
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize(
     "chart",
     [
@@ -255,6 +263,7 @@ def test_a_long_title_has_several_lines():
     assert b"Legibility and reading time Legibility" in to_bytes(figure, "svg")
 
 
+@pytest.mark.no_cover
 def test_the_same_chart_gives_the_same_bytes_in_every_process():
     run = subprocess.run(
         [sys.executable, "-W", "error", "-c", DIGESTS],

@@ -52,6 +52,7 @@ class Bench:
         return self.said[before:]
 
 
+@pytest.mark.no_cover
 def test_the_hand_s_return_brings_the_next_line_until_the_end():
     bench = Bench(hand=Sweep(100), echo=Echo.BOTH)
     bench.run()
@@ -89,6 +90,7 @@ def test_a_range_past_the_end_is_done_at_once():
     assert Bench(first=9).reader.done
 
 
+@pytest.mark.no_cover
 def test_with_keys_only_a_key_brings_the_next_line():
     bench = Bench(hand=Sweep(300), advance=False, echo=Echo.TEXT)
     bench.run(10)
@@ -172,6 +174,7 @@ def test_help_says_every_key_and_every_key_does_something():
     assert bench.reader.done
 
 
+@pytest.mark.no_cover
 def test_a_hand_too_fast_for_texture_is_told_once():
     def told(speed, tuning=STRESS2.tuning):
         bench = Bench(text="one", hand=Sweep(speed), tuning=tuning)

@@ -87,6 +87,7 @@ class TestCells:
         assert cells.starts.tolist() == whole.starts.tolist()
         assert cells.end == whole.end == len(long)
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize("file", ["english.txt", "francais.txt", "deutsch.txt"])
     def test_every_cell_stands_for_characters_of_its_paragraph(self, texts, file):
         text = (texts / file).read_text()

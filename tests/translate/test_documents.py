@@ -8,6 +8,7 @@ import os
 import random
 import threading
 import tracemalloc
+from functools import cache
 
 import numpy as np
 import pytest
@@ -68,8 +69,9 @@ def piece(paragraph: Paragraph) -> Piece:
     return Piece(paragraph.text, paragraph.source.tolist(), paragraph.continues)
 
 
-def made_text(words: list[str], length: int, *, ends: bool) -> str:
-    """Words and what may stand between them, drawn anew in every test, and the same every time."""
+@cache
+def made_text(words: tuple[str, ...], length: int, *, ends: bool) -> str:
+    """Words and what may stand between them, drawn by chance, and the same every time."""
     chance = random.Random(SEED)
     text, size = [], 0
     while size < length:
@@ -83,11 +85,12 @@ def made_text(words: list[str], length: int, *, ends: bool) -> str:
 
 
 @pytest.fixture(scope="module")
-def words(texts) -> list[str]:
+def words(texts) -> tuple[str, ...]:
     text = (texts / "francais.txt").read_text() + (texts / "deutsch.txt").read_text()
-    return sorted(set(text.split()))
+    return tuple(sorted(set(text.split())))
 
 
+@pytest.mark.no_cover
 class TestBlocks:
     """Where the file's blocks end must not show."""
 
@@ -170,6 +173,7 @@ class TestBlocks:
         assert found.encoding.name == "utf-8"
 
 
+@pytest.mark.no_cover
 class TestRandomAccess:
     @pytest.mark.parametrize("keep_lines", [False, True])
     def test_paragraphs_in_any_order(self, words, keep_lines):
@@ -230,6 +234,7 @@ class TestRandomAccess:
         assert abs(shares[count // 2] - 0.5) < 0.1
 
 
+@pytest.mark.no_cover
 class TestLazy:
     def test_only_what_is_asked_for_is_read(self):
         stream = Repeated(b"A short paragraph.\n\n", 10**9)
@@ -281,6 +286,7 @@ class TestSource:
             return
         check_nothing_lost(found, raw)
 
+    @pytest.mark.no_cover
     def test_thousands_of_byte_strings(self):
         chance = random.Random(SEED)
         tokens = [bytes([b]) for b in range(256)]
@@ -377,6 +383,7 @@ class TestRefused:
             document(raw)
         assert paragraphs(document(raw, "latin-1"))[0].text == "\x89PNG \x1a \0\0\0 IHDR"
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize(
         ("name", "message"),
         [

@@ -78,6 +78,7 @@ class TestFindEncoding:
         assert find_encoding(mark + text.encode(name)) == Encoding(name, skip=len(mark))
         assert find_encoding(mark) == Encoding(name, skip=len(mark))
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize("size", SIZES)
     @pytest.mark.parametrize("file", ["francais.txt", "deutsch.txt"])
     def test_windows_1252(self, file, size, texts, chance):
@@ -241,6 +242,7 @@ class TestDecoder:
     def test_what_utf32_has_not_is_kept(self):
         assert decode("utf-32-le", [b"a\0\0\0\xe9\xe8\xe7\xe6b\0\0\0"]) == ("aéèçæb", 4)
 
+    @pytest.mark.no_cover
     @pytest.mark.parametrize("encoding", CODECS)
     def test_no_bytes_are_too_bad(self, encoding, chance):
         for _ in range(30):

@@ -62,6 +62,7 @@ def test_every_link_of_the_page_has_its_file(report):
     assert linked == set(files) - {folder / "report.html"}
 
 
+@pytest.mark.no_cover
 def test_the_same_results_give_the_same_files(report, tmp_path):
     write_report(RESULTS, tmp_path / "again", EXTRA)
     assert contents(tmp_path / "again") == contents(report[0])

@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from base64 import b64decode
+from dataclasses import replace
 from itertools import pairwise
 
 import html5lib
@@ -178,6 +179,18 @@ def test_bare_results_have_a_page_too():
     assert "<table" not in page
     assert "This table has no rows." in page
     assert "No traces were given." in page
+
+
+def test_a_column_of_notes_is_left_out_where_there_are_none():
+    """Every empty cell is one that a reader hears."""
+    rows = tuple((*row[:-1], "") for row in LEGIBILITY.rows if None not in row)
+    silent = replace(LEGIBILITY, rows=rows)
+    results = replace(RESULTS, sections=(Section("Legibility", "", (silent,)),))
+    for made in (to_html(results, {}), to_markdown(results)):
+        assert "mean duration (s)" in made
+        assert "note" not in made
+    assert '"note": ""' in "".join(to_json(results))
+    assert "note" in to_markdown(RESULTS)
 
 
 def test_json_has_all_rows():

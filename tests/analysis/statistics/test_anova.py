@@ -200,6 +200,7 @@ def test_the_published_f_has_the_published_p(rng):
         assert (found.df1, found.df2, round(found.p, 3)) == (2, 10, p)
 
 
+@pytest.mark.no_cover
 def test_mauchlys_test_keeps_its_level_if_sphericity_holds(rng):
     p = [anova(*long_form(rng.normal(size=(12, 3)))).effects[0].mauchly_p for _ in range(300)]
     assert 0.02 < np.mean(np.array(p) < 0.05) < 0.09

@@ -40,6 +40,7 @@ def test_a_journal_goes_on_when_it_is_opened_again(folder):
     assert told.damage is None
 
 
+@pytest.mark.no_cover
 def test_cut_at_every_byte_everything_before_is_kept(folder):
     whole = fill(folder, 40)
     assert len(whole) > 4096

@@ -79,6 +79,7 @@ def of(model, mapping, **changes):
     return Observer(model.array, mapping, model.geometry, **changes)
 
 
+@pytest.mark.no_cover
 @pytest.mark.parametrize("hand", HANDS)
 @pytest.mark.parametrize(("model", "mapping"), WAYS, ids=NAMES)
 def test_without_noise_every_string_is_read_right(model, mapping, hand, rng):
@@ -200,6 +201,7 @@ def test_evidence_is_in_proportion_to_contrast_and_near_1_for_a_plain_dot():
     assert third == pytest.approx(0.3 * one, rel=1e-4)
 
 
+@pytest.mark.no_cover
 def test_legibility_falls_with_contrast(rng):
     observer = of(VBD, VBD.mapping, noise=0.12)
     path = moved(VBD, "sweep:100", 4)
