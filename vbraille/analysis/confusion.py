@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -165,14 +165,14 @@ def _confusion(
     of: str,
     presented: NDArray[np.int64],
     answered: NDArray[np.int64],
-    order: Callable[[int], object],
+    order: Callable[[int], Any],
     name: Callable[[int], str],
 ) -> Confusion | None:
     if not presented.size:
         return None
-    rows = sorted(np.unique(presented).tolist(), key=order)  # type: ignore[type-var]
+    rows = sorted(np.unique(presented).tolist(), key=order)
     others = set(np.unique(answered).tolist()) - set(rows)
-    columns = rows + sorted(others, key=order)  # type: ignore[type-var]
+    columns = rows + sorted(others, key=order)
     counts = np.zeros((len(rows), len(columns)), np.int64)
     at = (_index(codes, known) for codes, known in ((presented, rows), (answered, columns)))
     np.add.at(counts, tuple(at), 1)
