@@ -57,6 +57,14 @@ class Page:
             return self.layout.progress(line)
         return (line.number - self.first + 1) / (self.last - self.first + 1)
 
+    def share_before(self, line: Line) -> float:
+        """How much of the lines asked for stands before one of them, about, 0 to 1."""
+        if self.last is not None:
+            return (line.number - self.first) / (self.last - self.first + 1)
+        first = self.layout.line(self.first)
+        skipped = self.layout.progress(first) if first is not None else 0.0
+        return (self.layout.progress(line) - skipped) / (1 - skipped)
+
     def say_note(self) -> None:
         """Say once if the text is not UTF-8."""
         note = self.document.note()
