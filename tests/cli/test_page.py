@@ -144,7 +144,7 @@ def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
         assert process.stdout.readline() == "⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑\n".encode()
         process.stdout.close()
         assert process.stderr.read() == b"line width: 26 cells\n"
-        assert process.wait(program.PATIENCE_S) == 0
+        assert process.wait(program.PATIENCE_S) == 1  # not all of it was printed
 
 
 def test_a_pipe_is_read_like_a_file(text):
@@ -164,8 +164,20 @@ def test_a_full_disk_under_the_output(text, arguments):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize("arguments", ["page {}", "tables", "--help", "--version"])
+def test_what_is_printed_into_a_closed_output_is_not_said_to_be_done(text, arguments):
+    command = [*program.PROGRAM, *arguments.format(text).split()]
+    done = subprocess.run(
+        ["sh", "-c", 'exec "$@" >&-', "sh", *command],
+        check=False, stderr=subprocess.PIPE, encoding="utf-8",
+    )  # fmt: skip
+    assert done.returncode == 1
+    wanted = "vbraille: the output is closed; give it a file, or /dev/null"
+    assert done.stderr.splitlines()[-1] == wanted
+
+
 def test_closed_streams_are_no_fault(text):
-    shell = 'exec "$@" <&- >&- 2>&-'
+    shell = 'exec "$@" <&- >/dev/null 2>&-'
     done = subprocess.run(["sh", "-c", shell, "sh", *program.PROGRAM, "page", text], check=False)
     assert done.returncode == 0
     shell = 'exec "$@" 2>&-'
