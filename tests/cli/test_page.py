@@ -94,7 +94,7 @@ def test_a_text_that_is_not_utf_8_is_told_once(call, text):
 def test_nothing_in_a_text_moves_the_cursor(call, text):
     text.write_bytes(b"red \x1b[31m ring \x07 rub \x7f csi \xc2\x9b2J")
     said = call("page", text, "--format", "text", "--travel", "1000")
-    assert said.out == "red \\x1b[31m ring \\x07 rub \\x7f csi \\x9b2J\n"
+    assert said.out == "red <escape>[31m ring <bell> rub <delete> csi <9b>2J\n"
 
 
 def test_a_table_of_eight_dots_has_no_brf(call, text):

@@ -18,6 +18,7 @@ from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.render.reference import deflections
 from vbraille.render.renderer import Renderer
 from vbraille.translate import Book, Document, Table
+from vbraille.wording import count
 
 RECORDED = "t_s,x_mm\n" + "".join(f"{t / 10},{x}\n" for t, x in enumerate((-9, 40, 155, 20, -11)))
 
@@ -109,9 +110,8 @@ def test_the_file_holds_all_that_was_rendered(
         again, twin = from_the_file_alone(file)
     np.testing.assert_array_equal(frames, again)
     np.testing.assert_allclose(frames, twin, rtol=0, atol=1e-6)
-    assert said.out == (
-        f"rendered: {len(masks)} line{'s' * (len(masks) > 1)}, {t_s.size} frames, {t_s.size / rate:.1f} s of reading\n"
-    )
+    lines, seconds = count(len(masks), "line"), f"{t_s.size / rate:.1f} s"
+    assert said.out == f"rendered: {lines}, {t_s.size} frames, {seconds} of reading\n"
 
 
 def test_options_are_in_the_file(call, tmp_path, text):

@@ -12,9 +12,9 @@ from contextlib import suppress
 from importlib import import_module
 from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
+from vbraille.wording import printable
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:

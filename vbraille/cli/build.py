@@ -6,12 +6,12 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
 from vbraille.translate import Book, Document, Table, find_table
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

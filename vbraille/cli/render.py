@@ -14,7 +14,6 @@ from vbraille.cli.build import (
     build_show,
     note_unseen_dots,
 )
-from vbraille.cli.quantities import count, duration
 from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
@@ -23,6 +22,7 @@ from vbraille.errors import InputError
 from vbraille.reading import EndOfLine, too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
+from vbraille.wording import count, duration
 
 if TYPE_CHECKING:
     import argparse
