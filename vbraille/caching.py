@@ -24,10 +24,8 @@ def keep_compiled() -> bool:
     numba's own places are the packages' ``__pycache__`` and the user's cache. Where it can
     write neither, it is told of the private folder.
     """
-    from numba import config
-
-    if config.CACHE_DIR:
-        usual = [Path(config.CACHE_DIR)]
+    if given := os.environ.get("NUMBA_CACHE_DIR"):
+        usual = [Path(given)]
     else:
         usual = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache") / "numba"]
     if any(map(_is_writable, usual)):
@@ -37,7 +35,10 @@ def keep_compiled() -> bool:
         _log.info("nothing compiled can be kept, so that every process compiles again")
         return False
     _log.info("what is compiled is kept in %s, for %s cannot be written", folder, usual[-1])
-    config.CACHE_DIR = str(folder)
+    from numba import config
+
+    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    config.reload_config()
     return True
 
 
