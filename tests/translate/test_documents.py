@@ -114,11 +114,28 @@ class TestBlocks:
         assert found == pieces_of(text, keep_lines=keep_lines)
 
     def test_a_paragraph_longer_than_many_blocks(self, words):
-        text = made_text(words, 140_000, ends=False)
+        no_items = tuple(word for word in words if word[0].isalpha() and word[-1] not in ").")
+        text = made_text(no_items, 140_000, ends=False)
         found = pieces(document(text.encode()))
         assert found == pieces_of(text)
         assert len(found) > 16
         assert {p.continues for p in found[1:]} == {True}
+
+    def test_a_run_of_blanks_of_any_length_takes_no_memory_and_keeps_the_places(self):
+        blanks = 4_000_000
+        raw = b"x" + b" " * blanks + b"y\nz"
+        for keep_lines in (False, True):
+            gc.collect()
+            tracemalloc.start()
+            found = pieces(document(raw, keep_lines=keep_lines))
+            _, peak = tracemalloc.get_traced_memory()
+            tracemalloc.stop()
+            assert peak < 12 * BLOCK_BYTES * 8
+            shown = "".join(piece.text for piece in found)
+            places = [place for piece in found for place in piece.source]
+            assert shown.split() == (["x", "yz"] if keep_lines else ["x", "y", "z"])
+            letters = [place for place, c in zip(places, shown, strict=True) if c != " "]
+            assert letters == [0, blanks + 1, blanks + 3]
 
     @pytest.mark.parametrize("unit", ["é", "€", "😀", "\r\n", "\r\n\r\n", "x\xad\n", "e\u0301 "])
     def test_what_straddles_a_boundary(self, unit):

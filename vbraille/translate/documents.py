@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-import numpy as np
-
 from vbraille.errors import InputError
 from vbraille.translate.encodings import (
     SAMPLE_BYTES,
@@ -25,7 +23,13 @@ from vbraille.translate.encodings import (
     first_not_utf8,
     named_encoding,
 )
-from vbraille.translate.paragraphs import Paragraph, split_paragraphs, to_codes
+from vbraille.translate.paragraphs import (
+    Paragraph,
+    Stretch,
+    shorten_blanks,
+    split_paragraphs,
+    to_codes,
+)
 
 BLOCK_BYTES = 65_536
 
@@ -46,6 +50,8 @@ class _Mark:
         Characters between that place and the paragraph.
     continues
         Whether the paragraph is a further piece of the one before.
+    item
+        Number of the list item that it is a piece of; 0 for none.
     """
 
     paragraph: int
@@ -54,6 +60,7 @@ class _Mark:
     state: tuple[bytes, int]
     skip: int
     continues: bool
+    item: int = 0
 
     @property
     def bytes(self) -> int:
@@ -266,23 +273,28 @@ class Document:
     def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
         """Paragraphs from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
-        codes = np.empty(0, np.uint32)
+        parts: list[Stretch] = []
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
-        offset, first = mark.offset, mark.character - mark.skip
+        offset, place = mark.offset, mark.character - mark.skip
+        kept = wanted = blanks = 0
+        final = False
         while True:
-            state = self._decoder.state()
-            # Twice as much every time: what is not done with is gone over again.
-            read = self._read(offset, max(BLOCK_BYTES, offset - mark.offset))
-            final = offset + len(read) >= self.size or not read
-            pieces.append((codes.size, offset, state))
-            codes = np.concatenate(
-                (codes, to_codes(self._decoder.decode(read, offset, final=final)))
-            )
-            offset += len(read)
+            while not final and (kept < wanted or not parts):
+                pieces.append((place, offset, self._decoder.state()))
+                read = self._read(offset, BLOCK_BYTES)
+                final = offset + len(read) >= self.size or not read
+                codes = to_codes(self._decoder.decode(read, offset, final=final))
+                offset += len(read)
+                skipped = min(max(0, mark.character - place), codes.size)
+                part, blanks = shorten_blanks(codes[skipped:], place + skipped, blanks)
+                place += codes.size
+                parts.append(part)
+                kept += len(part)
+            parts = [Stretch.joined(parts)]
             split = split_paragraphs(
-                codes[mark.skip :],
-                mark.character,
+                parts[0],
                 continues=mark.continues,
+                item=mark.item,
                 final=final,
                 keep_lines=self.keep_lines,
             )
@@ -290,10 +302,19 @@ class Document:
                 return split.paragraphs, None
             if split.paragraphs or split.used:
                 break
-        used = mark.skip + split.used
+            # Twice as much every time: what is not done with is gone over again.
+            wanted = 2 * kept + 1
+        used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
-        number = mark.paragraph + len(split.paragraphs)
-        after = _Mark(number, first + used, offset, state, used - before, split.continues)
+        after = _Mark(
+            mark.paragraph + len(split.paragraphs),
+            used,
+            offset,
+            state,
+            used - before,
+            split.continues,
+            split.item,
+        )
         return split.paragraphs, after
 
 
