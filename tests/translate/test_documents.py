@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from tests.translate.model import Piece, pieces_of
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.translate import Document, Paragraph
 from vbraille.translate.documents import BLOCK_BYTES
 
@@ -427,8 +427,33 @@ class TestRefused:
         found = Document.open(path)
         assert len(paragraphs(found)) == 30_000
         path.write_text("A paragraph.\n\n" * 100)
-        with pytest.raises(InputError, match="has changed since it was opened; open it again"):
+        with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
             found.paragraph(10_000)
+        found.close()
+
+    def test_a_file_that_becomes_shorter_before_its_end_is_read(self, tmp_path):
+        path = tmp_path / "book.txt"
+        path.write_text("A paragraph.\n\n" * 30_000)
+        found = Document.open(path)
+        assert found.paragraph(10).text == "A paragraph."
+        path.write_text("A paragraph.\n\n" * 15_000)
+        with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
+            paragraphs(found)
+        found.close()
+
+    def test_a_file_that_grows_is_read_as_far_as_it_was_and_it_is_said_once(self, tmp_path):
+        path = tmp_path / "book.txt"
+        path.write_text("A paragraph.\n\n" * 30_000)
+        found = Document.open(path)
+        assert found.paragraph(10).text == "A paragraph."
+        with path.open("a") as file:
+            file.write("More.\n\n" * 100)
+        assert found.note() is None
+        assert {paragraph.text for paragraph in paragraphs(found)} == {"A paragraph."}
+        assert found.note() == (
+            f"{path} has grown since it was opened; open it again to read what was added"
+        )
+        assert found.note() is None
         found.close()
 
 

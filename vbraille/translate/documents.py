@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.encodings import (
     SAMPLE_BYTES,
     Decoder,
@@ -108,7 +108,7 @@ class Document:
         self.keep_lines = keep_lines
         self._stream = stream
         sample = self._read(0, SAMPLE_BYTES)
-        self.size = stream.seek(0, io.SEEK_END)
+        self.size = self._end()
         if not sample:
             raise InputError(f"{name} is empty; give a text file")
         if isinstance(encoding, Encoding):
@@ -124,7 +124,7 @@ class Document:
                 raise InputError(f"{name} is empty; give a text file")
         self._decoder = Decoder(self.encoding.name)
         self._found = encoding is None
-        self._noted = False
+        self._noted = self._grown = False
         start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
         self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
         self._complete = False
@@ -168,7 +168,15 @@ class Document:
         return cls(stream, "text", Encoding("utf-32-le"), keep_lines=keep_lines)
 
     def note(self) -> str | None:
-        """Say once, after it is found, that the text is not UTF-8, and where; None otherwise."""
+        """What must be said of the file, each thing once after it is found; None if nothing is.
+
+        That the text is not UTF-8, and where; that the file has grown since it was opened.
+        """
+        if self._grown:
+            self._grown = False
+            return (
+                f"{self.name} has grown since it was opened; open it again to read what was added"
+            )
         if self._noted:
             return None
         if self._found and self.encoding.name != "utf-8":
@@ -192,7 +200,9 @@ class Document:
         Raises
         ------
         InputError
-            If the file cannot be read any more, or is no longer what it was.
+            If the file cannot be read any more.
+        VbrailleError
+            If it is no longer what it was.
         """
         while number >= self._marks[-1].paragraph and not self._complete:
             self._read_block(len(self._marks) - 1)
@@ -204,7 +214,7 @@ class Document:
             paragraphs = self._read_block(block)
         index = number - self._marks[block].paragraph
         if index >= len(paragraphs):
-            raise InputError(f"{self.name} has changed since it was opened; open it again")
+            raise VbrailleError(f"{self.name} has changed since it was opened; open it again")
         return paragraphs[index]
 
     def paragraph_at(self, character: int) -> int | None:
@@ -249,6 +259,13 @@ class Document:
         except OSError as error:
             raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
 
+    def _end(self) -> int:
+        """Bytes that the file has now."""
+        try:
+            return self._stream.seek(0, io.SEEK_END)
+        except OSError as error:
+            raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
+
     def _read_block(self, block: int) -> list[Paragraph]:
         """Read the paragraphs of a block; mark where the next begins if that is not known yet."""
         mark = self._marks[block]
@@ -256,6 +273,7 @@ class Document:
         if block == len(self._marks) - 1:
             if after is None:
                 self._complete = True
+                self._grown = self._end() > self.size
                 after = _Mark(
                     mark.paragraph + len(paragraphs),
                     paragraphs[-1].end if paragraphs else mark.character,
@@ -281,8 +299,12 @@ class Document:
         while True:
             while not final and (kept < wanted or not parts):
                 pieces.append((place, offset, self._decoder.state()))
-                read = self._read(offset, BLOCK_BYTES)
-                final = offset + len(read) >= self.size or not read
+                read = self._read(offset, min(BLOCK_BYTES, self.size - offset))
+                if not read and offset < self.size:
+                    raise VbrailleError(
+                        f"{self.name} has become shorter since it was opened; open it again"
+                    )
+                final = offset + len(read) >= self.size
                 codes = to_codes(self._decoder.decode(read, offset, final=final))
                 offset += len(read)
                 skipped = min(max(0, mark.character - place), codes.size)
