@@ -10,16 +10,14 @@ from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from tests.translate.model import Piece, pieces_of
-from vbraille.translate.paragraphs import (
+from vbraille.translate.characters import (
     LONGEST_BLANK,
-    PIECE_CHARACTERS,
-    Paragraph,
     Stretch,
     shorten_blanks,
-    split_paragraphs,
     to_codes,
     to_text,
 )
+from vbraille.translate.paragraphs import PIECE_CHARACTERS, Paragraph, split_paragraphs
 
 # What the rules speak of, and a few letters.
 AWKWARD = list("aaé- \n\r\t\f\v\x85\xa0\xad\u2010\u2028\u2029\u202f\u0301\ufeff\0\ud800😀.")

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.characters import Stretch, shorten_blanks, to_codes
 from vbraille.translate.encodings import (
     SAMPLE_BYTES,
     Decoder,
@@ -23,13 +24,7 @@ from vbraille.translate.encodings import (
     first_not_utf8,
     named_encoding,
 )
-from vbraille.translate.paragraphs import (
-    Paragraph,
-    Stretch,
-    shorten_blanks,
-    split_paragraphs,
-    to_codes,
-)
+from vbraille.translate.paragraphs import Paragraph, split_paragraphs
 
 BLOCK_BYTES = 65_536
 

@@ -2,34 +2,37 @@
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.translate.characters import (
+    BLANK,
+    BREAK,
+    DROPPED,
+    NEWLINE,
+    TEXT,
+    kinds_of,
+    to_codes,
+    to_text,
+)
+from vbraille.translate.items import LONGEST_MARKER, end_before_items
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
+    from vbraille.translate.characters import Stretch
+
 # A longer paragraph is handed on in pieces: no text may grow with the file.
 PIECE_CHARACTERS = 8_192
-# Cells; a carriage that goes ten metres crosses fewer than this.
-LONGEST_BLANK = 4_096
 
 SPACE = 0x20
 NO_BREAK_SPACE = 0xA0
 
-_TEXT, _BLANK, _NEWLINE, _BREAK, _DROPPED = range(5)
-_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all above
-_KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = (
-    _BLANK
-)
-_KINDS[[0x0A, 0x0B, 0x0D, 0x85, 0x2028]] = _NEWLINE
-_KINDS[[0x0C, 0x2029]] = _BREAK
-_KINDS[0xAD] = _DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
 # Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
@@ -38,16 +41,8 @@ _COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x30
 _SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
 # Characters after a line break that say whether a space belongs there: such a word and one more.
 _WORD = 5
-# What a line of a list begins with: a bullet, a dash, a number or a letter, and then a blank.
-_MARKER = re.compile(
-    r"(?:(?P<bullet>[•‣◦⁃●○■▪*-])|(?P<dash>[–—+])|\(?(?P<number>\d{1,3})[.)]|\(?(?P<letter>[a-z])\))"
-    r"[ \t\u00a0\u2000-\u200a\u3000]"
-)
-_LONGEST_MARKER = 6
-_LEADS = np.array([ord(lead) for lead in "•‣◦⁃●○■▪*-–—+(0123456789"], np.uint32)
-_BULLET, _DASH = -1, -2
 # Characters that must follow a place before it is known what belongs there.
-_LOOK_AHEAD = max(_WORD, _LONGEST_MARKER) + 1
+_LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,16 +92,6 @@ class Paragraph:
         return Paragraph(codes, source, self.end, True, self.alphabet)
 
 
-def to_codes(text: str) -> NDArray[np.uint32]:
-    """Code points of a string, lone surrogates included."""
-    return np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
-
-
-def to_text(codes: NDArray[np.uint32]) -> str:
-    """String of code points, lone surrogates included."""
-    return codes.astype("<u4").tobytes().decode("utf-32-le", "surrogatepass")
-
-
 @dataclass(frozen=True, slots=True)
 class Split:
     """What `split_paragraphs` made of a stretch of characters.
@@ -127,86 +112,6 @@ class Split:
     used: int
     continues: bool
     item: int = 0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stretch:
-    """A stretch of a document's characters, some of which may have been left out.
-
-    Parameters
-    ----------
-    codes : uint32[n]
-        Code points.
-    begins : int64[runs]
-        Index of the first character of each run that nothing is left out of; from 0, growing.
-    places : int64[runs]
-        Where that character stands in the document, counted in characters from its first.
-    """
-
-    codes: NDArray[np.uint32]
-    begins: NDArray[np.int64]
-    places: NDArray[np.int64]
-
-    @classmethod
-    def whole(cls, codes: NDArray[np.uint32], place: int) -> Stretch:
-        """Characters from a place of the document on, nothing left out."""
-        return cls(codes, np.zeros(1, np.int64), np.full(1, place, np.int64))
-
-    @classmethod
-    def joined(cls, parts: list[Stretch]) -> Stretch:
-        """Put stretches that follow each other into one."""
-        before = np.cumsum([0, *(len(part) for part in parts[:-1])])
-        begins = [part.begins + size for part, size in zip(parts, before, strict=True)]
-        return cls(
-            np.concatenate([part.codes for part in parts]),
-            np.concatenate(begins),
-            np.concatenate([part.places for part in parts]),
-        )
-
-    def place(self, index: NDArray[np.intp] | int) -> NDArray[np.int64]:
-        """Places in the document of characters of the stretch, by their indices."""
-        run = np.searchsorted(self.begins, index, "right") - 1
-        return index + (self.places - self.begins)[run]
-
-    def __len__(self) -> int:
-        return self.codes.size
-
-
-def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tuple[Stretch, int]:
-    """Shorten runs of blanks that are longer than any line of a page.
-
-    What stands where a line breaks is not shown, so that the lines stay the same.
-
-    Parameters
-    ----------
-    codes : uint32[n]
-        Code points.
-    place
-        Where the first of them stands in the document.
-    before
-        Blanks right before it.
-
-    Returns
-    -------
-    stretch : Stretch
-        The characters with runs of at most `LONGEST_BLANK`.
-    after : int
-        Blanks at the end, to be given with the characters that follow.
-    """
-    blank = _kinds(codes) == _BLANK
-    others = np.flatnonzero(~blank)
-    if not others.size:
-        room = max(0, LONGEST_BLANK - before)
-        return Stretch.whole(codes[:room].copy(), place), before + codes.size
-    after = codes.size - 1 - int(others[-1])
-    longest = max(before + int(others[0]), after, int(np.diff(others).max(initial=1)) - 1)
-    if longest <= LONGEST_BLANK:
-        return Stretch.whole(codes, place), after
-    at = np.arange(codes.size)
-    run = at - np.maximum.accumulate(np.where(blank, -1 - before, at))
-    kept = at[run <= LONGEST_BLANK]
-    begins = np.flatnonzero(np.diff(kept, prepend=-2) > 1)
-    return Stretch(codes[kept], begins, place + kept[begins]), after
 
 
 def split_paragraphs(
@@ -233,10 +138,10 @@ def split_paragraphs(
         Make a paragraph of every line instead.
     """
     codes = stretch.codes
-    kinds = _kinds(codes)
-    kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
-    text = np.flatnonzero(kinds == _TEXT)
-    newline = (kinds == _NEWLINE) | (kinds == _BREAK)
+    kinds = kinds_of(codes)
+    kinds[codes == _BYTE_ORDER_MARK] = DROPPED
+    text = np.flatnonzero(kinds == TEXT)
+    newline = (kinds == NEWLINE) | (kinds == BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
     if text.size == 0:
         line_ends = np.flatnonzero(newline)[-1:] + 1
@@ -248,7 +153,7 @@ def split_paragraphs(
         codes[codes == space] = NO_BREAK_SPACE
     if keep_lines:
         keep = _keep_blanks(kinds)
-        codes[keep & (kinds == _BLANK)] = SPACE
+        codes[keep & (kinds == BLANK)] = SPACE
         ends = newlines > 0
         line_starts = np.maximum.accumulate(
             np.where(newline | (codes == 0x0A), np.arange(codes.size), -1)
@@ -256,15 +161,15 @@ def split_paragraphs(
         starts = line_starts[text] + 1
         empty = newlines > 1
     else:
-        ends = (newlines > 1) | (_between(kinds == _BREAK, text) > 0)
-        item = _end_before_items(ends, codes, text, newlines, None if not continues else item)
+        ends = (newlines > 1) | (_between(kinds == BREAK, text) > 0)
+        item = end_before_items(ends, codes, text, newlines, None if not continues else item)
         after = slice(text[-1], None)
-        ended = final or newline[after].sum() > 1 or (kinds[after] == _BREAK).any()
-        gaps = np.flatnonzero((_between((kinds != _TEXT) & (kinds != _DROPPED), text) > 0) & ~ends)
+        ended = final or newline[after].sum() > 1 or (kinds[after] == BREAK).any()
+        gaps = np.flatnonzero((_between((kinds != TEXT) & (kinds != DROPPED), text) > 0) & ~ends)
         spaces = text[gaps] + 1
         spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
         codes[spaces] = SPACE
-        keep = kinds == _TEXT
+        keep = kinds == TEXT
         keep[spaces] = True
         starts = text
         empty = np.zeros(text.size - 1, bool)
@@ -304,11 +209,6 @@ def split_paragraphs(
     return Split(paragraphs, codes.size, continues=False)
 
 
-def _kinds(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
-    """Kind of each character: text, blank, newline, break, or one that is dropped."""
-    return _KINDS[np.minimum(codes, _KINDS.size - 1)]
-
-
 def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
     """How many marked characters stand between each two neighbouring text characters."""
     return np.diff(np.cumsum(marked)[text])
@@ -317,11 +217,11 @@ def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.in
 def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Text, and the blanks that have text after them on their line."""
     places = np.arange(kinds.size)
-    text = np.where(kinds == _TEXT, places, kinds.size)
-    newline = np.where((kinds == _NEWLINE) | (kinds == _BREAK), places, kinds.size)
+    text = np.where(kinds == TEXT, places, kinds.size)
+    newline = np.where((kinds == NEWLINE) | (kinds == BREAK), places, kinds.size)
     next_text = np.minimum.accumulate(text[::-1])[::-1]
     next_newline = np.minimum.accumulate(newline[::-1])[::-1]
-    return (kinds == _TEXT) | ((kinds == _BLANK) & (next_text < next_newline))
+    return (kinds == TEXT) | ((kinds == BLANK) & (next_text < next_newline))
 
 
 def _joins_words(
@@ -343,59 +243,6 @@ def _joins_words(
         within = at > 0 and chr(codes[at - 1]).isalnum() and word[0].isalnum()
         joins[n] |= within and word.split(maxsplit=1)[0] not in _SUSPENDED
     return joins
-
-
-def _end_before_items(
-    ends: NDArray[np.bool_],
-    codes: NDArray[np.uint32],
-    text: NDArray[np.intp],
-    newlines: NDArray[np.intp],
-    item: int | None,
-) -> int:
-    """Mark that paragraphs end where the next line begins an item of a list.
-
-    A bullet always begins one. A dash does in a list of dashes, and a number in its turn; the
-    first of either stands at a paragraph's start or after a colon, and so may a number 1
-    anywhere: a line of prose, too, can begin with a dash or with a number that ends a sentence.
-
-    Parameters
-    ----------
-    ends : bool[n]
-        Whether a paragraph ends after each character of ``text`` but the last; changed here.
-    item
-        Number of the list item that the first paragraph is in; None if it begins here.
-
-    Returns
-    -------
-    int
-        Number of the list item that the last paragraph is, or -2 in a list of dashes; else 0.
-    """
-    starts = np.concatenate(([-1], np.flatnonzero((newlines > 0) | ends)))
-    at = text[starts + 1]
-    following = codes[np.minimum(at + 1, codes.size - 1)]
-    leads = np.isin(codes[at], _LEADS) | (following == ord(")"))
-    blank_lines = np.flatnonzero(ends)
-    block, item_now = 0, item or 0
-    for start in starts[leads].tolist():
-        begins = bool(ends[start]) if start >= 0 else item is None
-        here = int(np.searchsorted(blank_lines, start, "right"))
-        if here != block:
-            block, item_now = here, 0
-        found = _MARKER.match(to_text(codes[text[start + 1] : text[start + 1] + _LONGEST_MARKER]))
-        if found is None or (start < 0 and item is not None):
-            continue
-        if found["number"]:
-            number = int(found["number"])
-        elif found["letter"]:
-            number = ord(found["letter"]) - ord("a") + 1
-        else:
-            number = _BULLET if found["bullet"] else _DASH
-        expected = number in (_BULLET, 1, item_now + 1 if item_now >= 0 else item_now)
-        if begins or expected or codes[text[start]] == ord(":"):
-            item_now = number
-            if start >= 0:
-                ends[start] = True
-    return item_now if block == blank_lines.size else 0
 
 
 def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: int) -> Iterator[int]:
