@@ -72,6 +72,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         help="what to say of each line (default: none at a terminal, else both)",
     )
     _hand_options(read)
+    read.set_defaults(model=None)  # the device's own
 
     page = command("page", "Print the laid-out page")
     _text_options(page)

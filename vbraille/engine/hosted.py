@@ -187,7 +187,9 @@ def main() -> int:
     for number in _PARENT_S:
         signal.signal(number, signal.SIG_IGN)
     try:
-        with FileIO(sys.stdin.fileno(), closefd=False) as orders:  # without a buffer, to be waited for
+        with FileIO(
+            sys.stdin.fileno(), closefd=False
+        ) as orders:  # without a buffer, to be waited for
             run(orders, int(sys.argv[1]))
     except VbrailleError as error:
         answer(fault=str(error), code=error.exit_code)

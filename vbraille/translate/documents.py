@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 from bisect import bisect_right
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -140,7 +141,7 @@ class Document:
             # A pipe cannot be read twice, and a file of /proc does not say how long it is.
             if not stream.seekable() or (path.is_file() and not path.stat().st_size):
                 with stream:
-                    stream = io.BytesIO(stream.read())
+                    stream = _kept(stream)
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
         except IsADirectoryError:
@@ -152,6 +153,32 @@ class Document:
             return cls(stream, str(path), encoding, keep_lines=keep_lines)
         except InputError:
             stream.close()
+            raise
+
+    @classmethod
+    def take(
+        cls,
+        stream: BinaryIO,
+        name: str,
+        encoding: str | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> Document:
+        """Take all that a stream gives, such as standard input, which may be longer than memory.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or kept, or is empty, binary, or of an unknown encoding.
+        """
+        try:
+            kept = _kept(stream)
+        except OSError as error:
+            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        try:
+            return cls(kept, name, encoding, keep_lines=keep_lines)
+        except InputError:
+            kept.close()
             raise
 
     @classmethod
@@ -295,6 +322,19 @@ class Document:
         number = mark.paragraph + len(split.paragraphs)
         after = _Mark(number, first + used, offset, state, used - before, split.continues)
         return split.paragraphs, after
+
+
+def _kept(stream: BinaryIO) -> BinaryIO:
+    """A temporary file of all that a stream gives, since a text is gone through more than once."""
+    from tempfile import TemporaryFile
+
+    with ExitStack() as opened:
+        kept = opened.enter_context(TemporaryFile())
+        while block := stream.read(BLOCK_BYTES):
+            kept.write(block)
+        kept.flush()
+        opened.pop_all()  # it is the caller's now
+    return kept
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:
