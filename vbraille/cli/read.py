@@ -175,12 +175,8 @@ class _Reading:
                 self._reader.quit()
             elif ticks["line"][-1] == self._reader.line_number:
                 self._reader.go_on()
-        if self._reader.stopped_mm is not None and not self._keyboard.attached:
-            raise DeviceError(
-                f"line {self._reader.line_number} cannot be read to its end: the carriage turns "
-                f"back at {self._reader.stopped_mm:.0f} mm each time; see what is in its way, or "
-                f"give a shorter --travel"
-            )
+        if self._reader.hopeless is not None and not self._keyboard.attached:
+            raise DeviceError(self._reader.hopeless)
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""

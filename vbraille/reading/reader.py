@@ -108,9 +108,9 @@ class Reader:
         self._too_fast_said = False
 
     @property
-    def stopped_mm(self) -> float | None:
-        """Where the carriage has turned back again and again before the line's end; else None."""
-        return None if self._line is None else self._waiting.stopped_mm
+    def hopeless(self) -> str | None:
+        """Why the line will not come to its end unless somebody sees to it; else None."""
+        return None if self._line is None else self._waiting.hopeless
 
     @property
     def line_number(self) -> int:
@@ -133,16 +133,19 @@ class Reader:
         if not ticks.size:
             self._waiting.rest()
             return
-        if self._end.find(ticks["x_mm"]) is not None and self._advance and not self._finished:
+        # What the device did not take was not felt.
+        felt_mm = ticks["x_mm"][ticks["flags"] & Flag.REFUSED == 0]
+        if self._end.find(felt_mm) is not None and self._advance and not self._finished:
             self.go_on()
-        elif self._end.reached and not self._prefetched:
-            # On the way back to the start there is time for it.
-            self._prefetched = True
-            self.layout.line(self._line.number + 1)
+        else:
+            if self._end.reached and not self._prefetched:
+                # On the way back to the start there is time for it.
+                self._prefetched = True
+                self.layout.line(self._line.number + 1)
+            if not self._finished:
+                for sentence in self._waiting.watch(ticks, reached=self._end.reached):
+                    self._say(sentence)
         self._watch_speed(float(ticks["speed_mm_s"].max()))
-        if self._advance and not self._finished:
-            for sentence in self._waiting.watch(ticks, reached=self._end.reached):
-                self._say(sentence)
 
     def go_on(self) -> None:
         """Put the next line under the hand; there is none: the reading is finished."""
@@ -238,7 +241,9 @@ class Reader:
         self._prefetched = False
         end_mm = self._geometry.extent_mm(len(line))
         self._end = EndOfLine(self._model.array.span_mm, end_mm)
-        self._waiting = Waiting(self._model.array.span_mm, end_mm, line.number, keys=self._stay)
+        self._waiting = Waiting(
+            self._model.array.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
+        )
         self._picture(line)
         self._say_line(line)
 
