@@ -29,15 +29,16 @@ def start(*arguments, **options):
 class Terminal:
     """A process at a terminal of its own: what it prints is read, keys are typed."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, program=PROGRAM, **environment):
         self.master, self._slave = os.openpty()
         self.before = termios.tcgetattr(self._slave)
         self.printed = ""
         # The first terminal that the leader of a new session opens is the session's: Ctrl-C works.
         at_terminal = 'exec "$@" <>"$0" >&0 2>&0'
         self.process = subprocess.Popen(
-            ["sh", "-c", at_terminal, os.ttyname(self._slave), *PROGRAM, *map(str, arguments)],
+            ["sh", "-c", at_terminal, os.ttyname(self._slave), *program, *map(str, arguments)],
             start_new_session=True,
+            env={**os.environ, "TERM": "xterm", **environment},
         )
 
     def __enter__(self):

@@ -289,7 +289,7 @@ def test_a_sweep_spec_out_of_range_names_the_range(speed):
     "spec", ["", "sweeps", "device:", "device:3", "recorded", "recorded:", ":"]
 )
 def test_an_unknown_spec_names_the_forms(spec):
-    with pytest.raises(InputError, match="sweep:SPEED in mm/s, device, fluent or recorded:FILE"):
+    with pytest.raises(InputError, match="sweep:SPEED in mm/s, slow, fluent or recorded:FILE"):
         parse_hand(spec)
 
 

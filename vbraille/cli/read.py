@@ -30,9 +30,9 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.ring import Flag
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import DeviceError, InputError
-from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.keys import PASTE
+from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:
@@ -57,18 +57,18 @@ def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
     rate_hz = check_rate(arguments.rate)
     once = isinstance(parse_hand(arguments.hand, arguments.seed), Recorded)
-    if arguments.advance == "key" and not (sys.stdin and sys.stdin.isatty()):
-        raise InputError("--advance key needs a terminal to type at; leave it out without one")
     # What the options ask for: a simulated device is just so, a real one is what it is.
     asked = MODELS[arguments.model or "stress2"]
     geometry = build_geometry(arguments, asked)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    book = build_book(arguments)
     wanted = device_info(asked, geometry, rate_hz)
     host = Host(device_spec(arguments.device, arguments.hand, arguments.seed), wanted)
     with Keyboard(beside=arguments.file == "-") as keyboard, Suspension() as suspension:
+        if arguments.advance == "key" and not keyboard.attached:
+            raise InputError("--advance key needs a terminal to type at; leave it out without one")
         try:
+            book = build_book(arguments)
             info = wanted if is_simulated(arguments.device) else host.open()
             page = _lay_out(arguments, book, info)
             mapping, tuning = build_show(arguments, page.model)

@@ -203,8 +203,7 @@ class Reader:
     def help(self) -> None:
         """Say the keys."""
         for command in COMMANDS:
-            keys = " or ".join("space" if key == " " else key for key in command.keys)
-            self._say(f"{keys}: {command.help}")
+            self._say(f"{command.spoken_keys}: {command.help}")
 
     def quit(self) -> None:
         """Stop reading."""
