@@ -272,6 +272,9 @@ def test_a_spec_gives_its_hand(tmp_path):
     assert parse_hand("sweep:60") == Sweep(60.0)
     assert isinstance(device, HumanHand)
     assert device.habits == DEVICE
+    slow = parse_hand("slow", 7)
+    assert isinstance(slow, HumanHand)
+    assert slow.habits == DEVICE
     assert isinstance(fluent, HumanHand)
     assert fluent.habits == FLUENT
     assert isinstance(recorded, Recorded)
