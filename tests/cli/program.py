@@ -80,6 +80,11 @@ class Terminal:
             pass
         return code
 
+    @property
+    def lines(self):
+        """What was printed, without the marks that turn the marking of pastes on and off."""
+        return re.sub(r"\x1b\[\?2004[hl]", "", self.printed)
+
     def settings(self):
         """The terminal's settings now."""
         return termios.tcgetattr(self._slave)
