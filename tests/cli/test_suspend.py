@@ -1,5 +1,6 @@
 """Ctrl-Z and fg, at a shell with job control."""
 
+import json
 import os
 import shlex
 import signal
@@ -11,6 +12,7 @@ import pytest
 
 from tests import drivers
 from tests.cli import program
+from tests.sessions.sittings import MINI
 
 SHELL = ("bash", "--norc", "--noprofile", "-i")
 PROMPT = "prompt> "
@@ -106,3 +108,23 @@ def test_without_keys_the_array_rests_too(shell, tmp_path, text):
     shell.type("fg\n")
     shell.until("reading\r\n")
     shell.until(r"summary: lines 3,")
+
+
+def test_a_session_pauses(shell, tmp_path):
+    (tmp_path / "mini.toml").write_text(MINI)
+    options = ["--participant", "P1", "--seed", "3", "--sound", "none", "--out", tmp_path / "s"]
+    command = [*program.PROGRAM, "session", "run", tmp_path / "mini.toml", *options]
+    shell.type(f"{shlex.join(map(str, command))}\n")
+    shell.until("cue: ")
+    shell.type("\x1a")
+    said = shell.until(STOPPED)
+    assert "pause: the array is at rest; Enter goes on\r\n" in said
+    shell.type("fg\n")
+    shell.until("session run")
+    shell.type("\n")
+    shell.until("go: on\r\n")
+    shell.type("stop\n")
+    shell.until(r"stopped: [\s\S]*" + PROMPT)
+    lines = (tmp_path / "s/journal.jsonl").read_text().splitlines()
+    told = [json.loads(line)["event"] for line in lines]
+    assert [event for event in told if event in ("pause", "go")] == ["pause", "go"]

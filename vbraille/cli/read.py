@@ -42,9 +42,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.cli.build import Page
-    from vbraille.devices import DeviceInfo
     from vbraille.engine.tally import Tally
-    from vbraille.translate import Book
 
 _POLL_S = 0.02
 _PLACES = {
@@ -59,10 +57,9 @@ def run(arguments: argparse.Namespace) -> int:
     once = isinstance(parse_hand(arguments.hand, arguments.seed), Recorded)
     # What the options ask for: a simulated device is just so, a real one is what it is.
     asked = MODELS[arguments.model or "stress2"]
-    geometry = build_geometry(arguments, asked)
+    wanted = device_info(asked, build_geometry(arguments, asked), rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    wanted = device_info(asked, geometry, rate_hz)
     host = Host(device_spec(arguments.device, arguments.hand, arguments.seed), wanted)
     with Keyboard(beside=arguments.file == "-") as keyboard, Suspension() as suspension:
         if arguments.advance == "key" and not keyboard.attached:
@@ -70,8 +67,12 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             book = build_book(arguments)
             info = wanted if is_simulated(arguments.device) else host.open()
-            page = _lay_out(arguments, book, info)
-            mapping, tuning = build_show(arguments, page.model)
+            model = model_of(info, arguments.model)
+            mapping, tuning = build_show(arguments, model)
+            if arguments.travel is not None:
+                check_travel(info, arguments.travel)
+            geometry = build_geometry(arguments, model, info.travel_mm)
+            page = lay_out(arguments, book, model, geometry)
             note_unseen_dots(page, mapping)
             host.fit(info, page.layout.width)
             host.start()
@@ -99,20 +100,6 @@ def run(arguments: argparse.Namespace) -> int:
         _say(f"device: {faults}")
     _say(_summary(reader.lines, host.tally, rate_hz))
     return 0
-
-
-def _lay_out(arguments: argparse.Namespace, book: Book, info: DeviceInfo) -> Page:
-    """Page for the device that is there.
-
-    Raises
-    ------
-    InputError
-        If it is another than the options say, or there is no page for it.
-    """
-    model = model_of(info, arguments.model)
-    if arguments.travel is not None:
-        check_travel(info, arguments.travel)
-    return lay_out(arguments, book, model, build_geometry(arguments, model, info.travel_mm))
 
 
 class _Reading:

@@ -67,7 +67,7 @@ class Keyboard:
             try:
                 if self._before is None:
                     self._before = termios.tcgetattr(self._descriptor)
-                tty.setcbreak(self._descriptor, termios.TCSADRAIN)
+                tty.setcbreak(self._descriptor, termios.TCSANOW)
                 break
             except termios.error as error:
                 if error.args[0] != errno.EINTR:  # by what brought us to the foreground
@@ -78,8 +78,9 @@ class Keyboard:
         """Leave the terminal as it was before the first `take`."""
         if self._descriptor is not None and self._before is not None:
             self._mark_pastes(PASTE_OFF)
+            # At once: output that the terminal holds back (Ctrl-S) must not hold up the end.
             with suppress(termios.error):  # the terminal is gone
-                termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._before)
+                termios.tcsetattr(self._descriptor, termios.TCSANOW, self._before)
 
     def _mark_pastes(self, how: bytes) -> None:
         if self._descriptor is not None and os.environ.get("TERM", "dumb") != "dumb":

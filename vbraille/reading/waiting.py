@@ -80,7 +80,7 @@ class Waiting:
             Whether the hand has been at the end of the line.
         """
         yield from self._watch_device(ticks)
-        if self._by_hand:
+        if self._by_hand and self._refused_ns is None:
             yield from self._watch_hand(ticks, reached)
 
     def _watch_hand(self, ticks: NDArray[np.void], reached: bool) -> Iterator[str]:
@@ -160,8 +160,9 @@ class Waiting:
             self._farthest_mm = max(self._farthest_mm, float(np.fmax.reduce(away)))
         if not home.size:
             return
-        if self._farthest_mm > self._home_mm + LEAST_WAY_MM:
-            self._turns_mm.append(self._farthest_mm + self._middle_mm)
+        place_mm = self._farthest_mm + self._middle_mm
+        if self._farthest_mm > self._home_mm + LEAST_WAY_MM and place_mm < self._end_mm:
+            self._turns_mm.append(place_mm)
             last = self._turns_mm[-TURNS:]
             if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
                 self.hopeless = (

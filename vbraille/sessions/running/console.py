@@ -66,9 +66,7 @@ class Console:
         course = self._course
         while course.phase is not Phase.OVER:
             if suspension.asked:
-                if not course.paused:
-                    self.pause()
-                suspension.stop()  # the pause goes on until Enter
+                self._suspend(suspension)
             lines = self._answers.lines(self._wait_s)
             if lines is None:
                 self._leave()
@@ -79,6 +77,15 @@ class Console:
             course.poll()
             if not self._answers.typed:
                 self._ask()
+
+    def _suspend(self, suspension: Suspension) -> None:
+        """Stop the process, in a pause; it goes on by Enter, if there is somebody to press it."""
+        paused = self._course.paused
+        if not paused:
+            self.pause()
+        suspension.stop()
+        if not paused and not self._answers.typed:
+            self.go_on()
 
     def take(self, line: str, number: int = 0) -> None:
         """Do what a line says: an order, an answer, or Enter.
