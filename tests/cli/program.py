@@ -1,5 +1,7 @@
 """The program as its users have it: a process, perhaps at a terminal."""
 
+import array
+import fcntl
 import os
 import re
 import select
@@ -59,6 +61,15 @@ class Terminal:
     def type(self, keys):
         """Type keys."""
         os.write(self.master, keys.encode())
+
+    def type_apart(self, pieces):
+        """Type bytes, each piece when the process has read the one before."""
+        for piece in pieces:
+            os.write(self.master, piece)
+            waiting = array.array("i", [1])
+            while waiting[0]:
+                os.sched_yield()
+                fcntl.ioctl(self._slave, termios.FIONREAD, waiting)
 
     def until(self, pattern):
         """Read until something new that matches is printed; give the new part."""

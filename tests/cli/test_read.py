@@ -1,6 +1,5 @@
 """``vbraille read``: through a pipe, and at a terminal with its keys."""
 
-import os
 import re
 import signal
 
@@ -136,8 +135,7 @@ def test_keys_at_a_terminal(tmp_path, text):
         press(" ", "reading")
         press("x", "no command: 'x'; h says the keys")
         press("n", "line: 2")
-        terminal.type("\x1b[")  # a key in two pieces
-        press("B", "line: 3")
+        press("\x1b[B", "line: 3")
         press("n", "last line")
         press("\x1bOA", "line: 2")
         press("\x1b[A", "line: 1")
@@ -159,14 +157,13 @@ def test_keys_at_a_terminal(tmp_path, text):
         check_plain(terminal)
 
 
-def test_a_character_in_two_pieces_is_one(text):
+def test_a_key_in_two_pieces_is_one(text):
     with program.Terminal("read", text, "--advance", "key") as terminal:
         terminal.until("h says the keys")
-        first, second = "é".encode()
-        os.write(terminal.master, bytes([first]))
-        terminal.until("")
-        os.write(terminal.master, bytes([second]))
+        terminal.type_apart([b"\xc3", b"\xa9"])
         terminal.until("no command: 'é'; h says the keys")
+        terminal.type_apart([b"\x1b[", b"B"])
+        terminal.until("line: 2\r\n")
         terminal.type("q")
         assert terminal.end() == 0
 
@@ -183,6 +180,17 @@ def test_standard_input_is_read_while_keys_come_from_the_terminal(text):
         assert terminal.end() == 0
         assert terminal.settings() == terminal.before
         check_plain(terminal)
+
+
+def test_a_text_can_be_typed():
+    with program.Terminal("read", "-", "--advance", "key", "--echo", "text") as terminal:
+        terminal.until("type the text; Ctrl-D on an empty line ends it\r\n")
+        terminal.type("one\n\ntwo\n\x04")
+        terminal.until("h says the keys")
+        terminal.type("n")
+        terminal.until("line: 2\r\ntext: two\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
 
 
 def test_standard_input_is_read_without_a_terminal_too(text):

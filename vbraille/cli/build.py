@@ -116,6 +116,8 @@ def build_book(arguments: argparse.Namespace) -> Book:
     if arguments.file == "-":
         if sys.stdin is None:
             raise InputError("standard input is closed; give a text there, or the name of a file")
+        if sys.stdin.isatty():
+            print("type the text; Ctrl-D on an empty line ends it", file=sys.stderr, flush=True)
         document = Document.take(
             sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
         )

@@ -275,7 +275,12 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    parser.add_argument("file", metavar="FILE", nargs="?" if optional else None, help="a text file")
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="a text file, or - for standard input (read then takes keys from the terminal)",
+    )
     parser.add_argument("--table", metavar="NAME", help="a liblouis table")
     parser.add_argument("--language", metavar="TAG", help="instead of a table (en)")
     parser.add_argument("--grade", type=whole, metavar="N", help="of the language's braille")

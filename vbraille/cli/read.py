@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import (
@@ -61,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     host = Host(device_spec(arguments.device, arguments.hand, arguments.seed), wanted)
-    with Keyboard(beside=arguments.file == "-") as keyboard, Suspension() as suspension:
+    with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
         try:
@@ -90,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
                 stay=keyboard.attached,
                 echo=_echo(arguments.echo),
             )
+            # Till now Ctrl-Z may do what it does elsewhere.
+            suspension = listening.enter_context(Suspension())
             keyboard.take()
             _Reading(page, reader, host, keyboard, suspension, once=once).run()
         finally:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import os
 from bisect import bisect_right
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -330,7 +331,8 @@ def _kept(stream: BinaryIO) -> BinaryIO:
 
     with ExitStack() as opened:
         kept = opened.enter_context(TemporaryFile())
-        while block := stream.read(BLOCK_BYTES):
+        # Past Python's buffer, which asks a terminal for more after its end was typed.
+        while block := os.read(stream.fileno(), BLOCK_BYTES):
             kept.write(block)
         kept.flush()
         opened.pop_all()  # it is the caller's now
