@@ -171,8 +171,7 @@ def test_a_key_in_two_pieces_is_one(text):
 def test_standard_input_is_read_while_keys_come_from_the_terminal(text):
     piped = f"cat {text} | {' '.join(program.PROGRAM)} read - --advance key --echo text"
     with program.Terminal(piped, program=["sh", "-c"]) as terminal:
-        terminal.until("text: one two three\r\n")
-        terminal.until("h says the keys")
+        terminal.until("text: one two three\r\nh says the keys\r\n")
         assert terminal.settings() != terminal.before
         terminal.type("n")
         terminal.until("line: 2\r\ntext: four five six\r\n")

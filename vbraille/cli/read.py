@@ -158,7 +158,10 @@ class _Reading:
             _say(_PLACES.get(placing, "place: known"))
         line = self._reader.lines
         self._reader.step(ticks)
-        done = ticks["flags"][-1] & Flag.FOLLOWED and not self._keyboard.attached
+        done = (
+            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.REFUSED) == Flag.FOLLOWED
+            and not self._keyboard.attached
+        )
         if done and self._reader.lines == line and not self._reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._once:
