@@ -15,7 +15,7 @@ import numpy as np
 from vbraille import pictures
 from vbraille.cli.build import build_geometry, build_page, build_show, build_table
 from vbraille.errors import InputError
-from vbraille.render import VBD
+from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
@@ -61,7 +61,8 @@ def _new_name(kind: str) -> Path:
 def _table(arguments: argparse.Namespace) -> Table:
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
-    model, geometry = build_geometry(arguments)
+    model = MODELS[arguments.model]
+    geometry = build_geometry(arguments, model)
     mapping, tuning = build_show(arguments, model)
     match arguments.kind:
         case "profile":

@@ -18,8 +18,9 @@ from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
 from vbraille.devices.hand import Recorded, parse_hand
+from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
-from vbraille.reading import EndOfLine, too_fast_note
+from vbraille.reading.reader import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
 from vbraille.wording import count, duration

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import io
+import os
 from bisect import bisect_right
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -142,7 +144,7 @@ class Document:
             # A pipe cannot be read twice, and a file of /proc does not say how long it is.
             if not stream.seekable() or (path.is_file() and not path.stat().st_size):
                 with stream:
-                    stream = io.BytesIO(stream.read())
+                    stream = _kept(stream)
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
         except IsADirectoryError:
@@ -154,6 +156,32 @@ class Document:
             return cls(stream, str(path), encoding, keep_lines=keep_lines)
         except InputError:
             stream.close()
+            raise
+
+    @classmethod
+    def take(
+        cls,
+        stream: BinaryIO,
+        name: str,
+        encoding: str | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> Document:
+        """Take all that a stream gives, such as standard input, which may be longer than memory.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or kept, or is empty, binary, or of an unknown encoding.
+        """
+        try:
+            kept = _kept(stream)
+        except OSError as error:
+            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        try:
+            return cls(kept, name, encoding, keep_lines=keep_lines)
+        except InputError:
+            kept.close()
             raise
 
     @classmethod
@@ -333,6 +361,20 @@ class Document:
             split.item,
         )
         return split.paragraphs, after
+
+
+def _kept(stream: BinaryIO) -> BinaryIO:
+    """A temporary file of all that a stream gives, since a text is gone through more than once."""
+    from tempfile import TemporaryFile
+
+    with ExitStack() as opened:
+        kept = opened.enter_context(TemporaryFile())
+        # Past Python's buffer, which asks a terminal for more after its end was typed.
+        while block := os.read(stream.fileno(), BLOCK_BYTES):
+            kept.write(block)
+        kept.flush()
+        opened.pop_all()  # it is the caller's now
+    return kept
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:
