@@ -87,7 +87,8 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         help="what to say of each line (default: none at a terminal, else both)",
     )
     _hand_options(read)
-    read.set_defaults(model=None)  # the device's own
+    # The model is the device's own, and only a simulated one has a hand.
+    read.set_defaults(model=None, hand=None, seed=None)
     read.says_keys = True
 
     page = command("page", "Print the laid-out page")
