@@ -6,7 +6,17 @@ import argparse
 import os
 
 from vbraille import __version__
-from vbraille.cli.optionvalues import Pairs, duration, lines, marks, names, number, seed, whole
+from vbraille.cli.optionvalues import (
+    Pairs,
+    checksum,
+    duration,
+    lines,
+    marks,
+    names,
+    number,
+    seed,
+    whole,
+)
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -178,8 +188,20 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
         "--bids", action="store_true", help="*_beh.tsv with its sidecar, traces as *_physio.tsv.gz"
     )
 
+    export.add_argument(
+        "--salvage",
+        action="store_true",
+        help="of a damaged session, export what is whole after the damage too",
+    )
+
     check = action("check", "see whether every file of a session is whole and consistent")
     check.add_argument("folder", metavar="DIR", help="the session's directory")
+    check.add_argument(
+        "--expect",
+        type=checksum,
+        metavar="SUM",
+        help="see that nothing was changed since a stop, the end or an export said this SHA-256",
+    )
 
 
 def _plan_options(parser: argparse.ArgumentParser) -> None:

@@ -138,11 +138,12 @@ def _resume(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record import bids
     from vbraille.sessions.record.export import Traces, encode, rows, to_csv, write_new
+    from vbraille.sessions.record.folder import whole_lines
 
     if arguments.bids and not arguments.out:
         raise InputError("--bids needs a directory; give one with --out")
-    record = load(Path(arguments.folder))
-    traces = Traces(record)
+    record = load(Path(arguments.folder), salvaged=arguments.salvage)
+    traces = Traces(record, salvaged=arguments.salvage)
     if arguments.bids:
         for path in bids.write(record, Path(arguments.out), traces):
             _say(f"written: {path}")
@@ -153,19 +154,32 @@ def _export(arguments: argparse.Namespace) -> int:
         else:
             write_new(Path(arguments.out), encode(table))
             _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
+    # Where the table is printed, nothing else may be between it and who reads it.
+    told = sys.stdout if arguments.out else sys.stderr
+    print(f"record: {journal.sum_of(whole_lines(record.folder))}", file=told, flush=True)
     faults = list(traces.faults)
-    if record.told.damage is not None:
+    if record.told.bad:
+        faults.append(f"of {journal.NAME}, {_lines(record.told.bad)}")
+    elif record.told.damage is not None:
         faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
     if faults:
         raise VbrailleError(f"exported is what is whole; {'; '.join(faults)}")
     return 0
 
 
+def _lines(bad: tuple[int, ...]) -> str:
+    """Say which lines of a journal are not whole."""
+    from vbraille.sessions.record.export import spans
+
+    one = len(bad) == 1
+    return f"{'line' if one else 'lines'} {spans(bad)} {'is' if one else 'are'} not whole"
+
+
 def _check(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.check import check_folder
 
     good = True
-    for finding in check_folder(Path(arguments.folder)):
+    for finding in check_folder(Path(arguments.folder), arguments.expect):
         good &= finding.good
         _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1

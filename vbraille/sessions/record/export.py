@@ -20,7 +20,7 @@ from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.progress import Told
     from vbraille.sessions.record.traces import Trace
 
+_TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
 NEVER_CAME = "the hand never came to the first dot"
 
 # What each column holds: the table's head, and its description in BIDS.
@@ -72,6 +73,8 @@ class Traces:
     ----------
     record
         The session.
+    salvaged
+        Whether what is whole after a damage is used too.
 
     Attributes
     ----------
@@ -79,8 +82,9 @@ class Traces:
         What is wrong with those that were asked for.
     """
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: Record, *, salvaged: bool = False) -> None:
         self.faults: list[str] = []
+        self._salvaged = salvaged
         self._record = record
         self._traces: dict[str, Trace] = {}
 
@@ -96,16 +100,30 @@ class Traces:
     def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
         """Ticks of some lines of a trace, in order; None if not all of them are known."""
         trace = self.read(name)
-        # Line numbers grow along a trace, so that damage cuts the last one short.
+        if trace.damage is None:
+            return _of(trace.ticks, lines)
+        # Line numbers grow along a trace, so that damage cuts the last one short, and in what
+        # comes after it the first one, from which some may be missing.
         known = trace.ticks["line"]
-        if trace.damage is not None and not (known.size and known[-1] > max(lines)):
-            return None
-        # By steps in Python: numpy would copy the whole column, for each trial.
-        first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
-        part = trace.ticks[first:stop]
-        if max(lines) - min(lines) < len(set(lines)):  # there are none between them
-            return part
-        return part[np.isin(part["line"], lines)]
+        if known.size and known[-1] > max(lines):
+            return _of(trace.ticks, lines)
+        for stretch in trace.later if self._salvaged else ():
+            known = stretch["line"]
+            last = stretch is trace.later[-1] or known[-1] > max(lines)
+            if known[0] < min(lines) and last:
+                return _of(stretch, lines)
+        return None
+
+
+def _of(ticks: NDArray[np.void], lines: list[int]) -> NDArray[np.void]:
+    """Ticks of some lines, whose numbers grow along them."""
+    known = ticks["line"]
+    # By steps in Python: numpy would copy the whole column, for each trial.
+    first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
+    part = ticks[first:stop]
+    if max(lines) - min(lines) < len(set(lines)):  # there are none between them
+        return part
+    return part[np.isin(part["line"], lines)]
 
 
 def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
@@ -152,6 +170,11 @@ def walk(
         if isinstance(seen, Trajectory):
             row["duration_s"] = round(seen.duration.seconds, 6)
             row["returned"] = int(seen.duration.returned)
+        if told.lost:
+            # A pause may be among them, or that the trial was shown again.
+            seen = f"events of the journal are lost: {spans(told.lost)}"
+            row |= dict.fromkeys(_TIMES, "")
+            row["faults"] = "; ".join([*told.faults, seen])
         yield row | fields, seen
 
 
@@ -200,6 +223,17 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
     return row
 
 
+def spans(numbers: Sequence[int]) -> str:
+    """Say numbers that grow, such as 3-5, 9."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and parts[-1][-1] == number - 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
+
+
 def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
@@ -215,6 +249,8 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
     ticks = traces.of(trace, [showing.line for showing in told.last_attempt])
     if ticks is None:
         return f"{trace} is damaged before the end of it"
+    if not ticks.size:
+        return f"{trace} has no tick of it"
     if not edges:
         return "no dot of it is shown"
     felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)

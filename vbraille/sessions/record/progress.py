@@ -66,6 +66,8 @@ class Told:
         How long it was paused since the cue.
     source
         Where the answer came from: typed, simulated:0.2, a file's name.
+    lost
+        Numbers of events that are not whole in a journal that was salvaged, and may be of it.
     """
 
     attempts: int = 0
@@ -78,6 +80,7 @@ class Told:
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
     source: str = ""
+    lost: list[int] = field(default_factory=list)
 
     @property
     def last_attempt(self) -> list[Showing]:
@@ -147,6 +150,8 @@ class Progress:
         self.notes: list[str] = []
         self.torn_bytes = 0
         self._answers = ""
+        self._trial = 0
+        self._lost: list[int] = []
         self._paused_s: float | None = None
         self._answered = 0
         for event in events:
@@ -191,6 +196,9 @@ class Progress:
             name = "corrected" if event.get("corrects") else event["event"]
             told.t_s[name] = event["t_s"]
             told.wall[name] = event["wall"]
+        if "trial" in event and "practice" not in event:
+            self._mark_lost(event["trial"])
+            self._trial = event["trial"]
 
     def _of(self, event: Event) -> Told | None:
         if "trial" not in event:
@@ -202,8 +210,18 @@ class Progress:
         assert told is not None, f"a {event['event']} is of a trial"
         return told
 
-    def _take_session(self, event: Event) -> None:
-        pass
+    def _mark_lost(self, trial: int) -> None:
+        """Mark the trials that events before one of this trial may be of."""
+        first, last = sorted((self._trial or trial, trial))
+        for number in range(first, last + 1) if self._lost else ():
+            told = self.trials[number]
+            told.lost = sorted({*told.lost, *self._lost})
+        self._lost = []
+
+    def _take_lost(self, event: Event) -> None:
+        self._lost.append(event["n"])
+        if self._trial:
+            self.trials[self._trial].lost.append(event["n"])
 
     def _take_run(self, event: Event) -> None:
         self.runs.append(event)
@@ -222,7 +240,7 @@ class Progress:
             event["attempt"],
             event["stimulus"],
             event.get("line", 0),
-            self.runs[-1].get("trace"),
+            self.runs[-1].get("trace") if self.runs else None,
             event.get("tuning", {}),
         )
         told.showings.append(showing)
@@ -273,7 +291,7 @@ class Progress:
         self.tuning = event["tuning"]
         self.line = max(self.line, event.get("line", 0))
         told = self._of(event)
-        if told is not None and "line" in event:
+        if told is not None and told.showings and "line" in event:
             last = told.showings[-1]
             told.showings.append(replace(last, line=event["line"], tuning=event["tuning"]))
 
