@@ -269,7 +269,7 @@ class _Killed:
                 )
         checked = _run(["session", "check", str(self._folder)])
         named = any(line.startswith(f"{journal.TORN}: ") for line in checked.lines)
-        if checked.code or named != bool(self._tails) or "is ended" not in checked.lines[-1]:
+        if checked.code or named != bool(self._tails) or "is ended" not in checked.lines[-2]:
             self._add(
                 self._others, f"session check, exit code {checked.code}: {'; '.join(checked.lines)}"
             )

@@ -165,6 +165,11 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     _plan_options(run)
     run.add_argument("--out", metavar="DIR", help="its directory (PARTICIPANT-PROTOCOL-TIME)")
     _conduct_options(run)
+    run.add_argument(
+        "--another",
+        action="store_true",
+        help="the participant is somebody else than the one whose pseudonym is nearly the same",
+    )
     run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
     run.add_argument("--rate", type=number, metavar="HZ", help="frames a second (1000)")
     run.add_argument(
@@ -184,10 +189,13 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--out", metavar="FILE|DIR", help="trials as CSV (default: printed); with --bids, a dataset"
     )
-    export.add_argument(
-        "--bids", action="store_true", help="*_beh.tsv with its sidecar, traces as *_physio.tsv.gz"
-    )
+    export.add_argument("--bids", action="store_true", help="add the session to a BIDS dataset")
 
+    export.add_argument(
+        "--anonymous",
+        action="store_true",
+        help="without times of day, paths and notes; elapsed times stay",
+    )
     export.add_argument(
         "--salvage",
         action="store_true",

@@ -15,7 +15,9 @@ import numpy as np
 
 from vbraille.engine.ring import Flag
 from vbraille.errors import InputError, VbrailleError
+from vbraille.geometry import BOUNDS_MM
 from vbraille.sessions.record.folder import read_told_trace
+from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
@@ -25,8 +27,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.geometry import Geometry
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.notes import Note
     from vbraille.sessions.record.progress import Told
     from vbraille.sessions.record.traces import Trace
 
@@ -43,6 +47,15 @@ COLUMNS = {
     "condition": "name, as in the protocol",
     "texture": "level of texture, 0 to 1",
     "contrast": "share of the full swing, 0 to 1",
+    "texture_cycles": "half-cycles of texture a radius, where the model has that",
+    "model": "name of the display",
+    "mapping": "how dot rows are shown by actuator rows, by name",
+    "dot_width_mm": "width of a dot along the line; two values where they are compared",
+    "dot_spacing_mm": "between the two dot columns of a cell; two values where they are compared",
+    "cell_gap_mm": "from a cell's right dot column to the next cell's left one",
+    "row_spacing_mm": "between neighbouring dot rows",
+    "line_pitch_mm": "between lines",
+    "travel_mm": "of the carriage",
     "parameter": "what two stimuli were compared by, in mm; empty where strings are read",
     "presented": "Unicode braille of the cells asked for; two values, the first one first",
     "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
@@ -59,7 +72,9 @@ COLUMNS = {
     "paused_s": "length of the pauses",
     "warned": "1 if the warning sounded",
     "faults": "what went wrong with the device in the trial, all attempts",
-    "notes": "of the experimenter",
+    "notes": "of the experimenter, typed in the trial",
+    "notes_before": "typed between the trial shown before and this one",
+    "notes_after": "typed between this trial and the one shown next, or the end",
     "cue_time": "wall clock at the start signal, UTC",
     "answer_time": "wall clock at the answer, UTC",
     "trace": "file of the trace of the last attempt",
@@ -161,9 +176,11 @@ def walk(
     progress = Progress(record.plan, record.told.events)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
+    notes = read_notes(record.told.events)
     for trial in record.plan.trials:
         told = progress.trials[trial.number]
         row, seen = _row(record, trial, told), None
+        row |= _noted(notes, trial.number)
         strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
@@ -182,6 +199,7 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
     """Row of a trial, without what its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
+    protocol, geometries = record.protocol, [stimulus.geometry for stimulus in trial.stimuli]
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
     row |= {
         "session": record.folder.resolve().name,
@@ -192,12 +210,15 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
         "condition": trial.condition,
         "texture": told.tuning.get("texture", tuning.texture),
         "contrast": told.tuning.get("contrast", tuning.contrast),
+        "texture_cycles": tuning.cycles if protocol.model.name == "stress2" else "",
+        "model": protocol.model.name,
+        "mapping": protocol.mapping.name,
+        **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
         "attempt": told.attempts,
         "paused_s": round(told.paused_s, 6),
         "warned": int("warning" in t_s),
         "faults": "; ".join(told.faults),
-        "notes": "; ".join(told.notes),
         "cue_time": told.wall.get("cue", ""),
         "answer_time": told.wall.get("answer", ""),
         "trace": told.showings[-1].trace or "" if told.showings else "",
@@ -221,6 +242,22 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
         if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
             row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
+
+
+def _noted(notes: list[Note], trial: int) -> dict[str, str]:
+    """Cells of a trial for the notes in it and around it."""
+    between = [note for note in notes if not note.trial]
+    return {
+        "notes": texts(note for note in notes if note.trial == trial),
+        "notes_before": texts(note for note in between if note.after == trial),
+        "notes_after": texts(note for note in between if note.before == trial),
+    }
+
+
+def _each(geometries: list[Geometry], name: str) -> str:
+    """A length of the stimuli of a trial, once if they agree."""
+    lengths = dict.fromkeys(f"{getattr(geometry, name):g}" for geometry in geometries)
+    return " ".join(lengths)
 
 
 def spans(numbers: Sequence[int]) -> str:
