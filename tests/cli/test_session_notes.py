@@ -74,7 +74,7 @@ def test_notes_are_in_the_report(call, noted, tmp_path):
         "before the first", "in it", "in the second", "after the last",
     ]  # fmt: skip
     assert [(row["trial_before"], row["trial"], row["trial_after"]) for row in rows] == [
-        ("1", "1", "1"), ("1", "1", "1"), ("2", "2", "2"), ("4", "", ""),
+        ("1", "1", "1"), ("1", "1", "1"), ("2", "2", "2"), ("4", "none", "none"),
     ]  # fmt: skip
     assert "after the last" in (tmp_path / "report" / "report.html").read_text()
 
