@@ -55,8 +55,6 @@ class Told:
         All of them, in order.
     faults
         What went wrong with the device while it ran.
-    notes
-        What the experimenter wrote meanwhile.
     t_s
         When, in seconds of the session, things last happened, by the event's name: presented, cue,
         contact, read, answer, corrected, warning.
@@ -75,7 +73,6 @@ class Told:
     first_answer: str | None = None
     showings: list[Showing] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
@@ -127,8 +124,6 @@ class Progress:
         Seconds that the session has run for.
     ended : bool
         Whether it is over: all trials done, or its time.
-    notes : list[str]
-        Those that belong to no trial.
     torn_bytes : int
         Length of what was set aside of the journal, in all.
     """
@@ -145,9 +140,7 @@ class Progress:
         self.line = 0
         self.script_lines: dict[str, int] = {}
         self.t_s = 0.0
-        self.wall = ""
         self.ended = False
-        self.notes: list[str] = []
         self.torn_bytes = 0
         self._answers = ""
         self._trial = 0
@@ -185,7 +178,6 @@ class Progress:
     def take(self, event: Event) -> None:
         """Go on by an event."""
         self.t_s = max(self.t_s, event["t_s"])
-        self.wall = event["wall"]
         if "script_line" in event:
             self.script_lines[self._answers] = event["script_line"]
         handler = getattr(self, f"_take_{event['event']}", None)
@@ -270,10 +262,6 @@ class Progress:
         told = self._of(event)
         if told is not None:
             told.faults.append(event["what"])
-
-    def _take_note(self, event: Event) -> None:
-        told = self._of(event)
-        (self.notes if told is None else told.notes).append(event["text"])
 
     def _take_pause(self, event: Event) -> None:
         self._paused_s = event["t_s"]
