@@ -212,7 +212,7 @@ def test_tables_can_always_be_made_again_byte_for_byte(call, folder, tmp_path):
         assert said.out == f"written: {tmp_path}/{name}.csv, 4 rows\n{printed.err}"
         assert (tmp_path / f"{name}.csv").read_text() == printed.out
         said = call("session", "export", folder, "--bids", "--out", tmp_path / name)
-        assert (said.code, said.err, said.out.count("written: ")) == (0, "", 5)
+        assert (said.code, said.err, said.out.count("written: ")) == (0, "", 10)
     sets = [{p.relative_to(tmp_path / n): c for p, c in contents(tmp_path / n).items()}
             for n in ("one", "two")]  # fmt: skip
     assert sets[0] == sets[1]

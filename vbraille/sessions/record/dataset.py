@@ -95,9 +95,11 @@ def _people(folder: Path) -> dict[str, str]:
             csv.DictReader(io.StringIO((folder / _PEOPLE).read_text("utf-8")), delimiter="\t")
         )
         known = {row["participant_id"].removeprefix("sub-"): row["pseudonym"] for row in told}
-    except FileNotFoundError:
-        known = {}
-    except (OSError, ValueError, KeyError, AttributeError):
+    except (FileNotFoundError, NotADirectoryError):
+        known = {}  # where it is no directory, writing it says so
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
+    except (ValueError, KeyError, AttributeError):
         raise InputError(
             f"{folder / _PEOPLE} cannot be read as a table of participant_id and pseudonym; "
             f"give another directory with --out"

@@ -26,7 +26,7 @@ def salvage(content: bytes) -> Told:
     if told.damage is None:
         return told
     *lines, torn = content.split(b"\n")
-    whole = _whole(lines)
+    sound, whole = _whole(lines)
     events: list[Event] = []
     if lines and not whole[0] and (first := _first(lines[0])):
         # It is not sure itself: but who has the files that it has the checksums of, knows.
@@ -39,31 +39,34 @@ def salvage(content: bytes) -> Told:
     after = whole[::-1].index(True) if True in whole else 0
     if after and events:
         events += _lost(events, events[-1]["n"] + after, events[-1])
-    bad = [number for number, good in enumerate(whole, 1) if not good]
+    bad = [number for number, good in enumerate(sound, 1) if not good]
     if not bad:  # the last line has lost its end
         bad, torn = [len(lines) + 1], b""
         events += _lost(events, events[-1]["n"] + 1, events[-1]) if events else []
     return Told(events, told.good_bytes, told.crcs, torn, told.damage, tuple(bad))
 
 
-def _whole(lines: list[bytes]) -> list[bool]:
-    """Whether each line verifies."""
+def _whole(lines: list[bytes]) -> tuple[list[bool], list[bool]]:
+    """Whether each line verifies, and whether its event does, if only its checksum was hit."""
+    sound: list[bool] = []
     whole: list[bool] = []
     written, reckoned = {0}, set[int]()  # checksums that the line before may have
     for line in lines:
         found = LINE.fullmatch(line)
         if found is None:
+            sound.append(False)
             whole.append(False)
             written, reckoned = set(), set()
             continue
         sums = {before: crc32(found[1], before) for before in written | reckoned}
         stored = int(found[2], 16)
         by = [before for before, crc in sums.items() if crc == stored]
+        sound.append(bool(by))
         whole.append(bool(by))
         if by and not set(by) & written:
             whole[-2] = True  # its checksum alone was hit
         written, reckoned = {stored}, set(sums.values()) - {stored}
-    return whole
+    return sound, whole
 
 
 def _parse(line: bytes) -> Event:
