@@ -100,10 +100,14 @@ class Session:
         }  # fmt: skip
         create(folder, self.protocol, self.plan, head)
 
+    def person(self, *script):
+        """A person who types these lines."""
+        return Person(list(script))
+
     def sit(self, *script, engine=BatchEngine, noise=0.0):
-        """Run it: by a person who types these lines, else by a simulated reader."""
-        said, played = [], []
-        person = Person(list(script), said=said)
+        """Run it: by a person, or one who types these lines, else by a simulated reader."""
+        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
+        said, played = person.said, []
         answers = person if script else Simulated(self.protocol, self.plan.seed, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":

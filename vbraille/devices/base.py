@@ -154,6 +154,11 @@ class Device(ABC):
     def _release(self) -> None:
         """Let the device go; called once, after rest was sent."""
 
+    @property
+    def held(self) -> bool:
+        """Whether the actuators are at rest by themselves, whatever frames are written."""
+        return False
+
     def set_zero(self) -> None:
         """Take it that the carriage is at the left stop now: the reader says so."""
 

@@ -101,6 +101,11 @@ class SerialDevice(Device):
         """What the device said of itself first."""
         return self._info
 
+    @property
+    def held(self) -> bool:
+        """Whether the device went to rest for want of frames and has taken none since."""
+        return self._delivery.held
+
     def set_zero(self) -> None:
         """Take it that the carriage is at the left stop now: the reader says so."""
         self._place.set_zero()

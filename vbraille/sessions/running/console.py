@@ -63,6 +63,8 @@ class Console:
             if lines is None:
                 self._leave()
                 return
+            if lines:
+                course.look()  # what was felt up to them counts before they do
             for line in lines:
                 if course.phase is not Phase.OVER:
                     self.take(line)
