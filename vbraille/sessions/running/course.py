@@ -132,6 +132,11 @@ class Course:
         return self.read_said if self.display is None else self.display.read
 
     @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of the open trial; on paper, whether it is read."""
+        return self.read_said if self.display is None else self.display.reached
+
+    @property
     def second_to_come(self) -> bool:
         """Whether a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial

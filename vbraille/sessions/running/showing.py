@@ -156,6 +156,11 @@ class OnDevice:
         return self._read
 
     @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of what is shown."""
+        return self._read or self._end.reached
+
+    @property
     def explorations(self) -> list[Exploration]:
         """What was felt of the trial's stimuli so far."""
         together = (np.concatenate(parts) for parts in self._felt)
@@ -267,7 +272,8 @@ class OnDevice:
 
         The rule: a tick of the trial, pauses left out, at which the device was silent, did
         not know its place, had gone to rest by itself or took no frames, or one before which
-        others were lost. That the array rests because the hand stands still is how it is always read.
+        others were lost. That the array rests because the hand stands still is as it is
+        always read.
         """
         shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & Flag.PAUSED == 0)
         ticks, lost = ticks[shown], lost[shown]
