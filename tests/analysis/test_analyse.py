@@ -282,8 +282,8 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
 
 
 def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
-    session = Session(tmp_path / "early", MINI, "P1", hand="sweep:20")
-    notes = [("note", "note x")] * 8
+    session = Session(tmp_path / "early", MINI, "P1", hand="sweep:10")
+    notes = [("note", "note x")] * 9
     session.sit(
         ("cue: trial 1", "note x"), *notes, ("note", "c"), ("no answer", "c"),
         ("read:", "c"), ("cue: trial 3", "stop"),

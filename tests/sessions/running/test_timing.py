@@ -66,7 +66,7 @@ def test_an_answer_before_it_was_read_is_asked_about_once_and_marked(tmp_path, n
 
 
 def test_another_answer_is_asked_about_anew_and_one_after_the_reading_is_not(tmp_path):
-    sat = Session(tmp_path / "s").sit(
+    sat = Session(tmp_path / "s", hand="sweep:10").sit(
         ("cue", "c"), ("no answer", "a"), ("no answer", "note x"), ("read:", "a"), ("cue", "stop")
     )
     assert sum(line.startswith("no answer") for line in sat.said) == 2
@@ -74,7 +74,7 @@ def test_another_answer_is_asked_about_anew_and_one_after_the_reading_is_not(tmp
 
 
 def test_a_repeated_trial_is_asked_about_again(tmp_path):
-    sat = Session(tmp_path / "s").sit(
+    sat = Session(tmp_path / "s", hand="sweep:10").sit(
         ("cue", "c"), ("no answer", "repeat"), ("cue", "c"), ("no answer", "c"), ("cue", "stop")
     )
     assert sum(line.startswith("no answer") for line in sat.said) == 2
@@ -82,7 +82,7 @@ def test_a_repeated_trial_is_asked_about_again(tmp_path):
 
 
 def test_mending_an_early_answer_leaves_it_early(tmp_path):
-    sat = Session(tmp_path / "s").sit(
+    sat = Session(tmp_path / "s", hand="sweep:10").sit(
         ("cue", "c"), ("no answer", "c"), ("answer: trial 1", "undo"), ("undo", "a"),
         ("answer: trial 1", "stop"),
     )  # fmt: skip
@@ -91,7 +91,7 @@ def test_mending_an_early_answer_leaves_it_early(tmp_path):
 
 
 def test_the_second_of_two_must_be_read_too(tmp_path):
-    sat = Session(tmp_path / "s", COMPARED).sit(
+    sat = Session(tmp_path / "s", COMPARED, hand="sweep:10").sit(
         ("cue: .*second", "2"), ("no answer", "2"), ("answer: trial 1", "stop")
     )
     assert [trial(sat, n)["early"] for n in (1, 2)] == [1, 0]
