@@ -111,7 +111,7 @@ class Session:
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
         person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
         said, played = person.said, []
-        answers = person if script else Simulated(self.protocol, self.plan.seed, noise)
+        answers = person if script else Simulated(self.protocol, self.plan, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
             array = model.array

@@ -8,6 +8,7 @@ from vbraille.engine.ring import Flag
 from vbraille.sessions.planning.spelling import say_cells
 from vbraille.sessions.running.orders import ORDERS
 
+PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'
 ALL = [("read:", "c")] * 4
 STUDIED = MINI + "".join(f'[[conditions]]\nname = "c{n}"\ntexture = {n}\n' for n in (0, 1))
 
@@ -208,19 +209,19 @@ def test_contrast_out_of_range_or_studied_is_refused(tmp_path, session):
 
 
 def test_practice_tells_what_it_was_and_begin_ends_it(tmp_path):
-    session = Session(tmp_path / "s", MINI + "[practice]\ntrials = 3\n")
-    sat = session.sit(("read:", "c"), ("practice: ", "begin"), *ALL, ("last", ""))
+    session = Session(tmp_path / "s", MINI + PRACTICE)
+    sat = session.sit(("read:", "ca"), ("practice: ", "begin"), *ALL, ("last", ""))
     told = [sentence for sentence in sat.said if sentence.startswith("practice: ")]
     shown = session.plan.practice[0].presented
-    assert told == [f"practice: {'right' if shown == '⠉' else 'wrong'}, it was "
+    assert told == [f"practice: {'right' if shown == '⠉⠁' else 'wrong'}, it was "
                     f"{say_cells(shown, session.protocol.keys)}"]  # fmt: skip
-    assert sat.progress.practice[1].answer == "⠉"
+    assert sat.progress.practice[1].answer == "⠉⠁"
     assert sat.progress.done == 4
 
 
 def test_practice_goes_over_into_the_trials(tmp_path):
-    session = Session(tmp_path / "s", MINI + "[practice]\ntrials = 2\n")
-    sat = session.sit(*[("read:", "c")] * 2, *ALL, ("last", ""))
+    session = Session(tmp_path / "s", MINI + PRACTICE)
+    sat = session.sit(*[("read:", "ca")] * 2, *ALL, ("last", ""))
     assert sat.progress.done == 4
 
 
