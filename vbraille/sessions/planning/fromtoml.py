@@ -220,12 +220,12 @@ def _combinations(design: Section, keys: dict[str, int], spelled: _Spelled) -> C
         if len(masks) != 1:
             design.fail(f"characters have {quote(text)}, {len(masks)} cells; give one each")
         characters += masks
-    around = []
+    around: dict[str, tuple[int, ...]] = {}
     for key in ("before", "after"):
         with design.checking(f"{key}: "):
-            around.append(spelled(design.text(key, ""), keys))
+            around[key] = spelled(design.text(key, ""), keys)
     return Combinations(
-        tuple(characters), design.whole("length"), *around, design.whole("repeats", 1)
+        tuple(characters), design.whole("length"), repeats=design.whole("repeats", 1), **around
     )
 
 
