@@ -61,8 +61,8 @@ def test_files_that_cannot_be_read(call, tmp_path):
         assert "cannot be read" in refused(call(*command, loop))
 
 
-def test_a_name_that_would_move_the_cursor_is_spelled(call):
-    assert "\\x1b[2J\\x07" in refused(call("page", "no\x1b[2J\x07"))
+def test_a_control_character_in_a_name_is_named(call):
+    assert "no<escape>[2J<bell>" in refused(call("page", "no\x1b[2J\x07"))
     assert "\\udcff" in refused(call("page", "no\udcff"))
 
 

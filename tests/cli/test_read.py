@@ -92,7 +92,7 @@ def test_a_hand_that_is_at_the_end_between_two_ticks_goes_on(call, text):
 def test_nothing_in_a_text_moves_the_cursor(call, text):
     text.write_bytes(b"red \x1b[31m\n")
     said = call("read", text, *FAST)
-    assert "text: red \\x1b[31m\n" in said.out
+    assert "text: red <escape>[31m\n" in said.out
     assert "\x1b" not in said.out
 
 

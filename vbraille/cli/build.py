@@ -6,12 +6,12 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
 from vbraille.translate import Book, Document, Table, find_table
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -56,6 +56,14 @@ class Page:
         if self.last is None:
             return self.layout.progress(line)
         return (line.number - self.first + 1) / (self.last - self.first + 1)
+
+    def share_before(self, line: Line) -> float:
+        """How much of the lines asked for stands before one of them, about, 0 to 1."""
+        if self.last is not None:
+            return (line.number - self.first) / (self.last - self.first + 1)
+        first = self.layout.line(self.first)
+        skipped = self.layout.progress(first) if first is not None else 0.0
+        return (self.layout.progress(line) - skipped) / (1 - skipped)
 
     def say_note(self) -> None:
         """Say once if the text is not UTF-8."""

@@ -88,6 +88,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     _show_options(render)
     _hand_options(render)
     render.add_argument("--out", required=True, metavar="FILE.h5", help="the file to write")
+    render.add_argument("--force", action="store_true", help="replace the file if it is there")
     render.add_argument("--plain", action="store_true", help="progress as lines, without a bar")
 
     plot = command("plot", "Draw a picture, or print its numbers")

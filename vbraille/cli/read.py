@@ -10,7 +10,6 @@ from vbraille.cli.build import (
     build_show,
     note_unseen_dots,
 )
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate, device_info, device_spec
 from vbraille.devices.base import Placing
@@ -23,6 +22,7 @@ from vbraille.errors import InputError
 from vbraille.reading import Echo, Reader
 from vbraille.reading.keyboard import Keyboard
 from vbraille.render import MODELS
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
