@@ -6,7 +6,17 @@ import argparse
 import os
 
 from vbraille import __version__
-from vbraille.cli.optionvalues import Pairs, duration, lines, marks, names, number, seed, whole
+from vbraille.cli.optionvalues import (
+    Pairs,
+    checksum,
+    duration,
+    lines,
+    marks,
+    names,
+    number,
+    seed,
+    whole,
+)
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -174,6 +184,11 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     _plan_options(run)
     run.add_argument("--out", metavar="DIR", help="its directory (PARTICIPANT-PROTOCOL-TIME)")
     _conduct_options(run)
+    run.add_argument(
+        "--another",
+        action="store_true",
+        help="the participant is somebody else than the one whose pseudonym is nearly the same",
+    )
     run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
     run.add_argument("--rate", type=number, metavar="HZ", help="frames a second (1000)")
     run.add_argument(
@@ -193,12 +208,27 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--out", metavar="FILE|DIR", help="trials as CSV (default: printed); with --bids, a dataset"
     )
+    export.add_argument("--bids", action="store_true", help="add the session to a BIDS dataset")
+
     export.add_argument(
-        "--bids", action="store_true", help="*_beh.tsv with its sidecar, traces as *_physio.tsv.gz"
+        "--anonymous",
+        action="store_true",
+        help="without times of day, paths and notes; elapsed times stay",
+    )
+    export.add_argument(
+        "--salvage",
+        action="store_true",
+        help="of a damaged session, export what is whole after the damage too",
     )
 
     check = action("check", "see whether every file of a session is whole and consistent")
     check.add_argument("folder", metavar="DIR", help="the session's directory")
+    check.add_argument(
+        "--expect",
+        type=checksum,
+        metavar="SUM",
+        help="see that nothing was changed since a stop, the end or an export said this SHA-256",
+    )
 
 
 def _plan_options(parser: argparse.ArgumentParser) -> None:
