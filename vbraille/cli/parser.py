@@ -189,7 +189,7 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the participant is somebody else than the one whose pseudonym is nearly the same",
     )
-    run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
+    run.set_defaults(device="sim", answers="typed", rate=1000.0)
     run.add_argument("--rate", type=number, metavar="HZ", help="frames a second (1000)")
     run.add_argument(
         "--field",
