@@ -43,9 +43,14 @@ class Logged(SimulatedDevice):
 
 def install(folder: Path) -> dict[str, str]:
     """Install it there as the device kind ``logged``; the environment of programs that know it."""
-    package = folder / "logged-1.dist-info"
+    return {**os.environ, "PYTHONPATH": install_module(folder, "logged", "Logged", _MODULE)}
+
+
+def install_module(folder: Path, name: str, opener: str, source: str) -> str:
+    """Install a module as a driver there, its kind and its file named alike; the folder."""
+    package = folder / f"{name}-1.dist-info"
     package.mkdir()
-    (package / "METADATA").write_text("Name: logged\nVersion: 1\n")
-    (package / "entry_points.txt").write_text("[vbraille.devices]\nlogged = logged:Logged\n")
-    (folder / "logged.py").write_text(_MODULE)
-    return {**os.environ, "PYTHONPATH": str(folder)}
+    (package / "METADATA").write_text(f"Name: {name}\nVersion: 1\n")
+    (package / "entry_points.txt").write_text(f"[vbraille.devices]\n{name} = {name}:{opener}\n")
+    (folder / f"{name}.py").write_text(source)
+    return str(folder)

@@ -10,7 +10,7 @@ import numpy as np
 from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
-from vbraille.devices import open_device
+from vbraille.devices import opened_device
 from vbraille.devices.base import Placing
 from vbraille.engine.checkup import hold_rate, round_trips_ms, swing_each, warm_up
 from vbraille.engine.clock import RealClock
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.action == "check":
         with EAR.at_once():
             warm_up()
-    with open_device(arguments.spec, _wanted(arguments)) as device:
+    with opened_device(arguments.spec, _wanted(arguments)) as device:
         _describe(device.info)
         if arguments.action == "info":
             return 0
