@@ -129,7 +129,11 @@ def _device_options(parser: argparse.ArgumentParser) -> None:
     actions.add_parser("list", help="the serial ports, with names and ids")
     for name, text in (
         ("info", "what a device says of itself"),
-        ("check", "swing each actuator, hold the rate, measure the round trip, and judge"),
+        (
+            "check",
+            "swing each actuator, hold the rate, measure the clock, the round trip and the "
+            "watchdog, and judge",
+        ),
     ):
         action = actions.add_parser(name, help=text, description=f"{text.capitalize()}.")
         action.add_argument("spec", metavar="SPEC", help="serial:/dev/ttyACM0, …")
@@ -336,3 +340,15 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
         ("unplug-every", "be unplugged so long after each greeting, such as 5s; needs --link"),
     ):
         parser.add_argument(f"--{name}", type=duration, default=0.0, metavar="DURATION", help=text)
+    parser.add_argument(
+        "--defect",
+        choices=(
+            "no-acknowledgement",
+            "no-actuators",
+            "off-place",
+            "slow-clock",
+            "no-watchdog",
+            "late-watchdog",
+        ),
+        help="be built wrong in this, which 'vbraille device check' finds",
+    )

@@ -96,6 +96,7 @@ class SerialDevice(Device):
         self._unsent = self._missed = self._reconnections = 0
         self._trips_before = self._disbelieved_before = 0
         self._losses = port.losses
+        self.watchdog_trips = 0
         self._delivery = Delivery()
         self._begin(greeted.info, now_ns())
         self._take(greeted.events, now_ns())

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import DeviceInfo, opened_device
 from vbraille.devices.blame import TRACEBACK
+from vbraille.devices.notices import EVERY_NS, Notices
 from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
@@ -182,22 +183,22 @@ def run(config: dict[str, Any], descriptor: int, channel: Channel) -> None:
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=asdict(device.info), note=note)
         channel.never_wait()
+        notices = Notices()
         try:
             loop.restart_clock()
             while hosted.wanted:
                 hosted.tick()
-                _say_notes(device, channel)
+                for note in device.take_notes():
+                    notices.add(note, note, loop.clock.now_ns())
+                for note in notices.take(loop.clock.now_ns()):
+                    channel.say(note=note)
         finally:
             ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()
-            _say_notes(device, channel)
+            for note in (*device.take_notes(), *notices.take(loop.clock.now_ns() + EVERY_NS)):
+                channel.say(note=note)
             channel.say(counts={str(name): int(n) for name, n in device.counts().items()})
-
-
-def _say_notes(device: Device, channel: Channel) -> None:
-    for note in device.take_notes():
-        channel.say(note=note)
 
 
 def main() -> int:
