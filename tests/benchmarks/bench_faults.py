@@ -189,6 +189,6 @@ def _descriptors(host: Host) -> Counter[str]:
     names = Counter[str]()
     for descriptor in Path(f"/proc/{host.process_id}/fd").iterdir():
         with suppress(OSError):  # closed meanwhile
-            name = os.readlink(descriptor).removesuffix(" (deleted)")
+            name = str(descriptor.readlink()).removesuffix(" (deleted)")
             names[re.sub(r":?\[\d+\]$|(?<=^/dev/pts)/\d+$", "", name)] += 1
     return names
