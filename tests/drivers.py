@@ -41,16 +41,13 @@ class Logged(SimulatedDevice):
 '''
 
 
-def install(folder: Path) -> dict[str, str]:
-    """Install it there as the device kind ``logged``; the environment of programs that know it."""
-    return {**os.environ, "PYTHONPATH": install_module(folder, "logged", "Logged", _MODULE)}
-
-
-def install_module(folder: Path, name: str, opener: str, source: str) -> str:
-    """Install a module as a driver there, its kind and its file named alike; the folder."""
+def install(
+    folder: Path, name: str = "logged", opener: str = "Logged", module: str = _MODULE
+) -> dict[str, str]:
+    """Install it there as a device kind of its name; the environment of programs that know it."""
     package = folder / f"{name}-1.dist-info"
     package.mkdir()
     (package / "METADATA").write_text(f"Name: {name}\nVersion: 1\n")
     (package / "entry_points.txt").write_text(f"[vbraille.devices]\n{name} = {name}:{opener}\n")
-    (folder / f"{name}.py").write_text(source)
-    return str(folder)
+    (folder / f"{name}.py").write_text(module)
+    return {**os.environ, "PYTHONPATH": str(folder)}

@@ -28,7 +28,8 @@ def driver(tmp_path, monkeypatch):
         indented = "".join(f"    {line}\n" for line in body.splitlines())
         source = f"{HEAD}{head}\nclass Other({kind}):\n{indented}"
         source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
-        monkeypatch.syspath_prepend(drivers.install_module(tmp_path, "other", opener, source))
+        drivers.install(tmp_path, "other", opener, source)
+        monkeypatch.syspath_prepend(str(tmp_path))
         monkeypatch.delitem(sys.modules, "other", raising=False)
         return source.splitlines()
 

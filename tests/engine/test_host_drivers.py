@@ -33,7 +33,7 @@ def driver(tmp_path, monkeypatch):
             f"    {line}\n" for line in body.splitlines()
         )
         source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
-        folder = drivers.install_module(tmp_path, "other", "open_other", source)
+        folder = drivers.install(tmp_path, "other", "open_other", source)["PYTHONPATH"]
         monkeypatch.setenv("PYTHONPATH", folder)
         return source.splitlines()
 
@@ -113,7 +113,7 @@ def test_a_driver_that_waits_for_ever_outlives_a_killed_parent_by_seconds(tmp_pa
                 f"    {line}\n" for line in lines
             )
             source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
-            path = drivers.install_module(folder, "other", "open_other", source)
+            path = drivers.install(folder, "other", "open_other", source)["PYTHONPATH"]
             parent = subprocess.Popen(
                 [sys.executable, "-c", _PARENT],
                 env={**os.environ, "PYTHONPATH": f"{path}:."},

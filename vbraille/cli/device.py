@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.checking import check
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
 from vbraille.devices import opened_device
@@ -13,6 +12,7 @@ from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.render import MODELS
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

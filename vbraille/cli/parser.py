@@ -29,11 +29,26 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one sentence."""
 
+    says_keys = False  # whether its help ends with the keys of a reading
+
     def __init__(self, **options) -> None:
         super().__init__(**options, formatter_class=_Help, allow_abbrev=False)
 
+    def format_help(self) -> str:
+        """Help, as argparse has it, and the keys."""
+        return super().format_help() + (_keys() if self.says_keys else "")
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} ({self.prog} --help says what there is)")
+
+
+def _keys() -> str:
+    """What the keys do at a terminal, a line each."""
+    from vbraille.reading.commands import COMMANDS
+
+    width = max(len(command.spoken_keys) for command in COMMANDS)
+    lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in COMMANDS]
+    return "\nkeys at a terminal:\n" + "".join(lines)
 
 
 def parse(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -51,7 +66,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--version", action="version", version=f"vbraille {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(name: str, text: str) -> argparse.ArgumentParser:
+    def command(name: str, text: str) -> _Parser:
         return commands.add_parser(name, help=text, description=f"{text}.")
 
     read = command("read", "Read a text on a device, line after line")
@@ -72,6 +87,8 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         help="what to say of each line (default: none at a terminal, else both)",
     )
     _hand_options(read)
+    read.set_defaults(model=None)  # the device's own
+    read.says_keys = True
 
     page = command("page", "Print the laid-out page")
     _text_options(page)
@@ -88,6 +105,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     _show_options(render)
     _hand_options(render)
     render.add_argument("--out", required=True, metavar="FILE.h5", help="the file to write")
+    render.add_argument("--force", action="store_true", help="replace the file if it is there")
     render.add_argument("--plain", action="store_true", help="progress as lines, without a bar")
 
     plot = command("plot", "Draw a picture, or print its numbers")
@@ -262,7 +280,12 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    parser.add_argument("file", metavar="FILE", nargs="?" if optional else None, help="a text file")
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="a text file, or - for standard input (read then takes keys from the terminal)",
+    )
     parser.add_argument("--table", metavar="NAME", help="a liblouis table")
     parser.add_argument("--language", metavar="TAG", help="instead of a table (en)")
     parser.add_argument("--grade", type=whole, metavar="N", help="of the language's braille")
@@ -308,7 +331,8 @@ def _hand_options(parser: argparse.ArgumentParser) -> None:
         "--hand",
         default="sweep:60",
         metavar="HAND",
-        help="simulated: sweep:SPEED in mm/s (sweep:60), device, fluent, recorded:FILE.csv",
+        help="simulated: sweep:SPEED in mm/s (sweep:60), slow (as on such displays; also called "
+        "device), fluent (as on paper), recorded:FILE.csv",
     )
     parser.add_argument("--seed", type=seed, default=1, help="of the hand's chances (1)")
     parser.add_argument(

@@ -10,7 +10,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
 from vbraille.cli.wanted import check_rate
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import make_plan
@@ -19,6 +18,7 @@ from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import FORMAT, check_free, create, load, versions
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import Script, Typed, parse_answers
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Self
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info, device_spec
+from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_info, device_spec
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.devices import DeviceInfo
-    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.plan import Plan, Stimulus
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
@@ -40,6 +40,8 @@ class Sitting:
         say: Callable[[str], None],
     ) -> None:
         self._arguments = arguments
+        self._protocol = protocol
+        self._plan = plan
         self._say = say
         self._real = not arguments.fast
         self._engine: RunEngine | None = None
@@ -62,6 +64,7 @@ class Sitting:
         if self._engine is not None and not self._opened:
             self._engine.start()
             self._opened = True
+            check_room(self._engine.info, self._protocol, self._plan)
 
     def run(self, record: Record, answers: Answers, *, why: str) -> int:
         """Conduct the session until its end, or until it is stopped."""
@@ -161,9 +164,26 @@ def _build(
         from vbraille.engine.batch import BatchEngine
 
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-    trials = (*plan.practice, *plan.trials)
-    most = max(len(protocol.line(s.masks)) for trial in trials for s in trial.stimuli)
+    most = max(len(protocol.line(stimulus.masks)) for stimulus in _stimuli(plan))
     return Host(spec, wanted, most)
+
+
+def check_room(info: DeviceInfo, protocol: Protocol, plan: Plan) -> None:
+    """Raise InputError if a device's carriage does not take its whole array over every stimulus."""
+    extent_mm = max(
+        stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
+        for stimulus in _stimuli(plan)
+    )
+    needed_mm = extent_mm + info.span_mm
+    if needed_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:
+        raise InputError(
+            f"the carriage of {info.name} goes {info.travel_mm:g} mm and the longest string of "
+            f"{protocol.name} needs {needed_mm:.1f} mm; choose another --device or shorter strings"
+        )
+
+
+def _stimuli(plan: Plan) -> list[Stimulus]:
+    return [stimulus for trial in (*plan.practice, *plan.trials) for stimulus in trial.stimuli]
 
 
 def _since(wall: str) -> float:

@@ -145,6 +145,8 @@ class Device(ABC):
         that the next frames must fade in.
     placing : Placing
         What it waits for before it can tell places; `read` gives None till then.
+    taking : bool
+        Whether it takes the frames that it is sent; False once it has taken none for a while.
     acknowledges : bool
         Whether the device says which frames it has.
     acknowledged_ns : int or None
@@ -159,6 +161,7 @@ class Device(ABC):
 
     rested = 0
     placing = Placing.DONE
+    taking = True
     acknowledges = False
     acknowledged_ns: int | None = None
     watchdog_trips: int | None = None

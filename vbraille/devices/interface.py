@@ -25,6 +25,7 @@ _METHODS = (
 _VALUES: dict[str, tuple[type, ...]] = {
     "rested": (int,),
     "placing": (Placing,),
+    "taking": (bool,),
     "acknowledges": (bool,),
     "acknowledged_ns": (int, type(None)),
     "watchdog_trips": (int, type(None)),
