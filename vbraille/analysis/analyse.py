@@ -46,7 +46,7 @@ class Options:
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Of bootstraps.
+        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
 
     Raises
     ------
@@ -68,7 +68,7 @@ class Options:
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),
-            ("Intervals", f"95 %; bootstraps with seed {self.seed}"),
+            ("Intervals", f"95 %; random draws with seed {self.seed}"),
         ]
 
 
@@ -129,7 +129,7 @@ def _of_trials(
 
 def _legibility(trials: Trials, places: Places, options: Options) -> Section:
     table = legibility.legibility(trials, places)
-    averages = legibility.averages(table, seed=options.seed)
+    averages = legibility.averages(table)
     return Section(
         "Legibility",
         "Who read how much of it right, and how long it took.",
@@ -148,7 +148,7 @@ def _characters(trials: Trials, places: Places) -> Section:
 
 
 def _confusions(trials: Trials, places: Places, options: Options) -> Section:
-    tables: list[Table] = [confusion.transmitted(trials, places)]
+    tables: list[Table] = [confusion.transmitted(trials, places, seed=options.seed)]
     pictures: list[Picture] = []
     for counts, schema, reason in (
         (
@@ -201,7 +201,7 @@ def _motion(study: Study, trials: Trials) -> Section:
 
 
 def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Section:
-    means = levels.level_means(scores, seed=options.seed)
+    means = levels.level_means(scores)
     table, dropped = levels.analyses(scores)
     left_out += dropped
     return Section(

@@ -101,9 +101,8 @@ def _slope(correct: NDArray[np.bool_]) -> Row:
     if correct.size < 3:
         return row | {"note": f"{count(correct.size, 'trial')}: a slope needs three"}
     if correct.all() or not correct.any():
-        flat = {"slope": 0.0, "low": 0.0, "high": 0.0}
         what = "right" if correct[0] else "wrong"
-        return row | flat | {"note": f"no p: every trial is {what}"}
+        return row | {"slope": 0.0, "note": f"no interval and no p: every trial is {what}"}
     fit: Any = stats.linregress(np.arange(correct.size), correct.astype(np.float64))
     half = stats.t.ppf((1 + LEVEL) / 2, correct.size - 2) * fit.stderr
     scaled = (10 * value for value in (fit.slope, fit.slope - half, fit.slope + half))

@@ -33,8 +33,11 @@ CHOICES = Schema(
 PREFERRED = Schema(
     "preferred",
     "Preferred value",
-    "Where a parabola through the strongest value and its neighbours is highest. Half of the "
-    "choices should be of what came first: p is that of an exact binomial test.",
+    "The mean over participants of where a parabola through the strongest value of their own scale "
+    "and its neighbours is highest. The interval is of the population's mean, by Student's t; of "
+    "one participant it is of this participant's value, by a bootstrap. Half of the choices should "
+    "be of what came first: p is that of an exact binomial test, which takes each choice for one "
+    "that came alone.",
     (
         Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
         Column("participants", "participants", "how many", Kind.COUNT),
@@ -84,8 +87,10 @@ def tuning(comparisons: Comparisons, *, seed: int) -> tuple[Table, Table]:
         except Unanswerable as reason:
             row |= {"note": f"no preferred value: {reason}"}
         else:
-            ends = found.interval
-            row |= {"preferred": found.value, "low": ends.low, "high": ends.high, "how": found.how}
+            row |= {"preferred": found.value, "note": found.note}
+            if found.interval is not None:
+                ends = found.interval
+                row |= {"low": ends.low, "high": ends.high, "how": found.how}
         liked.append(row)
     return CHOICES.fill(rows), PREFERRED.fill(liked)
 
