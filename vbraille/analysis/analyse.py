@@ -117,7 +117,7 @@ def _of_trials(
     places = Places.of(trials)
     scores = of_trials(trials, places, options.factors)
     return [
-        _legibility(trials, places, options),
+        _legibility(trials, places),
         _characters(trials, places),
         _confusions(trials, places, options),
         _errors(places),
@@ -127,7 +127,7 @@ def _of_trials(
     ]
 
 
-def _legibility(trials: Trials, places: Places, options: Options) -> Section:
+def _legibility(trials: Trials, places: Places) -> Section:
     table = legibility.legibility(trials, places)
     averages = legibility.averages(table)
     return Section(

@@ -48,9 +48,9 @@ INFORMATION = Schema(
     "Accuracy, agreement and information transmitted",
     "Of the confusion matrices, all trials and each condition. Kappa is Cohen's. Information "
     "transmitted is the mutual information of what was presented and what was answered; corrected "
-    "is an estimate without the surplus that few trials give it, by a hierarchical Dirichlet model, "
-    "with its 95 % interval: of these participants' trials taken together, not of other people. "
-    "Where trials are too few for one there is no number. What is presented bounds it.",
+    "is without the surplus that few trials give it, by a hierarchical Dirichlet model, with its "
+    "95 % interval: of these participants' trials taken together, not of other people. Where "
+    "trials are too few there is no number. What is presented bounds it.",
     (
         Column("of", "of", "characters, or pairs"),
         Column("condition", "condition", "name; all for all trials"),

@@ -78,7 +78,7 @@ def over_time(trials: Trials) -> Table:
 
 def slopes(trials: Trials) -> Table:
     """Slope of every session and condition."""
-    return SLOPES.fill([whose | _slope(trials.correct[chosen]) for whose, chosen in series(trials)])
+    return SLOPES.fill([whose | slope(trials.correct[chosen]) for whose, chosen in series(trials)])
 
 
 def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
@@ -95,7 +95,7 @@ def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
         yield dict(zip(("participant", "session", "condition"), names, strict=True)), part
 
 
-def _slope(correct: NDArray[np.bool_]) -> Row:
+def slope(correct: NDArray[np.bool_]) -> Row:
     """Least squares of right and wrong on the number of the trial, for 10 trials."""
     row: Row = {"trials": correct.size}
     if correct.size < 3:

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-# Where the best is at an end for more of the participants, it is not known how far they differ.
-MOST_AT_AN_END = 0.25
 SAME = 1e-8
 """Strengths that differ by less are equal; the fit goes on until steps are far below it."""
 
@@ -185,12 +183,11 @@ def preferred(
         )
     at_end = int(np.isin(own, values[[0, -1]]).sum())
     value, ends, how = float(own.mean()), None, ""
-    if at_end > MOST_AT_AN_END * own.size:
-        whose = "" if len(wins) == 1 else f" of {at_end} of {own.size} participants"
-        notes.append(
-            f"no interval: the preferred value{whose} is at the end of what was tested, "
-            f"and the best may lie beyond"
-        )
+    if at_end:
+        whose = "it" if len(wins) == 1 else f"the value of {at_end} of {own.size} participants"
+        notes.append(f"{whose} is at the end of what was tested, and the best may lie beyond")
+    if at_end == own.size:
+        notes.append("no interval")
     elif len(wins) == 1:
         try:
             ends = _of_comparisons(values, wins[0], seed, resamples, level)
@@ -205,7 +202,8 @@ def preferred(
             notes.append(f"no interval: {reason}")
     if ends is not None and (ends.low <= values[0] or ends.high >= values[-1]):
         ends = Interval(max(ends.low, values[0]), min(ends.high, values[-1]), level)
-        notes.append("the interval reaches the end of what was tested; the best may lie beyond")
+        if not at_end:
+            notes.append("the interval reaches the end of what was tested; the best may lie beyond")
     return Preference(value, ends, how, "; ".join(notes))
 
 
