@@ -5,13 +5,14 @@ from itertools import permutations
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from scipy.stats import t
+from scipy.stats import t, ttest_1samp
 from statsmodels.genmod.families import Binomial
 from statsmodels.genmod.generalized_linear_model import GLM
 
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
 from vbraille.analysis.statistics.firth import connected, fit
 from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 # Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
@@ -326,10 +327,23 @@ def test_what_are_no_comparisons(change, reason):
 
 
 def test_position_bias_is_the_binomial_test():
-    found = position_bias([0] * 9 + [1])
+    found = position_bias([0] * 9 + [1], [7] * 10)
     assert found.share_first == 0.9
     assert found.p == pytest.approx(2 * 11 / 1024)
     assert found.interval == wilson(9, 10)
-    assert position_bias([0, 1]).p == 1
+    assert position_bias([0, 1], [0, 0]).p == 1
     with pytest.raises(Unanswerable, match="no comparisons"):
-        position_bias([])
+        position_bias([], [])
+
+
+def test_of_several_the_position_bias_is_of_people():
+    chosen = [0] * 9 + [1] + [0] * 6 + [1] * 4 + [0] * 5 + [1] * 5
+    groups = np.repeat([0, 1, 2], 10)
+    found = position_bias(chosen, groups)
+    assert found.share_first == pytest.approx(20 / 30)
+    assert found.interval == mean_share([0.9, 0.6, 0.5], [10, 10, 10])
+    assert found.p == pytest.approx(ttest_1samp([0.9, 0.6, 0.5], 0.5).pvalue)
+    assert position_bias(chosen[:20], groups[:20])[1:] == (None, None)
+    assert position_bias([0, 1] * 3, np.repeat([0, 1, 2], 2)).p is None
+    with pytest.raises(ValueError, match="one length"):
+        position_bias([0, 1], [0])

@@ -6,11 +6,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.stats import binomtest
+from scipy.stats import binomtest, ttest_1samp
 
 from vbraille.analysis.statistics.firth import connected, fit
-from vbraille.analysis.statistics.intervals import LEVEL, Interval, mean_interval, wilson
+from vbraille.analysis.statistics.intervals import (
+    FEWEST_PARTICIPANTS,
+    LEVEL,
+    ROUNDING,
+    Interval,
+    mean_interval,
+    wilson,
+)
 from vbraille.analysis.statistics.scores import check_level, finite_scores
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
@@ -72,11 +80,11 @@ class Preference:
 
 
 class PositionBias(NamedTuple):
-    """How often the first of a pair was chosen: its share, Wilson's interval, exact p."""
+    """How often the first of a pair was chosen: its share, its interval, p; None for none."""
 
     share_first: float
-    interval: Interval
-    p: float
+    interval: Interval | None
+    p: float | None
 
 
 def bradley_terry(wins: ArrayLike) -> Scale:
@@ -207,18 +215,25 @@ def preferred(
     return Preference(value, ends, how, "; ".join(notes))
 
 
-def position_bias(chosen: ArrayLike) -> PositionBias:
+def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     """Whether the first of two is chosen more or less often than the second.
+
+    Of one participant: the share of the first, Wilson's interval, and the exact binomial test
+    against a half. Of several: the mean of their own shares, its interval for the population that
+    they come from, and Student's t-test of the own shares against a half.
 
     Parameters
     ----------
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
+    groups : int[n]
+        Whose choice each is.
 
     Returns
     -------
     PositionBias
-        Share of the first, 0…1; its interval; p of the exact binomial test against a half.
+        Share of the first, 0…1; its interval and p, None where participants are too few or all
+        alike.
 
     Raises
     ------
@@ -227,12 +242,21 @@ def position_bias(chosen: ArrayLike) -> PositionBias:
     ValueError
         If a choice is neither 0 nor 1.
     """
-    choice = _column("chosen", chosen, 2)
-    n = choice.size
-    if n == 0:
+    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
+    if choice.shape != who.shape:
+        raise ValueError("chosen and groups must be of one length")
+    if choice.size == 0:
         raise Unanswerable("no comparisons")
-    firsts = int((choice == 0).sum())
-    return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+    index = np.unique(who, return_inverse=True)[1]
+    trials = np.bincount(index)
+    own = np.bincount(index, choice == 0) / trials
+    if own.size == 1:
+        firsts, n = int((choice == 0).sum()), choice.size
+        return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+    if own.size < FEWEST_PARTICIPANTS:
+        return PositionBias(float(own.mean()), None, None)
+    p = None if np.ptp(own) <= ROUNDING else float(ttest_1samp(own, 0.5).pvalue)
+    return PositionBias(float(own.mean()), mean_share(own, trials), p)
 
 
 def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
