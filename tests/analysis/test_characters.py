@@ -65,10 +65,12 @@ def test_means_are_those_taken_one_by_one(observed):
         what: fmean(fmean(map(fmean, whens.values())) for whens in whos.values())
         for what, whos in of.items()
     }
-    levels, participants, found = over_participants(level, value, participant, condition)
+    levels, own, numbers = over_participants(level, value, participant, condition)
     assert levels.tolist() == sorted(means)
-    assert participants.tolist() == [len(of[what]) for what in sorted(means)]
-    assert found.tolist() == pytest.approx([means[what] for what in sorted(means)])
+    assert [len(whos) for whos in own] == [len(of[what]) for what in sorted(means)]
+    assert sum(int(number.sum()) for number in numbers) == len(observed)
+    found = [whos.mean() for whos in own]
+    assert found == pytest.approx([means[what] for what in sorted(means)])
 
 
 def test_equal_numbers_of_trials_make_means_and_pooled_the_same():

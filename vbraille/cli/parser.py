@@ -254,7 +254,7 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
         metavar="N,N",
         help="mark errors above these counts in confusion matrices (4,9)",
     )
-    parser.add_argument("--seed", type=seed, metavar="N", help="of bootstraps (20090618)")
+    parser.add_argument("--seed", type=seed, metavar="N", help="of random draws (20090618)")
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
