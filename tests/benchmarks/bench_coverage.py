@@ -198,14 +198,19 @@ def _markdown(table: Table) -> str:
     return f"**{title}**\n\n" + "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
-if __name__ == "__main__":
+def _write(made: Sequence[str]) -> None:
+    """Put the tables into the document, in place of those that are there."""
     text = DOCUMENT.read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
     if not after:
         sys.exit(f"{DOCUMENT} has no place for the tables, between {BEGIN} and {END}")
-    made = []
+    DOCUMENT.write_text(f"{before}{BEGIN}\n{chr(10).join(made)}{END}{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    every = []
     for name, table in tables():
         print(_result(name, table[3]).row(), flush=True)
-        made.append(_markdown(table))
-    DOCUMENT.write_text(f"{before}{BEGIN}\n{chr(10).join(made)}{END}{after}", encoding="utf-8")
+        every.append(_markdown(table))
+    _write(every)
