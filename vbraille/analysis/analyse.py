@@ -55,7 +55,7 @@ class Options:
     """
 
     factors: tuple[str, ...] = ("condition",)
-    correction: str = "none"
+    correction: str = "holm"
     marks: tuple[int, ...] = confusion.MARKS
     seed: int = SEED
 

@@ -245,8 +245,8 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--correction",
         choices=("none", "bonferroni", "holm", "fdr"),
-        default="none",
-        help="of t-tests for their number (none)",
+        default="holm",
+        help="correct the p-values of t-tests for their number (default: holm)",
     )
     parser.add_argument(
         "--marks",
