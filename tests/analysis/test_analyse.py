@@ -122,7 +122,7 @@ def test_other_columns_are_kept_and_compared_by(table):
     (content,) = trials_file(study).values()
     lines = content.decode().splitlines()
     assert lines[0].endswith("duration_s,finger")
-    assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,⠁⠃,1,3.0,left"
+    assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,,⠁⠃,1,3.0,left"
     assert len(lines) == 1 + 8
     found = tables(analyse(study, Options(factors=("finger",))))
     assert {row["level"] for row in found["level_means"].records()} == {"left", "right"}

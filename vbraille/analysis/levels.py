@@ -42,6 +42,19 @@ MEANS = Schema(
         NOTE_COLUMN,
     ),
 )
+OWN = Schema(
+    "level_scores",
+    "Participants' own means at the levels",
+    "What the means, the tests and their figures are made of: scores averaged over other factors, "
+    "and repeated ones within the participant.",
+    (
+        Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
+        Column("factor", "factor", "by what"),
+        Column("level", "level", "of the factor"),
+        Column("participant", "participant", "pseudonym"),
+        Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
+    ),
+)
 T_TESTS = Schema(
     "t_tests",
     "Paired t-tests",
@@ -132,6 +145,24 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
                     notes.append(f"no interval: {reason}")
                 rows.append(row | {"note": "; ".join(notes)})
     return MEANS.fill(rows, [] if rows else [NOTHING])
+
+
+def own_means(measures: Sequence[Scores]) -> Table:
+    """Mean of every participant at every level of every factor."""
+    rows: list[Row] = [
+        {
+            "measure": scores.measure,
+            "factor": factor,
+            "level": level,
+            "participant": who,
+            "mean": of[who],
+        }
+        for scores in measures
+        for factor in scores.factors
+        for level, of in sorted(_means(scores, factor).items(), key=lambda pair: natural(pair[0]))
+        for who in sorted(of, key=natural)
+    ]
+    return OWN.fill(rows, [] if rows else [NOTHING])
 
 
 def t_tests(measures: Sequence[Scores], correction: str) -> Table:

@@ -237,6 +237,12 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
         help="leave a participant out, and say why in the report; may be given again",
     )
     parser.add_argument(
+        "--sites",
+        action="store_true",
+        help="take each folder that sessions or tables stand in for a site with participants of "
+        "its own: P01 of the folder berlin is berlin/P01",
+    )
+    parser.add_argument(
         "--factors",
         type=names,
         metavar="NAME,NAME",

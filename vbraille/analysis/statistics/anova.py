@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.stats import f
@@ -215,7 +215,7 @@ def _effect(
     generalised = of_effect / total if total > rounding else None
     name = " × ".join(factors)
     if of_error <= rounding:
-        empty = dict.fromkeys(Effect.__slots__)
+        empty: dict[str, Any] = dict.fromkeys(Effect.__slots__)
         known = {"name": name, "factors": factors, "df1": df1, "df2": df2}
         alike = "all participants differ alike between its levels; F has no value"
         return Effect(**empty | known | {"generalised_eta2": generalised, "note": alike})

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import chdtrc, ndtr
 from scipy.stats import chi2, ncf
 
@@ -140,7 +140,7 @@ def _root(falling: Callable[[float], float], low: float, high: float) -> float:
         if not (math.isfinite(at_low) and math.isfinite(at_high)):
             break
         if at_low >= 0 >= at_high:
-            return float(brentq(falling, low, high, xtol=1e-10, rtol=1e-10))
+            return root_scalar(falling, bracket=(low, high), xtol=1e-10, rtol=1e-10).root
         width = high - low
         low, high = (low, high + width) if at_low >= 0 else (low - width, high)
     raise Unanswerable("its noncentral distribution cannot be inverted")
