@@ -228,7 +228,7 @@ def _matrix(chart: Matrix) -> Figure:
     upright = longest * _INCHES > 0.9 * cell
     row_longest = max((len(line) for label in rows for line in label.split("\n")), default=0)
     beside = 0.6 + row_longest * _INCHES
-    above = 1.2 + (longest * _INCHES if upright else 0.2)
+    above = 1.5 + (longest * _INCHES if upright else 0.2)
     figure = _figure(max(len(columns) * cell + beside, 4.5), len(rows) * cell + above)
     axes = figure.subplots()
     axes.set(xlim=(0, len(columns)), ylim=(len(rows), 0), aspect="equal")

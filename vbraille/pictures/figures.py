@@ -79,7 +79,7 @@ def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG, SVG or PDF, by the suffix of the path; wholly or not at all.
+    """Write a figure as PNG or SVG, by the suffix of the path; wholly or not at all.
 
     Raises
     ------
@@ -88,8 +88,8 @@ def save(figure: Figure, path: str | Path) -> None:
     """
     path = Path(path)
     kind = path.suffix.lower()[1:]
-    if kind not in METADATA:
-        raise InputError(f"cannot draw to {path}: end its name in .png, .svg or .pdf")
+    if kind not in ("png", "svg"):
+        raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
     content = to_bytes(figure, kind)
     partial = path.with_name(f".{path.name}.{os.getpid()}")
     try:

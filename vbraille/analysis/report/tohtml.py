@@ -58,7 +58,7 @@ img { max-width: 100%; height: auto; background: #fff; }
 @media print { nav, .skip { display: none; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; }
-  img { max-height: 240mm; } .wide { overflow: visible; }
+  img { max-height: 170mm; } .wide { overflow: visible; }
   table { font-size: 7pt; }
   th, td { padding: 0.2mm 0.8mm; overflow-wrap: anywhere; max-width: none; }
   .matrix table { font-size: 6.5pt; table-layout: fixed; width: 100%; }
