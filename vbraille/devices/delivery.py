@@ -9,6 +9,7 @@ from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
 
+REFUSED_MS = 2 * WATCHDOG_MS  # without a FRAME taken: more than one that is lost now and then
 _NS_PER_MS = 1_000_000
 
 
@@ -43,6 +44,10 @@ class Delivery:
         """No FRAME is owed any more."""
         self._owed_ns = None
         self.held = False
+
+    def refused(self, now_ns: int) -> bool:
+        """Whether FRAMEs have been owed for a while, and none was taken."""
+        return self._owed_ns is not None and now_ns - self._owed_ns >= REFUSED_MS * _NS_PER_MS
 
     def take_watchdog(self, watchdog: Watchdog, now_ns: int) -> bool:
         """Take a report; whether the device went to rest, which was not known."""

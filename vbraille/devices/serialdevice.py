@@ -178,6 +178,7 @@ class SerialDevice(Device):
             self._missed += max(gap, 0)
         self._state_sequence = state.sequence
         self._delivered(self._delivery.take_state(state, now_ns), now_ns)
+        self.taking = not self._delivery.refused(now_ns)
         if self._sent_ns is not None and state.frame_sequence == self._sequence:
             self.acknowledged_ns = now_ns - self._sent_ns
             self._sent_ns = None
@@ -224,6 +225,7 @@ class SerialDevice(Device):
         self._resting = False  # for want of anything to feel
         self._told = False  # to rest, because it is silent
         self._delivery.idle()
+        self.taking = True
 
     def _greet(self, now_ns: int) -> None:
         """Begin to ask who is there."""
