@@ -500,9 +500,14 @@ def test_a_trip_whose_report_is_lost_is_seen_in_the_states(bench):
     made.run(device, 20)
     made.deaf = True
     made.controller.trips -= 1  # as if it were no more than before
+    assert device.taking
     made.run(device, 120)
     assert device.rested == 1
+    assert not device.taking
     assert "no frame reached it" in device.take_notes()[0]
+    made.deaf = False
+    made.run(device, 50)
+    assert device.taking
     device.close()
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from datetime import datetime
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_info, device_spec
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
-from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
+from vbraille.sessions.record.folder import check_end
+from vbraille.sessions.record.journal import NAME, Journal, sum_of
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import seed_of
 
 if TYPE_CHECKING:
     import argparse
@@ -46,8 +48,9 @@ class Sitting:
         self._real = not arguments.fast
         self._engine: RunEngine | None = None
         self._opened = False
-        # Another hand each time that the session is gone on with, and the same for the same seed.
-        spec = device_spec(arguments.device, arguments.hand, plan.seed + runs)
+        # Another hand for each participant, and each time that the session is gone on with.
+        drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {runs}"
+        spec = device_spec(arguments.device, arguments.hand, seed_of(drawn))
         if arguments.fast and not spec.startswith("sim:"):
             raise InputError("--fast is for the simulated device; leave out --device")
         if protocol.medium == "device":
@@ -74,12 +77,17 @@ class Sitting:
         from vbraille.sessions.running.showing import OnDevice
 
         with Journal(record.folder) as book:
+            check_end(record.folder, book.told)
             torn_bytes = book.set_torn_aside()
             self.open()
             progress = Progress(record.plan, book.told.events)
             display = None
             if self._engine is not None:
-                display = OnDevice(self._engine, record.protocol, record.folder, keeps=answers.felt)
+                # A session of format 1 is gone on with in that, whose traces are not tied.
+                tie = None if book.told.format == 1 else lambda: book.durable
+                display = OnDevice(
+                    self._engine, record.protocol, record.folder, keeps=answers.felt, tie=tie
+                )
             sound = self._sound(answers)
             course = Course(
                 record.protocol,
@@ -93,11 +101,15 @@ class Sitting:
                 play=sound.play,
                 real=self._real,
             )
-            told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            told: dict[str, Any] = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            if book.told.format > 1:
+                told["boot"] = boot()
             if torn := book.torn_file():
                 told["torn_file"] = torn
             if progress.runs:
-                told["gap_s"] = _since(progress.wall)
+                told |= gap(Moment.of(book.told.events[-1], progress.runs[-1]), Moment.now())
+                if (moved := say_moved(told)) is not None:
+                    self._say(moved)
                 self._say(
                     f"resume: {progress.done} of {len(record.plan.trials)} trials have answers"
                 )
@@ -124,10 +136,11 @@ class Sitting:
                     display.close()
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
-                trace = progress.runs[-1]["trace"]
-                size = (record.folder / trace).stat().st_size
                 lost = display.engine.lost
-                course.log("closed", lost=lost, counts=counts, trace=trace, trace_bytes=size)
+                course.log(
+                    "closed", durable=True, lost=lost, counts=counts, **display.close_trace()
+                )
+            self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         return 0
 
     def _sound(self, answers: Answers) -> Sound:
@@ -184,9 +197,3 @@ def check_room(info: DeviceInfo, protocol: Protocol, plan: Plan) -> None:
 
 def _stimuli(plan: Plan) -> list[Stimulus]:
     return [stimulus for trial in (*plan.practice, *plan.trials) for stimulus in trial.stimuli]
-
-
-def _since(wall: str) -> float:
-    """Seconds since a time of the journal; not below 0, should the clock have been set back."""
-    before = datetime.fromisoformat(wall)
-    return round(max((datetime.now(before.tzinfo) - before).total_seconds(), 0.0), 3)
