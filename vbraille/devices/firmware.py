@@ -13,10 +13,12 @@ import numpy as np
 from vbraille import __version__
 from vbraille.devices.messages import (
     FAULTY,
+    FIRST_STEP,
     NOTICES,
     PLACED,
     RAMP_MS,
     RESTING,
+    TRIPPED,
     VERSION,
     WATCHDOG_MS,
     CountSign,
@@ -132,6 +134,7 @@ class Controller:
         self._decoder = Decoder()
         self._misfits = 0
         self._armed = self._tripped = False
+        self._shut = True  # at rest, which only a FRAME next to it may leave
         self._now_us = 0
         self._sequence = self._frame_sequence = 0
         self._timer_us: int | None = None  # when its timer ticked first
@@ -219,12 +222,15 @@ class Controller:
         if not self.greeted or self.faulty:
             return b""
         try:
-            self.levels = self._packing.unpack(frame.packed)
+            levels = self._packing.unpack(frame.packed)
         except ValueError:
             self._misfits += 1
             return b""
+        if not self._takes(frame.sequence, levels):
+            return b""
+        self.levels = levels
         self._ramp_us = None
-        self.at_rest = False
+        self._shut = self.at_rest = False
         self.frames += 1
         self._frame_sequence = frame.sequence
         self.last_frame_us = self._now_us
@@ -233,6 +239,20 @@ class Controller:
             return b""
         self._tripped = False
         return self._watchdog()
+
+    def _takes(self, sequence: int, levels: NDArray[np.uint16]) -> bool:
+        """Whether a FRAME may move the actuators now.
+
+        The host may not know that they went to rest, or its FRAME may be an old one that was late.
+        """
+        if self._ramp_us is not None:
+            return False
+        if self._shut:
+            away = np.abs(levels.astype(np.int64) - self._rest).max()
+            return bool(away * FIRST_STEP <= self.info.top_level)
+        newer = 0 < (sequence - self._frame_sequence) & _U16 < _U16 // 2
+        self._misfits += not newer
+        return newer
 
     def _go_to_rest(self) -> None:
         self._armed = self._tripped = False
@@ -248,6 +268,7 @@ class Controller:
         return self._watchdog()
 
     def _start_ramp(self, begun_us: int) -> None:
+        self._shut = True
         # A ramp on its way goes on: begun anew, it would take longer than the watchdog promises.
         if not self.at_rest and self._ramp_us is None:
             self._ramp_us = begun_us
@@ -281,17 +302,23 @@ class Controller:
         counts = info.count_sign * round(way_mm * info.counts_per_m / 1000)
         return (info.left_stop_count + self._astray + counts) & ((1 << info.count_bits) - 1)
 
+    def _flags(self) -> int:
+        resting = self.at_rest or self._ramp_us is not None
+        return (
+            PLACED * self.placed
+            | RESTING * resting
+            | FAULTY * self.faulty
+            | TRIPPED * self._tripped
+        )
+
     def _state(self, count: int) -> bytes:
-        flags = PLACED * self.placed | FAULTY * self.faulty
-        if self.at_rest or self._ramp_us is not None:
-            flags |= RESTING
         return encode(
             State(
                 sequence=self._sequence,
                 time_us=self._now_us & _U32,
                 count=count,
                 frame_sequence=self._frame_sequence,
-                flags=flags,
+                flags=self._flags(),
                 buttons=self.buttons,
                 force_mn=self.force_mn,
             )

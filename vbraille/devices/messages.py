@@ -37,6 +37,9 @@ NOTICES: Final = 0x80
 PLACED: Final = 0x01
 RESTING: Final = 0x02
 FAULTY: Final = 0x04
+TRIPPED: Final = 0x08
+# A device that is at rest leaves it by no more than this part of the swing at once.
+FIRST_STEP: Final = 20
 
 U8: Final = Number("B", 0, 0xFF)
 U16: Final = Number("H", 0, 0xFFFF)
@@ -155,6 +158,11 @@ class State(Message):
     def faulty(self) -> bool:
         """Whether the device takes no FRAME until the next HELLO."""
         return bool(self.flags & FAULTY)
+
+    @property
+    def tripped(self) -> bool:
+        """Whether the watchdog has tripped and no FRAME was taken since; older devices say no."""
+        return bool(self.flags & TRIPPED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,6 @@ from vbraille.devices.messages import (
     LOST_MS,
     NOTICES,
     SILENCE_MS,
-    WATCHDOG_MS,
     Error,
     Info,
     Rest,
@@ -48,6 +47,8 @@ if TYPE_CHECKING:
 # Frames without anything to feel for so long, and there is nothing to show: no gap between words.
 IDLE_MS: Final = 5000
 _NS_PER_MS = 1_000_000
+# Reads that empty a line: what a stopped host has not read is some kB at most.
+_MOST_READS = 64
 _REST = encode(Rest())
 _U16 = 0xFFFF
 
@@ -71,6 +72,8 @@ class SerialDevice(Device):
         What it answered.
     now_ns, pause
         The host's clock, and how to wait for so many seconds.
+    rate_hz
+        FRAMEs a second that it is going to be sent; None is as many as it is made for.
     """
 
     def __init__(
@@ -79,7 +82,9 @@ class SerialDevice(Device):
         greeted: Greeted,
         now_ns: Callable[[], int] = time.monotonic_ns,
         pause: Callable[[float], None] = time.sleep,
+        rate_hz: float | None = None,
     ) -> None:
+        self._rate_hz = rate_hz or float(greeted.info.rate_hz)
         self._port = port
         self._now_ns = now_ns
         self._pause = pause
@@ -92,7 +97,7 @@ class SerialDevice(Device):
         self._sent_ns: int | None = None  # when the one was that is not acknowledged
         self._unsent = self._missed = self._trips_before = self._reconnections = 0
         self._losses = port.losses
-        self._delivery = Delivery()
+        self._delivery = Delivery(greeted.info.rate_hz)
         self._begin(greeted.info, now_ns())
         self._take(greeted.events, now_ns())
 
@@ -100,6 +105,16 @@ class SerialDevice(Device):
     def info(self) -> DeviceInfo:
         """What the device said of itself first."""
         return self._info
+
+    @property
+    def taking(self) -> bool:
+        """Whether FRAMEs hold the actuators, or would as soon as there is anything to feel."""
+        return self._link is _Link.LIVE and (self._delivery.taking or self._idle)
+
+    def rest(self) -> None:
+        """Tell the device to rest; it ramps there, where a FRAME of rest would be a jump."""
+        self._delivery.stop()
+        self._tell()
 
     def set_zero(self) -> None:
         """Take it that the carriage is at the left stop now: the reader says so."""
@@ -130,7 +145,12 @@ class SerialDevice(Device):
             If the device says that it cannot go on.
         """
         now_ns = self._now_ns()
+        stalled = self._mind_stall(now_ns)
         chunk = self._port.read()
+        for _ in range(_MOST_READS * stalled):
+            chunk += (more := self._port.read())
+            if not more:
+                break
         if self._port.losses != self._losses:
             self._losses = self._port.losses
             self._link = _Link.GONE
@@ -156,7 +176,8 @@ class SerialDevice(Device):
             elif self._link not in (_Link.LIVE, _Link.SILENT):
                 pass  # of an earlier conversation
             elif isinstance(event, Watchdog):
-                self._delivered(self._delivery.take_watchdog(event, now_ns), now_ns)
+                if self._delivery.take_watchdog(event):
+                    self._fell(now_ns)
             elif isinstance(event, Error):
                 if event.code < NOTICES:
                     raise DeviceError(f"{self._info.name}: {event.text or f'error {event.code}'}")
@@ -177,7 +198,13 @@ class SerialDevice(Device):
             gap = unwrap(state.sequence, self._state_sequence, 16) - self._state_sequence - 1
             self._missed += max(gap, 0)
         self._state_sequence = state.sequence
-        self._delivered(self._delivery.take_state(state, now_ns), now_ns)
+        if self._delivery.take_state(state, now_ns):
+            self._fell(now_ns)
+        if self._delivery.stuck:
+            raise DeviceError(
+                f"{self._info.name} does not go to rest, neither when it is told to nor without "
+                f"frames; switch it off, and do not read on it until that is mended"
+            )
         if self._sent_ns is not None and state.frame_sequence == self._sequence:
             self.acknowledged_ns = now_ns - self._sent_ns
             self._sent_ns = None
@@ -211,19 +238,12 @@ class SerialDevice(Device):
         self._place = Place(info)
         self.placing = self._place.placing
         self._time.restart()
-        self._drive = Drive(info, now_ns)
+        self._drive = Drive(info, now_ns, self._rate_hz)
         self._trips_before += self._delivery.trips
-        self._delivery = Delivery()
+        self._delivery = Delivery(info.rate_hz)
         self._rest_frame = np.zeros((info.rows, info.columns))
-        self._idle(now_ns)
-
-    def _idle(self, now_ns: int) -> None:
-        """No FRAME is owed any more: the device is at rest, or told to go there."""
-        self._drive.rested(now_ns)
         self._felt_ns = now_ns  # when a frame last had anything to feel
-        self._resting = False  # for want of anything to feel
-        self._told = False  # to rest, because it is silent
-        self._delivery.idle()
+        self._idle = False  # at rest for want of anything to feel
 
     def _greet(self, now_ns: int) -> None:
         """Begin to ask who is there."""
@@ -235,26 +255,42 @@ class SerialDevice(Device):
         silent_ns = now_ns - self._heard_ns
         if self._link is _Link.LIVE and silent_ns >= SILENCE_MS * _NS_PER_MS:
             self._link = _Link.SILENT
-            self._idle(now_ns)
+            self._stop()
             self._note_away("device: silent, and sent to rest; reading goes on once it speaks")
-        if self._link is _Link.SILENT:
-            self._told = self._told or self._port.write(_REST)
-            if silent_ns >= LOST_MS * _NS_PER_MS:
-                self._greet(now_ns)
+        if self._link in (_Link.LIVE, _Link.SILENT):
+            self._tell()
+        if self._link is _Link.SILENT and silent_ns >= LOST_MS * _NS_PER_MS:
+            self._greet(now_ns)
         if self._link is _Link.GREETING and now_ns >= self._hello_ns and self._port.write(HELLO):
             self._asked = True
             self._hello_ns = now_ns + HELLO_PERIOD_MS * _NS_PER_MS
 
-    def _delivered(self, fades_in: bool, now_ns: int) -> None:
-        if not fades_in:
-            return
+    def _stop(self, *, tell: bool = True) -> None:
+        """Send no FRAME until the device is at rest, and nothing that lies about unsent."""
+        self._delivery.stop(tell=tell)
+        self._idle = False
+        self._port.drop_unsent()
+        self._tell()
+
+    def _tell(self) -> None:
+        if self._delivery.rest_due and self._port.write(_REST):
+            self._delivery.told(self._now_ns())
+
+    def _mind_stall(self, now_ns: int) -> bool:
+        """Whether this process was stopped for so long that the device may rest; it does then."""
+        if self._link is not _Link.LIVE or not self._delivery.stalled(now_ns):
+            return False
+        self._fell(now_ns)
+        return True
+
+    def _fell(self, now_ns: int) -> None:
+        """The device went to rest, or may have."""
+        self._stop(tell=False)
+        self._felt_ns = now_ns
         self.rested += 1
-        if self._delivery.held:
-            self._drive.rested(now_ns)
-            self._notes.append(
-                f"device: no frame reached it for {WATCHDOG_MS} ms, so it went to rest; "
-                f"reading goes on"
-            )
+        self._notes.append(
+            "device: no frame reached it in time, so it went to rest; reading goes on"
+        )
 
     def _note_away(self, note: str) -> None:
         if not self._away:
@@ -264,31 +300,39 @@ class SerialDevice(Device):
     def _send(self, frame: NDArray[np.float64]) -> None:
         self.acknowledged_ns = self._sent_ns = None
         now_ns = self._now_ns()
-        if self._link is not _Link.LIVE or not self._place.known:
+        if self._link is not _Link.LIVE:
+            return
+        if not self._place.known:
+            if self._delivery.taking:
+                self._stop()
+            return
+        self._mind_stall(now_ns)
+        delivery = self._delivery
+        if delivery.taking:
+            felt = self._drive.fill(frame, now_ns)
+            if felt:
+                self._felt_ns = now_ns
+            elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS:
+                delivery.stop()
+                self._tell()
+                self._idle = True
+                return
+        else:
+            if self._idle and not frame.any():
+                return
+            self._idle = False
+            if not delivery.at_rest:
+                return
             self._drive.rested(now_ns)
-            return
-        held = self._delivery.held
-        felt = self._drive.fill(self._rest_frame if held else frame, now_ns)
-        if held:
-            pass
-        elif felt:
-            if self._resting:
-                self._idle(now_ns)
+            self._drive.fill(self._rest_frame, now_ns)
             self._felt_ns = now_ns
-        elif self._resting:
-            return
-        elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS:
-            if self._port.write(_REST):
-                self._idle(now_ns)
-                self._resting = True
-            return
         sequence = (self._sequence + 1) & _U16
         if not self._port.write(self._drive.frame(sequence)):
             self._unsent += not self._port.gone
             return
         self._sequence, self._sent_ns = sequence, now_ns
         self._drive.sent(now_ns)
-        self._delivery.sent(sequence, now_ns)
+        delivery.sent(sequence, now_ns)
 
     def _release(self) -> None:
         try:
