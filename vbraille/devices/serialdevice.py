@@ -280,7 +280,10 @@ class SerialDevice(Device):
         """Whether this process was stopped for so long that the device may rest; it does then."""
         if self._link is not _Link.LIVE or not self._delivery.stalled(now_ns):
             return False
-        self._fell(now_ns)
+        if self._delivery.taking:
+            self._fell(now_ns)
+        else:
+            self._stop(tell=False)
         return True
 
     def _fell(self, now_ns: int) -> None:
