@@ -29,7 +29,7 @@ import numpy as np
 from vbraille.devices.base import DeviceInfo
 from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.greeting import greet
-from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS, Encoder, Frame
+from vbraille.devices.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
 from vbraille.devices.ports import Address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.simulator import split
@@ -167,6 +167,8 @@ class Wired:
         What goes wrong.
     controller
         Makes the controller of its INFO.
+    device
+        What the host has for it.
     slew_per_s
         Largest, as the device says; 0 is no limit.
     swing
@@ -180,6 +182,7 @@ class Wired:
         chance: random.Random,
         troubles: Troubles,
         controller: Callable[..., Controller] = Controller,
+        device: type[SerialDevice] = SerialDevice,
         *,
         slew_per_s: int = 0,
         swing: float = 0.0,
@@ -187,7 +190,7 @@ class Wired:
     ) -> None:
         self.now_us = 0
         self.breaches: list[str] = []
-        self.rests = 0
+        self.rests = self.shown = 0  # how often the device went to rest, and FRAMEs shown
         self.gate = 0.0  # furthest that the first FRAME after a rest may leave it
         self.controller = controller(
             replace(
@@ -206,16 +209,19 @@ class Wired:
         self._down_last = self._up_last = 0
         self._count = 0
         self._device_us = 0
-        self._made: dict[int, tuple[int, float, int]] = {}  # by sequence: tick, place, since when awake
+        self._made: dict[
+            int, tuple[int, float, int]
+        ] = {}  # by sequence: tick, place, since when awake
         self._sent = Decoder()
         self._ticks = 0
         self._shown: int | None = None  # sequence of the FRAME that is shown; None at rest
         self._levels = self.controller.levels.astype(float)
         self._rest = self._levels
+        self._at = 0, self.controller.levels
         self.picture = Wave(swing, lambda: self._awake_us)
         self.port = _Port(self)
         self.greeted = greet(self.port, self.now_ns, self.pause)
-        self.device = SerialDevice(self.port, self.greeted, self.now_ns, self.pause)
+        self.device = device(self.port, self.greeted, self.now_ns, self.pause)
         self.loop = Loop(self.device, self, fade_s=FADE_S)
 
     # The clock of the loop.
@@ -337,10 +343,15 @@ class Wired:
 
     def _look(self) -> None:
         controller = self.controller
+        at = controller.frames, controller.levels
+        if at[0] == self._at[0] and at[1] is self._at[1]:
+            return  # neither a FRAME nor the ramp has moved anything
+        self._at = at
         levels = controller.levels.astype(float)
         step = float(np.abs(levels - self._levels).max())
         sequence = controller._frame_sequence
         framed = not (controller.at_rest or controller._ramp_us is not None)
+        self.shown += framed
         if not framed:
             if self._shown is not None:
                 self.rests += 1
@@ -423,19 +434,27 @@ class _Port:
         pause(0.05)
 
 
-def reading(seed: int, kind: str, controller: Callable[..., Controller] = Controller) -> Wired:
-    """Read for half a second with troubles of a kind; what came of it."""
+def reading(
+    seed: int,
+    kind: str,
+    controller: Callable[..., Controller] = Controller,
+    device: type[SerialDevice] = SerialDevice,
+) -> Wired:
+    """Read for half a second with the troubles of the "host" or of the "line"; what came of it."""
     chance = random.Random(f"{kind} {seed}")
     make = {"host": troubles_of_host, "line": troubles_of_line}[kind]
     wired = Wired(
         chance,
         make(chance, 400_000),
         controller,
+        device,
         slew_per_s=chance.choice((0, 0, 8, 40)),
         swing=chance.choice((0.0, 0.0, 0.5)),
         speed_mm_s=chance.choice((0.0, 60.0, 300.0)),
     )
-    wired.gate = 0.0 if kind == "host" else 1 / RAMP_MS
+    wired.gate = 0.0 if kind == "host" else 1 / FIRST_STEP
     wired.run(0.5)
     wired.leave()
+    if not wired.controller.at_rest:
+        wired.breaches.append("not at rest after the end")
     return wired
