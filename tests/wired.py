@@ -132,10 +132,10 @@ def _spells(
 
 def _stall_us(chance: random.Random) -> int:
     """Most are about as long as the watchdog and its ramp take."""
-    return chance.choice(
-        (chance.randint(1000, 45_000), chance.randint(45_000, 75_000), chance.randint(45_000, 75_000),
-         chance.randint(75_000, 300_000))
-    )  # fmt: skip
+    about_us = chance.choice(
+        ((1000, 45_000), (45_000, 75_000), (45_000, 75_000), (75_000, 300_000))
+    )
+    return chance.randint(*about_us)
 
 
 def _dead_us(chance: random.Random) -> int:
@@ -350,7 +350,7 @@ class Wired:
         levels = controller.levels.astype(float)
         step = float(np.abs(levels - self._levels).max())
         sequence = controller._frame_sequence
-        framed = not (controller.at_rest or controller._ramp_us is not None)
+        framed = not controller.resting
         self.shown += framed
         if not framed:
             if self._shown is not None:

@@ -36,7 +36,7 @@ def test_the_troubles_are_such_that_devices_rest_and_are_read_on_again():
 class Heedless(SerialDevice):
     """A host that does not mind that it was stopped."""
 
-    def _mind_stall(self, now_ns: int) -> bool:
+    def _mind_stall(self, _now_ns: int) -> bool:
         return False
 
 

@@ -9,16 +9,13 @@ has taken one: what that STATE and those after it tell is no older, and the arra
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import LOST_MS, RAMP_MS, WATCHDOG_MS
+from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS
 
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
 
-# A host that has sent no FRAME for so long takes it that the device's watchdog trips meanwhile:
-# its time counts from when a FRAME arrives, and FRAMEs may be late by some milliseconds.
-STALL_MS: Final = WATCHDOG_MS - 10
 _NS_PER_MS = 1_000_000
 _US_PER_S = 1_000_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF

@@ -134,7 +134,6 @@ class Controller:
         self._decoder = Decoder()
         self._misfits = 0
         self._armed = self._tripped = False
-        self._shut = True  # at rest, which only a FRAME next to it may leave
         self._now_us = 0
         self._sequence = self._frame_sequence = 0
         self._timer_us: int | None = None  # when its timer ticked first
@@ -145,6 +144,11 @@ class Controller:
     def dropped(self) -> int:
         """Frames received that came to nothing."""
         return sum(self._decoder.dropped.values()) + self._misfits
+
+    @property
+    def resting(self) -> bool:
+        """Whether no FRAME holds the actuators: they are at rest, or on the ramp to it."""
+        return self.at_rest or self._ramp_us is not None
 
     @property
     def mark_mm(self) -> float:
@@ -230,7 +234,7 @@ class Controller:
             return b""
         self.levels = levels
         self._ramp_us = None
-        self._shut = self.at_rest = False
+        self.at_rest = False
         self.frames += 1
         self._frame_sequence = frame.sequence
         self.last_frame_us = self._now_us
@@ -247,7 +251,7 @@ class Controller:
         """
         if self._ramp_us is not None:
             return False
-        if self._shut:
+        if self.at_rest:
             away = np.abs(levels.astype(np.int64) - self._rest).max()
             return bool(away * FIRST_STEP <= self.info.top_level)
         newer = 0 < (sequence - self._frame_sequence) & _U16 < _U16 // 2
@@ -268,7 +272,6 @@ class Controller:
         return self._watchdog()
 
     def _start_ramp(self, begun_us: int) -> None:
-        self._shut = True
         # A ramp on its way goes on: begun anew, it would take longer than the watchdog promises.
         if not self.at_rest and self._ramp_us is None:
             self._ramp_us = begun_us
@@ -303,10 +306,9 @@ class Controller:
         return (info.left_stop_count + self._astray + counts) & ((1 << info.count_bits) - 1)
 
     def _flags(self) -> int:
-        resting = self.at_rest or self._ramp_us is not None
         return (
             PLACED * self.placed
-            | RESTING * resting
+            | RESTING * self.resting
             | FAULTY * self.faulty
             | TRIPPED * self._tripped
         )

@@ -24,6 +24,9 @@ VERSION: Final = 1
 # A device without a valid FRAME for so long begins a ramp to rest, which takes so long.
 WATCHDOG_MS: Final = 50
 RAMP_MS: Final = 20
+# A host that has sent no FRAME for so long takes it that the watchdog trips meanwhile: the device
+# counts from when a FRAME arrives, and FRAMEs may be late by some milliseconds.
+STALL_MS: Final = 40
 # A host asks HELLO so often, and gives a device so long to answer (boards restart when opened).
 HELLO_PERIOD_MS: Final = 250
 ANSWER_MS: Final = 3000

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import serial
 
-from vbraille.devices.delivery import STALL_MS
 from vbraille.devices.greeting import greet
+from vbraille.devices.messages import STALL_MS
 from vbraille.devices.ports import BAUD, parse_address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.serialport import LOOK_S, SerialPort

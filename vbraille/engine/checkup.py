@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 NS_PER_S = 1_000_000_000
 SWING_S = 0.25  # of one actuator, out and back
+_MOST_SWINGS = 8  # of one actuator of a device that goes to rest again and again
 _PATIENCE_S = 0.25  # with a frame that is never acknowledged
 _LOOK_NS = 50_000
 
@@ -58,12 +59,20 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
     for row, column in np.ndindex(frame.shape):
         yield row, column
         due_ns = clock.now_ns()
-        for step in range(1, steps + 1):
+        taking, step = device.taking, 0
+        for _ in range(_MOST_SWINGS * steps):
+            step += 1
             frame[row, column] = math.sin(math.pi * step / steps) ** 2 if step < steps else 0.0
             due_ns += round(NS_PER_S / info.rate_hz)
             clock.sleep_until_ns(due_ns)
             device.read()
+            if device.taking != taking:  # it has gone to rest, or leaves it: by no jump
+                taking, step = device.taking, 0
+                frame[row, column] = 0.0
             device.write(frame)
+            if step == steps:
+                break
+        frame[row, column] = 0.0
 
 
 def warm_up() -> None:
@@ -120,6 +129,7 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
     frame = np.zeros((device.info.rows, device.info.columns))
     taken = []
     for _ in range(count):
+        _begin(device, clock, frame)
         device.write(frame)
         give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
         while device.acknowledged_ns is None and clock.now_ns() < give_up_ns:
@@ -129,3 +139,12 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
             break
         taken.append(device.acknowledged_ns / 1e6)
     return np.array(taken)
+
+
+def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
+    """Send rest until the device takes frames, or patience is over."""
+    give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
+    while not device.taking and clock.now_ns() < give_up_ns:
+        device.write(frame)
+        clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.info.rate_hz))
+        device.read()
