@@ -612,6 +612,13 @@ def test_a_trip_whose_report_is_lost_is_counted_by_the_states_and_once(bench):
     device.close()
 
 
+def test_frames_that_are_too_far_apart_for_the_watchdog_are_refused(bench):
+    made = bench()
+    with pytest.raises(InputError, match="30 a second are asked for; choose --rate 40 or more"):
+        made.open(rate_hz=30.0)
+    made.open(rate_hz=40.0).close()
+
+
 def test_trips_before_the_first_report_are_of_no_concern(bench):
     made = bench()
     made.controller.trips = 5
