@@ -4,11 +4,11 @@ Nobody waits: the clock goes on when the host sleeps, and when it is stopped. Wh
 is held against the law that nothing jumps, at every FRAME and at every tick of the controller:
 
 - On the ramp to rest an actuator moves by a twentieth of its swing in a millisecond.
-- From one FRAME that is shown to the next it moves by no more than the fade and the device's slew
-  go in the ticks of the loop between the two (a FRAME that was lost on the way counts, time in
-  which the host was stopped does not), and the fade's bound is wider by what the hand's own
-  motion asks for: the way between the places that the two were made for, times the steepest
-  slope of the picture.
+- From one FRAME that is shown to the next it moves by no more than the fade goes in the ticks of
+  the loop between the two (those of FRAMEs that were lost on the way count, time in which the
+  host was stopped does not), and what the hand's own motion asks for: the way between the places
+  that the two were made for, times the steepest slope of the picture. Where the device has a slew
+  limit, it is what that goes in these ticks instead, for the device may lag behind.
 - The first FRAME that is shown after a rest leaves it by nothing, or, where the line itself was
   late or dead and the controller is of today's build, by a twentieth of the swing.
 - What is shown then is of a place that the carriage was at when the host was awake again.
