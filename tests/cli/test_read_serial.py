@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
 
@@ -137,22 +138,113 @@ def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     )
 
 
+def test_the_page_is_laid_out_for_the_travel_that_there_is(tmp_path, text):
+    with simulated(tmp_path, "--travel", "60") as (spec, _):
+        done = program.run("read", text, "--device", spec)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == "line width: 4 cells\n"
+        said = [line for line in done.stdout.splitlines() if line.startswith("text: ")]
+        assert " ".join(line.removeprefix("text: ") for line in said[:3]) == "one two three"
+        narrower = program.run("read", text, "--device", spec, "--travel", "50", "--lines", "1")
+        assert narrower.returncode == 0, narrower.stderr
+        assert narrower.stderr == "line width: 3 cells\n"
+
+
+def test_the_page_is_laid_out_for_the_actuators_that_there_are(tmp_path, text):
+    with simulated(tmp_path, "--model", "vbd") as (spec, _):
+        done = program.run("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == "line width: 28 cells\n"
+        other = program.run("read", text, "--device", spec, "--mapping", "paired")
+        assert other.returncode == 2
+        assert other.stderr == (
+            "vbraille: the VBD has one row of actuators; --dot-row chooses dots\n"
+        )
+
+
 def test_a_device_that_does_not_fit_the_page(tmp_path, text):
-    with simulated(tmp_path) as (spec, _):
+    with simulated(tmp_path, "--travel", "200") as (spec, _):
         for options, sentence in (
+            (("--travel", "300"), "goes 200 mm and --travel asks for 300 mm; leave --travel out"),
             (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
             (("--rate", "2000"), "choose --rate 1000 or less"),
         ):
             done = program.run("read", text, "--device", spec, *options)
             assert done.returncode == 2
             assert sentence in done.stderr
-            assert len(done.stderr.splitlines()) == 2  # the line's width, and the sentence
+            assert len(done.stderr.splitlines()) == 1
 
 
 def test_a_port_that_is_not_there(text):
     done = program.run("read", text, "--device", "serial:/dev/nothing")
     assert done.returncode == 2
     assert "there is no port /dev/nothing" in done.stderr
+
+
+# Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
+SHORT = """
+from vbraille.devices.base import Sample
+from vbraille.devices.motion import Way
+from vbraille.devices.simulated import SimulatedDevice
+
+class Hand:
+    def read_line(self, start_mm, end_mm):
+        way = Way(start_mm)
+        for _ in range(4):
+            way.move(end_mm, 900.0)
+            way.move(start_mm, 900.0)
+        return way.motion()
+
+class Short(SimulatedDevice):
+    def __init__(self, address, wanted):
+        super().__init__(wanted, hand=Hand())
+        self.taking = address != "refusing"
+
+    def read(self):
+        sample = super().read()
+        return Sample(sample.time_ns, min(sample.x_mm, 60.0))
+"""
+
+
+def test_a_line_that_the_carriage_cannot_finish_ends_the_reading_where_nobody_can_act(
+    tmp_path, text
+):
+    driver = drivers.install(tmp_path, "short", "Short", SHORT)
+    done = program.run("read", text, "--device", "short:", "--rate", "500", env=driver)
+    assert done.returncode == 1
+    assert "waiting: the finger turns back at 65 mm, and line 1 ends at" in done.stdout
+    assert done.stderr.splitlines()[1:] == [
+        "vbraille: line 1 cannot be read to its end: the finger turns back at 65 mm each time, and "
+        "the line ends at 140 mm; see what is in the carriage's way, or give a shorter --travel"
+    ]
+    with Terminal(
+        "read", text, "--device", "short:", "--rate", "500", PYTHONPATH=driver["PYTHONPATH"]
+    ) as terminal:
+        terminal.until("waiting: the finger turns back at 65 mm.* or n brings the next line\r\n")
+        terminal.type("n")
+        terminal.until("line: 2")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_a_device_that_takes_nothing_is_not_read_on(tmp_path, text):
+    driver = drivers.install(tmp_path, "short", "Short", SHORT)
+    text.write_text("a\n\nb\n")
+    with program.start(
+        "read", text, "--device", "short:refusing", env=driver, text=True
+    ) as process:
+        said = [process.stdout.readline()]
+        while not said[-1].startswith("waiting: "):
+            assert process.poll() is None, said
+            said.append(process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        said += process.stdout.readlines()
+    assert "line: 1\n" in said
+    assert "line: 2\n" not in said
+    assert [line for line in said if line.startswith("waiting: ")] == [
+        "waiting: the device takes no frames, so that nothing is felt; switch it off and on, "
+        "and line 1 goes on\n"
+    ]
 
 
 def test_device_info_and_check(tmp_path):

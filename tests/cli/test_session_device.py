@@ -94,6 +94,19 @@ def test_every_frame_that_was_sent_is_made_again_bit_for_bit(tmp_path):
     assert ((ticks["share"] > 0) & (ticks["share"] < 1)).sum() > 20
 
 
+def test_a_carriage_too_short_for_the_strings_is_said_before_anything_is_begun(tmp_path, mini):
+    with simulated(tmp_path, "--model", "vbd", "--travel", "20") as (spec, _):
+        done = program.run(
+            *session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
+        )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "vbraille: the carriage of simulated VBD goes 20 mm and the longest string of mini needs "
+        "45.1 mm; choose another --device or shorter strings\n"
+    )
+    assert not (tmp_path / "s").exists()
+
+
 def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_path, mini):
     options = ("--model", "vbd", "--hand", "sweep:60", "--travel", "60")
     with simulated(tmp_path, *options) as (spec, device):

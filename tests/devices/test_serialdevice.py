@@ -927,3 +927,20 @@ def test_closing_while_it_is_unplugged_leaves_nothing(bench):
     assert open_descriptors() == before
     with pytest.raises(DeviceError, match="closed"):
         device.write(HALF)
+
+
+def test_it_says_whether_its_frames_are_taken(bench):
+    made = bench()
+    with made.open() as device:
+        made.run(device, 200)
+        assert device.taking
+        take, made.controller.receive = made.controller.receive, lambda _chunk, _us: b""
+        made.run(device, 90)
+        assert device.taking  # one that is lost now and then is no refusal
+        made.run(device, 60)
+        assert not device.taking
+        made.controller.receive = take
+        made.run(device, 60)
+        assert device.taking
+        made.run(device, 6000, REST)  # nothing is sent that could be taken
+        assert device.taking

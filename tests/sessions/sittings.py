@@ -1,6 +1,7 @@
 """Sessions in this process, as fast as the machine can, with an experimenter of a few lines."""
 
 import re
+import struct
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from vbraille.devices.base import DeviceInfo
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
-from vbraille.sessions.record.folder import create, load, versions
+from vbraille.sessions.record.folder import FORMAT, check_end, create, load, versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import Simulated
@@ -93,7 +94,7 @@ class Session:
         self.plan = make_plan(self.protocol, participant, seed)
         self.hand = hand
         head = {
-            "format": 1, "protocol": self.protocol.name, "participant": participant,
+            "format": FORMAT, "protocol": self.protocol.name, "participant": participant,
             "seed": seed, "order": self.plan.order, "model": self.protocol.model.name,
             "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
             "hand": hand, "device": "sim", "versions": versions(),
@@ -115,9 +116,12 @@ class Session:
             device = open_device(f"sim:?hand={self.hand}&seed=1", info)
             engine = engine(device, poll_ticks=100)
             engine.start()
-            display = OnDevice(engine, self.protocol, self.folder, keeps=not script)
+            display = OnDevice(
+                engine, self.protocol, self.folder, keeps=not script, tie=lambda: journal.durable
+            )
         record = load(self.folder)
         with Journal(self.folder) as journal:
+            check_end(self.folder, journal.told)
             torn = journal.set_torn_aside()
             progress = Progress(self.plan, journal.told.events)
             course = Course(
@@ -135,6 +139,24 @@ class Session:
         record = load(self.folder)
         progress = Progress(self.plan, record.told.events)
         return Sat(said, record.told.events, played, record, progress)
+
+
+def crash(folder, size):
+    """Cut a session's journal, and what of its traces was written after the lines that are gone.
+
+    As a crash of the machine leaves it: what is on the disk was not written before its time.
+    """
+    path = folder / "journal.jsonl"
+    kept = path.read_bytes()[:size]
+    path.write_bytes(kept)
+    for trace in folder.glob("trace-*.gz"):
+        content, end = trace.read_bytes(), 0
+        while end < len(content):
+            length, _, _, _, number = struct.unpack_from("<II2sHI", content, end + 16)
+            if number > kept.count(b"\n"):
+                break
+            end += length
+        trace.write_bytes(content[:end])
 
 
 def of(events, name):

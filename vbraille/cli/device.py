@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
 from vbraille.devices import open_device
@@ -17,6 +16,7 @@ from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError
 from vbraille.render import MODELS
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -6,7 +6,17 @@ import argparse
 import os
 
 from vbraille import __version__
-from vbraille.cli.optionvalues import Pairs, duration, lines, marks, names, number, seed, whole
+from vbraille.cli.optionvalues import (
+    Pairs,
+    checksum,
+    duration,
+    lines,
+    marks,
+    names,
+    number,
+    seed,
+    whole,
+)
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -29,11 +39,26 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     """A parser whose errors are one sentence."""
 
+    says_keys = False  # whether its help ends with the keys of a reading
+
     def __init__(self, **options) -> None:
         super().__init__(**options, formatter_class=_Help, allow_abbrev=False)
 
+    def format_help(self) -> str:
+        """Help, as argparse has it, and the keys."""
+        return super().format_help() + (_keys() if self.says_keys else "")
+
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} ({self.prog} --help says what there is)")
+
+
+def _keys() -> str:
+    """What the keys do at a terminal, a line each."""
+    from vbraille.reading.commands import COMMANDS
+
+    width = max(len(command.spoken_keys) for command in COMMANDS)
+    lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in COMMANDS]
+    return "\nkeys at a terminal:\n" + "".join(lines)
 
 
 def parse(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -51,7 +76,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--version", action="version", version=f"vbraille {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(name: str, text: str) -> argparse.ArgumentParser:
+    def command(name: str, text: str) -> _Parser:
         return commands.add_parser(name, help=text, description=f"{text}.")
 
     read = command("read", "Read a text on a device, line after line")
@@ -72,6 +97,8 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         help="what to say of each line (default: none at a terminal, else both)",
     )
     _hand_options(read)
+    read.set_defaults(model=None)  # the device's own
+    read.says_keys = True
 
     page = command("page", "Print the laid-out page")
     _text_options(page)
@@ -88,6 +115,7 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     _show_options(render)
     _hand_options(render)
     render.add_argument("--out", required=True, metavar="FILE.h5", help="the file to write")
+    render.add_argument("--force", action="store_true", help="replace the file if it is there")
     render.add_argument("--plain", action="store_true", help="progress as lines, without a bar")
 
     plot = command("plot", "Draw a picture, or print its numbers")
@@ -155,6 +183,11 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     _plan_options(run)
     run.add_argument("--out", metavar="DIR", help="its directory (PARTICIPANT-PROTOCOL-TIME)")
     _conduct_options(run)
+    run.add_argument(
+        "--another",
+        action="store_true",
+        help="the participant is somebody else than the one whose pseudonym is nearly the same",
+    )
     run.set_defaults(device="sim", answers="typed", hand="device", rate=1000.0)
     run.add_argument("--rate", type=number, metavar="HZ", help="frames a second (1000)")
     run.add_argument(
@@ -174,12 +207,27 @@ def _session_options(parser: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--out", metavar="FILE|DIR", help="trials as CSV (default: printed); with --bids, a dataset"
     )
+    export.add_argument("--bids", action="store_true", help="add the session to a BIDS dataset")
+
     export.add_argument(
-        "--bids", action="store_true", help="*_beh.tsv with its sidecar, traces as *_physio.tsv.gz"
+        "--anonymous",
+        action="store_true",
+        help="without times of day, paths and notes; elapsed times stay",
+    )
+    export.add_argument(
+        "--salvage",
+        action="store_true",
+        help="of a damaged session, export what is whole after the damage too",
     )
 
     check = action("check", "see whether every file of a session is whole and consistent")
     check.add_argument("folder", metavar="DIR", help="the session's directory")
+    check.add_argument(
+        "--expect",
+        type=checksum,
+        metavar="SUM",
+        help="see that nothing was changed since a stop, the end or an export said this SHA-256",
+    )
 
 
 def _plan_options(parser: argparse.ArgumentParser) -> None:
@@ -258,7 +306,12 @@ def _analyse_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) -> None:
-    parser.add_argument("file", metavar="FILE", nargs="?" if optional else None, help="a text file")
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="a text file, or - for standard input (read then takes keys from the terminal)",
+    )
     parser.add_argument("--table", metavar="NAME", help="a liblouis table")
     parser.add_argument("--language", metavar="TAG", help="instead of a table (en)")
     parser.add_argument("--grade", type=whole, metavar="N", help="of the language's braille")
@@ -304,7 +357,8 @@ def _hand_options(parser: argparse.ArgumentParser) -> None:
         "--hand",
         default="sweep:60",
         metavar="HAND",
-        help="simulated: sweep:SPEED in mm/s (sweep:60), device, fluent, recorded:FILE.csv",
+        help="simulated: sweep:SPEED in mm/s (sweep:60), slow (as on such displays; also called "
+        "device), fluent (as on paper), recorded:FILE.csv",
     )
     parser.add_argument("--seed", type=seed, default=1, help="of the hand's chances (1)")
     parser.add_argument(

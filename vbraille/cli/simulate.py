@@ -8,7 +8,6 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
 from vbraille.devices.firmware import describe
@@ -18,6 +17,7 @@ from vbraille.devices.pty import Link, Port
 from vbraille.devices.simulator import Faults, Simulator
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

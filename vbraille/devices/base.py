@@ -121,6 +121,8 @@ class Device(ABC):
         that the next frames must fade in.
     placing : Placing
         What it waits for before it can tell places; `read` gives None till then.
+    taking : bool
+        Whether it takes the frames that it is sent; False once it has taken none for a while.
     acknowledged_ns : int or None
         How long after the last frame was written the device said that it has it;
         None as long as it did not.
@@ -128,6 +130,7 @@ class Device(ABC):
 
     rested = 0
     placing = Placing.DONE
+    taking = True
     acknowledged_ns: int | None = None
     _closed = False
 

@@ -20,7 +20,7 @@ GROUP = "vbraille.devices"
 PITCH_TOLERANCE = 0.01
 
 
-def open_device(spec: str, wanted: DeviceInfo | None) -> Device:
+def open_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> Device:
     """Open the device of a spec.
 
     Parameters
@@ -29,6 +29,8 @@ def open_device(spec: str, wanted: DeviceInfo | None) -> Device:
         ``sim`` or ``KIND:ADDRESS``.
     wanted
         The actuators and the travel that the page was laid out for; None if any will do.
+    fits
+        Whether the actuators must be those; else they are a wish, and only the rate must be had.
 
     Raises
     ------
@@ -45,15 +47,17 @@ def open_device(spec: str, wanted: DeviceInfo | None) -> Device:
     device = next(iter(found)).load()(address, wanted)
     if wanted is not None:
         try:
-            _check_fit(device.info, wanted)
+            if fits:
+                check_actuators(device.info, wanted)
+            _check_rate(device.info, wanted.rate_hz)
         except InputError:
             device.close()
             raise
     return device
 
 
-def _check_fit(info: DeviceInfo, wanted: DeviceInfo) -> None:
-    """Raise InputError if a device is another than the page and the loop are made for."""
+def check_actuators(info: DeviceInfo, wanted: DeviceInfo) -> None:
+    """Raise InputError if a device has other actuators than a page is for."""
     if (info.rows, info.columns) != (wanted.rows, wanted.columns):
         raise InputError(
             f"{info.name} has {info.rows} × {info.columns} actuators and the page is for "
@@ -69,8 +73,12 @@ def _check_fit(info: DeviceInfo, wanted: DeviceInfo) -> None:
                 f"the {what} of {info.name} are {pitch_mm:g} mm apart and the page is for "
                 f"{wanted_mm:g} mm; choose another --model or --device"
             )
-    if info.rate_hz < wanted.rate_hz:
+
+
+def _check_rate(info: DeviceInfo, rate_hz: float) -> None:
+    """Raise InputError if a device is too slow for the loop."""
+    if info.rate_hz < rate_hz:
         raise InputError(
-            f"{info.name} is made for {info.rate_hz:g} frames a second and {wanted.rate_hz:g} "
+            f"{info.name} is made for {info.rate_hz:g} frames a second and {rate_hz:g} "
             f"are asked for; choose --rate {info.rate_hz:g} or less"
         )

@@ -79,7 +79,7 @@ class BatchEngine:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
-            raise InputError("--fast needs a hand that reads lines: device, fluent or sweep:SPEED")
+            raise InputError("--fast needs a hand that reads lines: slow, fluent or sweep:SPEED")
         self.newest: np.void | None = None
         self.tally = Tally()
         self.counts: dict[str, int] = {}

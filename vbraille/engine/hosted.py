@@ -1,6 +1,7 @@
 """What runs in the host process: the loop, its device and its mailbox, and nothing else.
 
-`vbraille.engine.host` starts it, with a line of JSON on standard input; it
+`vbraille.engine.host` starts it, with two lines of JSON on standard input: which
+device to open, and, perhaps when that has been answered, how much memory to share. It
 answers with lines of JSON on standard output. Whatever happens to its parent,
 it brings the array to rest before it ends.
 """
@@ -9,10 +10,12 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import sys
 from contextlib import suppress
 from dataclasses import asdict
+from io import FileIO
 from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import DeviceInfo, open_device
@@ -25,11 +28,20 @@ from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
 
 if TYPE_CHECKING:
+    from io import RawIOBase
     from types import FrameType
 
     from vbraille.devices import Device
     from vbraille.engine.mailbox import Mailbox
 
+_PARENT_S = (
+    signal.SIGINT,
+    signal.SIGHUP,
+    signal.SIGPIPE,
+    signal.SIGTSTP,
+    signal.SIGTTIN,
+    signal.SIGTTOU,
+)
 _WARM_TICKS = 200
 _REHEARSAL_S = 0.05
 
@@ -117,7 +129,14 @@ def answer(**said: Any) -> None:
         os.write(sys.stdout.fileno(), json.dumps(said).encode() + b"\n")
 
 
-def run(config: dict[str, Any], descriptor: int) -> None:
+def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
+    """Next line of the parent's; what the device says meanwhile is taken, and not used."""
+    while not select.select([orders], [], [], 1 / rate_hz)[0]:
+        device.read()
+    return orders.readline()
+
+
+def run(orders: RawIOBase, descriptor: int) -> None:
     """Open the device, drive it until it is enough, and rest it.
 
     Raises
@@ -125,18 +144,23 @@ def run(config: dict[str, Any], descriptor: int) -> None:
     VbrailleError
         If the device cannot be opened, or fails.
     """
+    config = json.loads(orders.readline())
     wanted = DeviceInfo(**config["wanted"])
-    extent = shared.Extent(**config["extent"])
-    mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
-    os.close(descriptor)
-    warm_up(wanted, extent)
-    with open_device(config["device"], wanted) as device:
+    warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 1, _WARM_TICKS))
+    with open_device(config["device"], wanted, fits=config["fits"]) as device:
+        answer(opened=asdict(device.info))
+        told = wait_for_line(orders, device, wanted.rate_hz)
+        if not told:
+            return  # nobody wants it any more
+        extent = shared.Extent(**json.loads(told))
+        mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
+        os.close(descriptor)
         note = go_real_time()
         rehearse(device, wanted.rate_hz)
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, extent, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
-        answer(ready=asdict(device.info), note=note)
+        answer(ready=True, note=note)
         os.set_blocking(sys.stdout.fileno(), False)
         try:
             loop.restart_clock()
@@ -158,11 +182,15 @@ def _say_notes(device: Device) -> None:
 
 def main() -> int:
     """Run as the child of a program that reads what is answered."""
-    # Keys of the terminal and its end are the parent's to hear.
-    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGPIPE):
+    # Keys of the terminal and its end are the parent's to hear: a host that stopped with its parent
+    # would leave the actuators where they are.
+    for number in _PARENT_S:
         signal.signal(number, signal.SIG_IGN)
     try:
-        run(json.loads(sys.stdin.readline()), int(sys.argv[1]))
+        with FileIO(
+            sys.stdin.fileno(), closefd=False
+        ) as orders:  # without a buffer, to be waited for
+            run(orders, int(sys.argv[1]))
     except VbrailleError as error:
         answer(fault=str(error), code=error.exit_code)
         return error.exit_code

@@ -6,6 +6,7 @@ from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.ring import Flag
 from vbraille.sessions.planning.spelling import say_cells
+from vbraille.sessions.record.notes import read_notes
 from vbraille.sessions.running.orders import ORDERS
 
 ALL = [("cue", "c")] * 4
@@ -131,8 +132,8 @@ def test_notes_go_to_the_open_trial_or_to_the_session(session):
     sat = session.sit(
         ("ready", "note before"), ("cue", "note within, é"), ("note", "c"), ("answer", "stop")
     )
-    assert sat.progress.notes == ["before"]
-    assert sat.progress.trials[1].notes == ["within, é"]
+    notes = [(note.text, note.before, note.trial, note.after) for note in read_notes(sat.events)]
+    assert notes == [("before", 0, 0, 1), ("within, é", 1, 1, 1)]
 
 
 @pytest.mark.parametrize(

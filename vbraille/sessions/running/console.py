@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.sessions.planning.spelling import parse_answer, parse_choice, say_cells
 from vbraille.sessions.running.course import POLL_S, Phase
@@ -58,7 +59,14 @@ class Console:
         if self._progress.correcting is not None:
             self._say(f"undo: {course.name(self._progress.correcting)}; type its answer")
         course.next()
+        with Suspension() as suspension:
+            self._go_through(suspension)
+
+    def _go_through(self, suspension: Suspension) -> None:
+        course = self._course
         while course.phase is not Phase.OVER:
+            if suspension.asked:
+                self._suspend(suspension)
             lines = self._answers.lines(self._wait_s)
             if lines is None:
                 self._leave()
@@ -69,6 +77,15 @@ class Console:
             course.poll()
             if not self._answers.typed:
                 self._ask()
+
+    def _suspend(self, suspension: Suspension) -> None:
+        """Stop the process, in a pause; it goes on by Enter, if there is somebody to press it."""
+        paused = self._course.paused
+        if not paused:
+            self.pause()
+        suspension.stop()
+        if not paused and not self._answers.typed:
+            self.go_on()
 
     def take(self, line: str, number: int = 0) -> None:
         """Do what a line says: an order, an answer, or Enter.

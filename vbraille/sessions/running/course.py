@@ -389,6 +389,7 @@ class Course:
             raise fault
         self._say(f"fault: {fault}; it is started again")
         assert self.display is not None, "paper has no engine"
+        self.log("closed", **self.display.close_trace())
         self.display.engine.start()
         self.start(why="fault")
         if trial is not None:

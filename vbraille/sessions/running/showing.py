@@ -16,6 +16,7 @@ from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import Exploration
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from collections.abc import Mapping as Named
     from pathlib import Path
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.render.tuning import Tuning
     from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.record.journal import Tie
 
 _PLACES = {
     Placing.DONE: "place: known",
@@ -84,6 +86,9 @@ class OnDevice:
         Where the trace goes.
     keeps
         Whether what is felt is kept, for a simulated reader.
+    tie
+        Tells which line of the journal is on the disk, for the traces to be tied to; None in a
+        session of format 1.
 
     Attributes
     ----------
@@ -95,13 +100,22 @@ class OnDevice:
 
     by_key = False
 
-    def __init__(self, engine: RunEngine, protocol: Design, folder: Path, *, keeps: bool) -> None:
+    def __init__(
+        self,
+        engine: RunEngine,
+        protocol: Design,
+        folder: Path,
+        *,
+        keeps: bool,
+        tie: Callable[[], Tie] | None = None,
+    ) -> None:
         self.engine = engine
         self.line = 0
         self._protocol = protocol
         self._span_mm = protocol.model.array.span_mm
         self._folder = folder
         self._keeps = keeps
+        self._tie = tie
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
@@ -121,14 +135,13 @@ class OnDevice:
         line
             Number of the last line shown in those before.
         """
-        if self._trace is not None:
-            self._trace.close()
+        self.close_trace()
         self.engine.paused = True
         self.line = line
         # A run that was killed before the journal told of it has left its trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
-        self._trace = TraceWriter(self._folder / _trace_name(run))
+        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
         self._newest = self._stimulus = None
         self._away = self._ready = False
         return _trace_name(run)
@@ -243,8 +256,14 @@ class OnDevice:
         try:
             self.engine.close()
         finally:
-            if self._trace is not None:
-                self._trace.close()
+            self.close_trace()
+
+    def close_trace(self) -> dict[str, Any]:
+        """End the trace, if there is one; what the journal tells of it."""
+        if self._trace is None:
+            return {}
+        self._trace.close()
+        return self._trace.closed()
 
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
         """What the hand did with the stimulus in these ticks."""
