@@ -69,7 +69,6 @@ class Delivery:
         """REST was sent."""
         self.rest_due, self._told_ns = False, now_ns
 
-<<<<<<< HEAD
     def stop(self, *, tell: bool = True) -> None:
         """Send no FRAME until the device is at rest; if it should not be, it is told so."""
         self.taking = self.at_rest = False
@@ -81,13 +80,6 @@ class Delivery:
         return self._sent_ns is not None and now_ns - self._sent_ns >= STALL_MS * _NS_PER_MS
 
     def take_watchdog(self, watchdog: Watchdog) -> bool:
-=======
-    def refused(self, now_ns: int) -> bool:
-        """Whether FRAMEs have been owed for a while, and none was taken."""
-        return self._owed_ns is not None and now_ns - self._owed_ns >= REFUSED_MS * _NS_PER_MS
-
-    def take_watchdog(self, watchdog: Watchdog, now_ns: int) -> bool:
->>>>>>> main
         """Take a report; whether the device went to rest, which was not known."""
         tripped = 0 if self._trips_before is None else watchdog.trips - self._trips_before
         self._trips_before = watchdog.trips

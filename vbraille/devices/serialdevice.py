@@ -198,7 +198,6 @@ class SerialDevice(Device):
             gap = unwrap(state.sequence, self._state_sequence, 16) - self._state_sequence - 1
             self._missed += max(gap, 0)
         self._state_sequence = state.sequence
-<<<<<<< HEAD
         if self._delivery.take_state(state, now_ns):
             self._fell(now_ns)
         if self._delivery.stuck:
@@ -206,10 +205,6 @@ class SerialDevice(Device):
                 f"{self._info.name} does not go to rest, neither when it is told to nor without "
                 f"frames; switch it off, and do not read on it until that is mended"
             )
-=======
-        self._delivered(self._delivery.take_state(state, now_ns), now_ns)
-        self.taking = not self._delivery.refused(now_ns)
->>>>>>> main
         if self._sent_ns is not None and state.frame_sequence == self._sequence:
             self.acknowledged_ns = now_ns - self._sent_ns
             self._sent_ns = None
@@ -248,14 +243,7 @@ class SerialDevice(Device):
         self._delivery = Delivery(info.rate_hz)
         self._rest_frame = np.zeros((info.rows, info.columns))
         self._felt_ns = now_ns  # when a frame last had anything to feel
-<<<<<<< HEAD
         self._idle = False  # at rest for want of anything to feel
-=======
-        self._resting = False  # for want of anything to feel
-        self._told = False  # to rest, because it is silent
-        self._delivery.idle()
-        self.taking = True
->>>>>>> main
 
     def _greet(self, now_ns: int) -> None:
         """Begin to ask who is there."""
