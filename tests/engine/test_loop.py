@@ -41,12 +41,7 @@ class Recording(SimulatedDevice):
         super().__init__(info(), clock.now_ns, hand)
         self.sent: list[np.ndarray] = []
         self.silent = False
-        self.takes = True
         self.shift_mm = 0.0
-
-    @property
-    def taking(self) -> bool:
-        return self.takes
 
     def read(self) -> Sample | None:
         sample = super().read()
@@ -208,11 +203,11 @@ def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, dev
     loop = Loop(device, clock, ring=ring)
     loop.show(picture())
     run(loop, 0.3)
-    device.takes = False
+    device.taking = False
     run(loop, 0.2)
     assert loop.resting
     device.sent.clear()
-    device.takes = True
+    device.taking = True
     run(loop, 0.2)
     assert not loop.resting
     assert biggest_step([np.zeros((6, 10)), *device.sent]) <= 1 / 100 + 1e-9

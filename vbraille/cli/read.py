@@ -159,7 +159,7 @@ class _Reading:
         line = self._reader.lines
         self._reader.step(ticks)
         done = (
-            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.REFUSED) == Flag.FOLLOWED
+            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.HELD) == Flag.FOLLOWED
             and not self._keyboard.attached
         )
         if done and self._reader.lines == line and not self._reader.done:

@@ -74,7 +74,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
     protocol, plan = _planned(arguments)
     sitting = Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate), say=_say)
-    answers = parse_answers(arguments.answers, protocol, plan.seed)
+    answers = parse_answers(arguments.answers, protocol, plan)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, protocol, Progress(plan))
@@ -130,7 +130,7 @@ def _resume(arguments: argparse.Namespace) -> int:
         arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"], say=_say
     )
     used = progress.script_lines.get(arguments.answers, 0)
-    answers = parse_answers(arguments.answers, record.protocol, record.plan.seed, used)
+    answers = parse_answers(arguments.answers, record.protocol, record.plan, used)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, record.protocol, progress)

@@ -172,11 +172,6 @@ class Device(ABC):
         """Have a simulated hand read a new line, whose last dot ends there; a real hand does."""
 
     @property
-    def taking(self) -> bool:
-        """Whether frames reach the actuators; while they do not, they rest, and fade in then."""
-        return True
-
-    @property
     def followed(self) -> bool:
         """Whether a simulated hand has come to its end; a real one never has."""
         return False

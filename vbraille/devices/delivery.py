@@ -16,7 +16,6 @@ from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
 
-REFUSED_MS = 2 * WATCHDOG_MS  # without a FRAME taken: more than one that is lost now and then
 _NS_PER_MS = 1_000_000
 _US_PER_S = 1_000_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF

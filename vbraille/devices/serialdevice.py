@@ -100,16 +100,12 @@ class SerialDevice(Device):
         self._delivery = Delivery(greeted.info.rate_hz)
         self._begin(greeted.info, now_ns())
         self._take(greeted.events, now_ns())
+        self._tell_taking()
 
     @property
     def info(self) -> DeviceInfo:
         """What the device said of itself first."""
         return self._info
-
-    @property
-    def taking(self) -> bool:
-        """Whether FRAMEs hold the actuators, or would as soon as there is anything to feel."""
-        return self._link is _Link.LIVE and (self._delivery.taking or self._idle)
 
     def rest(self) -> None:
         """Tell the device to rest; it ramps there, where a FRAME of rest would be a jump."""
@@ -156,12 +152,14 @@ class SerialDevice(Device):
             self._link = _Link.GONE
             self._note_away("device: unplugged; plug it in again and reading goes on")
         if self._port.gone:
+            self._tell_taking()
             return None
         if self._link is _Link.GONE:
             self._decoder.feed(DELIMITER)  # what was begun will not be ended
             self._greet(now_ns)
         sample = self._take(self._decoder.feed(chunk), now_ns) if chunk else None
         self._mind_silence(now_ns)
+        self._tell_taking()
         return sample
 
     def _take(self, events: Sequence[Event], now_ns: int) -> Sample | None:
@@ -295,6 +293,10 @@ class SerialDevice(Device):
             "device: no frame reached it in time, so it went to rest; reading goes on"
         )
 
+    def _tell_taking(self) -> None:
+        """Say whether FRAMEs hold the actuators, or would if there were anything to feel."""
+        self.taking = self._link is _Link.LIVE and (self._delivery.taking or self._idle)
+
     def _note_away(self, note: str) -> None:
         if not self._away:
             self._notes.append(note)
@@ -302,9 +304,11 @@ class SerialDevice(Device):
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         self.acknowledged_ns = self._sent_ns = None
-        now_ns = self._now_ns()
-        if self._link is not _Link.LIVE:
-            return
+        if self._link is _Link.LIVE:
+            self._send_live(frame, self._now_ns())
+        self._tell_taking()
+
+    def _send_live(self, frame: NDArray[np.float64], now_ns: int) -> None:
         if not self._place.known:
             if self._delivery.taking:
                 self._stop()

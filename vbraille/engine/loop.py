@@ -36,7 +36,7 @@ SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
 _PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
-_REFUSED = int(Flag.REFUSED)
+_HELD = int(Flag.HELD)
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
@@ -239,7 +239,7 @@ class Loop:
         if followed:
             flags |= _FOLLOWED
         if not self.device.taking:
-            flags |= _REFUSED
+            flags |= _HELD
         tally = self.tally
         ring.append(
             self.output,
