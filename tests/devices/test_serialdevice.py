@@ -935,9 +935,9 @@ def test_it_says_whether_its_frames_are_taken(bench):
         made.run(device, 200)
         assert device.taking
         take, made.controller.receive = made.controller.receive, lambda _chunk, _us: b""
-        made.run(device, 90)
+        made.run(device, 40)
         assert device.taking  # one that is lost now and then is no refusal
-        made.run(device, 60)
+        made.run(device, 15)
         assert not device.taking
         made.controller.receive = take
         made.run(device, 60)
