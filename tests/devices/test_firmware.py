@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.controllers import ControllerOf20261121
 from vbraille.devices.base import DeviceInfo
 from vbraille.devices.firmware import MARK_MM, Controller, describe
 from vbraille.devices.messages import (
     FAULTY,
     PLACED,
     RESTING,
+    TRIPPED,
     CountSign,
     Encoder,
     Error,
@@ -60,8 +62,8 @@ def packed(levels):
 class Bench:
     """A controller, what it says, and a timer that ticks each millisecond when told to."""
 
-    def __init__(self, info=INFO, now_us=10_000_000):
-        self.controller = Controller(info)
+    def __init__(self, info=INFO, now_us=10_000_000, made=Controller):
+        self.controller = made(info)
         self.decoder = Decoder()
         self.now_us = now_us
         self.way_mm = 0.0
@@ -75,8 +77,12 @@ class Bench:
         return self.decoder.feed(self.controller.receive(chunk, self.now_us))
 
     def frame(self, levels=SWING):
-        self.sequence += 1
+        self.sequence = (self.sequence + 1) & 0xFFFF
         return self.send(Frame(self.sequence, packed(levels)))
+
+    def show(self, levels=SWING):
+        """Show levels, from rest if it is there; its answers."""
+        return [*(self.frame(REST) if self.controller.at_rest else ()), *self.frame(levels)]
 
     def tick(self, milliseconds=1):
         """Let time pass; what it says meanwhile."""
@@ -136,28 +142,29 @@ def test_hello_in_any_chunks(bench):
 
 
 def test_another_version_is_told_this_one_and_nothing_else(greeted):
-    greeted.frame()
+    greeted.show()
     assert greeted.send(Hello(version=2)) == [INFO, Watchdog(0, 0)]
     assert greeted.tick(30) == []
     assert greeted.frame() == []
-    assert (greeted.levels, greeted.controller.frames) == (REST, 1)
+    assert (greeted.levels, greeted.controller.frames) == (REST, 2)
     assert greeted.send(Hello()) == [INFO, Watchdog(0, 0)]
     assert greeted.state().resting
 
 
 def test_a_frame_is_where_the_actuators_stand(greeted):
-    assert greeted.frame() == []
+    assert greeted.show() == []
     assert greeted.levels == SWING
     assert greeted.controller.levels.dtype == np.uint16
     assert not greeted.controller.at_rest
-    assert greeted.controller.frames == 1
+    assert greeted.controller.frames == 2
     assert greeted.controller.last_frame_us == greeted.now_us
 
 
 def test_of_several_frames_the_last_is_shown(greeted):
+    greeted.show()
     greeted.send(*(Frame(n, packed([n] * 6)) for n in (7, 8, 9)))
     assert greeted.levels == [9] * 6
-    assert greeted.controller.frames == 3
+    assert greeted.controller.frames == 5
     assert greeted.state().frame_sequence == 9
 
 
@@ -194,7 +201,7 @@ def ramp(begun, milliseconds):
 
 
 def test_the_watchdog_trips_after_50_ms_and_ramps_for_20(greeted):
-    greeted.frame()
+    greeted.show()
     heard = greeted.tick(49)
     assert without_states(heard) == []
     assert not any(state.resting for state in heard)
@@ -217,7 +224,7 @@ def test_the_watchdog_trips_after_50_ms_and_ramps_for_20(greeted):
 def test_it_rests_within_71_ms_wherever_between_ticks_the_last_frame_came(greeted, after_us):
     greeted.tick()
     greeted.now_us += after_us
-    greeted.frame()
+    greeted.show()
     greeted.now_us -= after_us
     greeted.tick(71)
     assert greeted.controller.at_rest
@@ -225,7 +232,7 @@ def test_it_rests_within_71_ms_wherever_between_ticks_the_last_frame_came(greete
 
 
 def test_a_late_tick_changes_nothing_about_when_the_timer_saw_to_it(greeted):
-    greeted.frame()
+    greeted.show()
     greeted.now_us += 40_000
     greeted.tick()
     greeted.now_us += 14_300  # 55.3 ms after the frame, where it was due after 50
@@ -239,7 +246,7 @@ def test_a_late_tick_changes_nothing_about_when_the_timer_saw_to_it(greeted):
 
 
 def test_all_that_was_due_is_done_in_one_late_tick(greeted):
-    greeted.frame()
+    greeted.show()
     greeted.now_us += 500_000
     assert without_states(greeted.tick()) == [Watchdog(1, 0)]
     assert greeted.controller.at_rest
@@ -248,7 +255,7 @@ def test_all_that_was_due_is_done_in_one_late_tick(greeted):
 
 def test_frames_feed_it(greeted):
     for _ in range(10):
-        greeted.frame()
+        greeted.show()
         assert without_states(greeted.tick(49)) == []
     assert greeted.controller.trips == 0
 
@@ -263,7 +270,7 @@ def test_frames_feed_it(greeted):
     ],
 )
 def test_nothing_else_does(greeted, line):
-    greeted.frame()
+    greeted.show()
     for _ in range(49):
         greeted.tick()
         greeted.send_bytes(line)
@@ -272,7 +279,7 @@ def test_nothing_else_does(greeted, line):
 
 @pytest.mark.parametrize("message", [Rest(), Hello()])
 def test_rest_and_hello_bring_it_to_rest_by_the_ramp_and_disarm_it(greeted, message):
-    greeted.frame()
+    greeted.show()
     greeted.tick(10)
     greeted.send(message)
     greeted.tick(5)
@@ -286,7 +293,7 @@ def test_rest_and_hello_bring_it_to_rest_by_the_ramp_and_disarm_it(greeted, mess
 
 
 def test_a_ramp_on_its_way_is_not_begun_anew(greeted):
-    greeted.frame()
+    greeted.show()
     greeted.tick(60)
     greeted.send(Rest())
     greeted.tick(5)
@@ -296,29 +303,126 @@ def test_a_ramp_on_its_way_is_not_begun_anew(greeted):
     assert greeted.controller.rest_after_us == 70_000
 
 
-def test_a_frame_ends_a_ramp_and_the_first_after_a_trip_has_it_reported_again(greeted):
-    greeted.frame()
-    greeted.tick(60)
-    assert greeted.frame([1, 2, 3, 4, 5, 6]) == [Watchdog(trips=1, dropped=0)]
-    assert greeted.frame([1, 2, 3, 4, 5, 6]) == []
-    assert not greeted.state().resting
-    greeted.tick(40)
-    assert greeted.levels == [1, 2, 3, 4, 5, 6]
-    assert not greeted.controller.at_rest
-    assert greeted.controller.rest_after_us is None
-    greeted.tick(40)
-    assert (greeted.controller.trips, greeted.controller.at_rest) == (2, True)
+def test_a_frame_does_not_cut_the_ramp_after_a_trip_and_the_first_taken_has_it_reported(greeted):
+    greeted.show()
+    greeted.tick(50)
+    for milliseconds in range(1, 20):
+        assert greeted.frame() == []  # full, as from a host that has not heard
+        assert greeted.frame(REST) == []
+        state = greeted.state()
+        assert greeted.levels == ramp(SWING, milliseconds)
+        assert (state.resting, state.tripped, state.frame_sequence) == (True, True, 2)
+    greeted.tick()
+    assert (greeted.levels, greeted.controller.at_rest) == (REST, True)
+    assert greeted.controller.rest_after_us == 70_000
+    assert greeted.frame(REST) == [Watchdog(trips=1, dropped=0)]
+    assert greeted.frame(REST) == []
+    state = greeted.state()
+    assert (state.resting, state.tripped) == (False, False)
+    assert greeted.controller.dropped == 0  # none was, for all were valid
 
 
-def test_rest_after_a_trip_is_the_end_of_it(greeted):
+@pytest.mark.parametrize("message", [Rest(), Hello()])
+def test_a_frame_does_not_cut_the_ramp_after_rest_and_hello(greeted, message):
+    greeted.show()
+    greeted.tick(10)
+    greeted.send(message)
     greeted.frame()
+    for milliseconds in range(1, 20):
+        greeted.tick()
+        greeted.frame()
+        assert greeted.levels == ramp(SWING, milliseconds)
+    greeted.tick()
+    greeted.frame()
+    assert (greeted.levels, greeted.controller.at_rest) == (REST, True)
+    assert greeted.controller.rest_after_us == 30_000
+
+
+def next_to_rest(step):
+    return [rest + (step if rest == 0 else -step) for rest in REST]
+
+
+@pytest.mark.parametrize("to_rest", ["start", "trip", "rest", "hello"])
+def test_rest_is_left_by_a_twentieth_of_the_swing_at_most(greeted, to_rest):
+    if to_rest != "start":
+        greeted.show()
+    if to_rest == "rest":
+        greeted.send(Rest())
+    if to_rest == "hello":
+        greeted.send(Hello())
     greeted.tick(100)
-    greeted.send(Rest())
-    assert greeted.frame() == []
+    frames = greeted.controller.frames
+    greeted.frame(SWING)
+    greeted.frame(next_to_rest(TOP // 20 + 1))
+    assert (greeted.levels, greeted.controller.frames) == (REST, frames)
+    greeted.frame(next_to_rest(TOP // 20))
+    assert greeted.levels == next_to_rest(TOP // 20)
+    greeted.frame(SWING)  # from then on the host says how fast
+    assert greeted.levels == SWING
+
+
+def test_a_device_of_two_levels_leaves_rest_by_a_frame_of_rest():
+    bench = Bench(replace(INFO, top_level=1))
+    bench.send(Hello())
+    rest, swing = (Levels(6, 1).pack(np.array(levels)) for levels in ([0, 0, 0, 1, 1, 1], [1] * 6))
+    bench.send(Frame(1, swing))
+    assert bench.controller.frames == 0
+    bench.send(Frame(2, rest), Frame(3, swing))
+    assert bench.levels == [1] * 6
+
+
+def test_frames_that_come_twice_or_late_are_dropped_and_do_not_feed_the_watchdog(greeted):
+    greeted.sequence = 65_530
+    greeted.show([0, 0, 0, TOP, TOP, TOP])
+    for level in range(10):  # over the wrap
+        greeted.frame([level] * 6)
+    assert greeted.levels == [9] * 6
+    for late in (0, 1, 5, 30_000):
+        greeted.send(Frame((greeted.sequence - late) & 0xFFFF, packed(SWING)))
+    assert greeted.levels == [9] * 6
+    assert greeted.controller.dropped == 4
+    for _ in range(49):
+        greeted.tick()
+        greeted.send(Frame(greeted.sequence, packed(SWING)))
+    assert without_states(greeted.tick())[0].trips == 1
+    greeted.tick(30)
+    greeted.send(Frame(7, packed(REST)))  # after a rest any number is the first
+    assert greeted.state().frame_sequence == 7
+
+
+def test_a_lost_report_of_a_trip_is_repeated_in_the_states_until_a_frame_is_taken(greeted):
+    greeted.show()
+    assert not any(state.tripped for state in greeted.tick(49))
+    assert all(state.tripped for state in greeted.tick(300)[1:])
+    greeted.frame()  # not taken: too far from rest
+    assert greeted.state().flags == PLACED | RESTING | TRIPPED
+    greeted.frame(REST)
+    assert greeted.state().flags == PLACED
+
+
+@pytest.mark.parametrize("message", [Rest(), Hello()])
+def test_whoever_says_rest_or_hello_needs_no_report_of_a_trip_any_more(greeted, message):
+    greeted.show()
+    greeted.tick(100)
+    greeted.send(message)
+    assert greeted.state().flags == PLACED | RESTING
+
+
+def test_the_controller_of_2026_11_21_is_cut_short_and_does_not_repeat():
+    old = Bench(made=ControllerOf20261121)
+    old.send(Hello())
+    old.frame()  # from rest
+    assert old.levels == SWING
+    *_, tripped = old.tick(60)
+    assert (old.levels, tripped.flags) == (ramp(SWING, 10), PLACED | RESTING)
+    assert old.frame() == [Watchdog(trips=1, dropped=0)]
+    assert old.levels == SWING
+    old.send(Frame(old.sequence, packed(REST)))
+    assert old.levels == REST
 
 
 def test_an_error_rests_it_until_hello(greeted):
-    greeted.frame()
+    greeted.show()
     greeted.tick(10)
     said = greeted.controller.fault(ErrorCode.TEMPERATURE, "Too hot; let it cool.")
     assert greeted.decoder.feed(said) == [Error(ErrorCode.TEMPERATURE, "Too hot; let it cool.")]
@@ -327,18 +431,18 @@ def test_an_error_rests_it_until_hello(greeted):
     assert not greeted.controller.at_rest
     greeted.tick()
     assert greeted.levels == REST
-    greeted.frame()
-    assert (greeted.levels, greeted.controller.frames) == (REST, 1)
+    greeted.show()
+    assert (greeted.levels, greeted.controller.frames) == (REST, 2)
     assert greeted.controller.dropped == 0
     assert without_states(greeted.tick(100)) == []
     greeted.send(Hello())
-    greeted.frame()
+    greeted.show()
     assert greeted.levels == SWING
     assert greeted.state().flags == PLACED
 
 
 def test_a_notice_changes_nothing(greeted):
-    greeted.frame()
+    greeted.show()
     said = greeted.controller.fault(ErrorCode.NOTICE, "Lamp off.")
     assert greeted.decoder.feed(said) == [Error(ErrorCode.NOTICE, "Lamp off.")]
     assert greeted.state().flags == PLACED
@@ -366,7 +470,7 @@ def test_a_state_is_of_its_time_and_place():
     assert (first.time_us, second.time_us) == ((1 << 32) - 1000, 0)
     assert first == State(1, first.time_us, 64_000, 0, PLACED | RESTING, 5, -70)
     bench.controller.force_mn = None
-    bench.send(Frame(513, packed(SWING)))
+    bench.send(Frame(513, packed(REST)))
     assert bench.state() == State(3, 1000, 64_000, 513, PLACED, 5, None)
 
 
@@ -429,13 +533,13 @@ def test_an_incremental_encoder_is_never_placed(sign):
 
 
 def test_unplugged_it_is_silent_and_its_watchdog_goes_on(greeted):
-    greeted.frame()
+    greeted.show()
     greeted.send_bytes(encode(Frame(2, packed(SWING)))[:-4])
     greeted.controller.hang_up()
     assert greeted.tick(100) == []
     assert (greeted.controller.trips, greeted.controller.rest_after_us) == (1, 70_000)
     assert greeted.levels == REST
-    greeted.frame()
+    greeted.show()
     assert greeted.levels == REST
     assert greeted.send(Hello()) == [INFO, Watchdog(trips=1, dropped=0)]
 

@@ -1,5 +1,7 @@
 """The compiled packing against the codec's, and against the protocol page's formula."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,7 +11,7 @@ from vbraille.devices import kernels
 from vbraille.devices.wire import Levels
 
 
-def fill(deflections, top, *, gain=255, inverted=0, last=None, step=0.0):
+def fill(deflections, top, *, gain=255, inverted=0, last=None, step=math.inf):
     shape = deflections.shape
     packing = Levels(deflections.size, top)
     out = np.full(packing.packed_bytes, 0xA5, np.uint8)

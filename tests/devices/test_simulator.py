@@ -10,7 +10,7 @@ import pytest
 
 from tests.devices.test_firmware import INFO, REST, SWING, packed
 from vbraille.devices.hand import Sweep
-from vbraille.devices.messages import Encoder, Frame, Hello, Info, Rest, State, Watchdog
+from vbraille.devices.messages import Encoder, Frame, Hello, Info, State, Watchdog
 from vbraille.devices.pty import Link, Port
 from vbraille.devices.simulator import Defect, Faults, Simulator, Spoiler
 from vbraille.devices.wire import DELIMITER, Decoder, encode
@@ -47,8 +47,11 @@ class Host:
         assert os.write(self.descriptor, line) == len(line)
 
     def frame(self):
-        self.sequence += 1
-        self.say(Frame(self.sequence, packed(SWING)))
+        """Show something, from rest if it is there."""
+        resting = not self.states or self.states[-1].resting
+        for levels in (REST, SWING) if resting else (SWING,):
+            self.sequence += 1
+            self.say(Frame(self.sequence, packed(levels)))
 
     @property
     def states(self):
@@ -170,17 +173,6 @@ def test_a_watchdog_s_trip_is_said_once_it_has_come_to_rest(bench):
     after_ms = bench.controller.rest_after_us / 1000
     assert bench.said[1:] == [f"watchdog: trip 1, at rest {after_ms:.1f} ms after the last frame"]
     assert Watchdog(1, 0) in bench.host.heard
-
-
-def test_a_trip_that_a_frame_ends_is_said_too(bench):
-    bench.greet()
-    bench.host.frame()
-    bench.run(lambda: bench.controller.trips, ticks(2))
-    bench.host.frame()
-    bench.run(ticks(5))
-    bench.host.say(Rest())
-    bench.run(lambda: bench.controller.at_rest, ticks(5))
-    assert bench.said[1:] == ["watchdog: trip 1, and a frame before it was at rest"]
 
 
 def test_with_an_index_the_hand_crosses_the_mark_once_greeted(make):
@@ -306,7 +298,7 @@ def test_stalled_it_neither_reads_nor_writes_but_its_watchdog_goes_on(make):
     bench.run(lambda: bench.show() or len(bench.host.states) > before)
     gap = bench.host.states[before].sequence - bench.host.states[before - 1].sequence
     assert gap * 2 > 150  # ms
-    assert bench.controller.frames > frames
+    bench.run(lambda: bench.show() or bench.controller.frames > frames)
     assert bench.controller.rest_after_us <= 50_000 + 20_000 + 2_000
 
 
@@ -395,7 +387,7 @@ def test_it_is_built_wrong_in_what_it_is_told_to_be(make, defect):
     passed_us = (time.monotonic_ns() - begun_ns) / 1000
     (info,) = [message for message in bench.host.heard if isinstance(message, Info)]
     found = {
-        Defect.NO_ACKNOWLEDGEMENT: bench.controller.frames == 1 and state.frame_sequence == 0,
+        Defect.NO_ACKNOWLEDGEMENT: bench.controller.frames > 0 and state.frame_sequence == 0,
         Defect.NO_ACTUATORS: not any(info.enabled),
         Defect.OFF_PLACE: bench.way_mm() > info.travel_um / 1000,
         Defect.SLOW_CLOCK: (state.time_us - begun.time_us) / passed_us < 0.7,

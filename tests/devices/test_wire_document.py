@@ -19,7 +19,20 @@ from vbraille.devices.fields import (
     Text,
     fields_of,
 )
-from vbraille.devices.messages import FAULTY, MESSAGES, PLACED, RESTING, ErrorCode, Frame, State
+from vbraille.devices.messages import (
+    FAULTY,
+    FIRST_STEP,
+    MESSAGES,
+    PLACED,
+    RAMP_MS,
+    RESTING,
+    TRIPPED,
+    WATCHDOG_MS,
+    ErrorCode,
+    Frame,
+    State,
+    Watchdog,
+)
 from vbraille.devices.wire import (
     CRC_RESIDUE,
     MOST_FRAME_BYTES,
@@ -126,8 +139,10 @@ def test_error_codes():
 
 def test_flags():
     flags = next(row for row in rows_of("STATE") if row[2] == "`flags`")
-    assert flags[4] == "bit 0 placed, bit 1 resting, bit 2 faulty; the others 0"
-    assert (PLACED, RESTING, FAULTY) == (1 << 0, 1 << 1, 1 << 2)
+    assert flags[4] == "bit 0 placed, bit 1 resting, bit 2 faulty, bit 3 tripped; the others 0"
+    assert (PLACED, RESTING, FAULTY, TRIPPED) == (1 << 0, 1 << 1, 1 << 2, 1 << 3)
+    named = re.findall(r"^- \*(\w+)\*:", SECTIONS["STATE"], re.M)
+    assert named == ["placed", "resting", "faulty", "tripped"]
 
 
 def test_crc_and_cobs():
@@ -138,6 +153,79 @@ def test_crc_and_cobs():
     (plain, stuffed) = re.search(r"`([0-9a-f ]+)` becomes `([0-9a-f ]+)`", text).groups()
     assert cobs.encode(bytes.fromhex(plain)) == bytes.fromhex(stuffed)
     assert f"takes {MOST_FRAME_BYTES} bytes before the zero" in text
+
+
+def counted(text):
+    """Bytes of the page's ``01 02 … fe 00``: counted up over the dots."""
+    given = [None if word == "…" else int(word, 16) for word in text.strip("`").split()]
+    found = []
+    for word, after in zip(given, [*given[1:], None], strict=True):
+        found += [word] if word is not None else range(found[-1] + 1, after)
+    return bytes(found)
+
+
+def test_cobs_of_long_runs():
+    vectors = [row for row in rows_of("Frames") if row[0].isdecimal()]
+    assert [int(row[0]) for row in vectors] == [254, 255, 255]
+    for size, plain, stuffed in vectors:
+        assert len(counted(plain)) == int(size)
+        assert cobs.encode(counted(plain)) == counted(stuffed)
+        assert cobs.decode(counted(stuffed)) == counted(plain)
+    # With the 01 of other encoders.
+    assert cobs.decode(counted(vectors[0][2]) + b"\1") == counted(vectors[0][1])
+
+
+def test_frames_of_254_and_255_bytes_without_a_zero():
+    vectors = [row for row in rows_of("Frames") if row[0].startswith("`01 …")]
+    sizes = []
+    for packed, crc, line in vectors:
+        body = b"\x02\x01\x01" + counted(packed.replace("01 …", "01 02 …"))
+        crc = counted(crc)
+        assert crc32(body).to_bytes(4, "little") == crc
+        assert 0 not in body + crc
+        sizes.append(len(body + crc))
+        sent = encode(Frame(257, body[3:]))
+        head, tail = line.strip("`").split(" … ")
+        assert sent.startswith(bytes.fromhex(head))
+        assert sent.endswith(bytes.fromhex(tail))
+        assert len(sent) == sizes[-1] + 2 + (sizes[-1] > 254)
+        for spelled in (sent, *([sent[:-1] + b"\1\0"] if sizes[-1] == 254 else ())):
+            assert Decoder().feed(spelled) == [Frame(257, body[3:])]
+    assert sizes == [254, 255]
+
+
+def test_the_crc_of_16_entries():
+    text = SECTIONS["Memory"]
+    table = [int(word, 16) for word in re.findall(r"\b[0-9a-f]{8}\b", text)]
+    assert len(table) == 16
+    steps = re.search(r"^crc = 0xFFFFFFFF\n.*?^crc = crc \^ 0xFFFFFFFF$", text, re.M | re.S)[0]
+    program = steps.replace("for each byte b:", "for b in text:")
+    for given in (b"", b"123456789", bytes(range(256)) * 3):
+        names = {"T": table, "text": given}
+        exec(program, names)
+        assert names["crc"] == crc32(given)
+
+
+def test_memory():
+    text = SECTIONS["Memory"]
+    packed = Levels(60, 1023).packed_bytes
+    assert f"{line_bytes(3 + packed) - 1} bytes for what is received" in text
+    assert f"{3 * 60 * 2} for `levels`, `from` and `wanted`" in text
+    sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State, Watchdog)}
+    assert f"STATE ({sizes[State]}), WATCHDOG" in SECTIONS["A minimal firmware"]
+    assert f"\n({sizes[Watchdog]})" in SECTIONS["A minimal firmware"]
+
+
+def test_rest():
+    text = " ".join(SECTIONS["Rest, and the watchdog"].split())
+    assert f"**The ramp to rest takes {RAMP_MS} ms:**" in text
+    assert f"({FIRST_STEP} · |level − rest| > `top_level`)" in text
+    assert f"**{WATCHDOG_MS} ms of the device's own time without a FRAME" in text
+    assert f"sent no FRAME for {messages.STALL_MS} ms" in text
+    firmware = SECTIONS["A minimal firmware"]
+    assert f"now - last_frame >= {WATCHDOG_MS * 1000}:" in firmware
+    assert f"now - ramp_began >= {RAMP_MS * 1000}:" in firmware
+    assert f"further than top_level / {FIRST_STEP} from rest" in firmware
 
 
 def test_levels():
@@ -154,7 +242,7 @@ def test_levels():
 
 def test_times():
     told = {
-        row[0].strip("`"): int(row[1]) for row in rows_of("Silence, and what the host does")[-6:]
+        row[0].strip("`"): int(row[1]) for row in rows_of("Silence, and what the host does")[-7:]
     }
     assert told == {
         name: getattr(messages, name) for name in vars(messages) if name.endswith("_MS")

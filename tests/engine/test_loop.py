@@ -9,6 +9,7 @@ from vbraille.devices.motion import Motion
 from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
+from vbraille.engine.ring import Flag, Ring
 from vbraille.errors import DeviceError
 from vbraille.render import MAPPINGS, STRESS2, Tuning
 from vbraille.render.renderer import Renderer
@@ -167,6 +168,54 @@ def test_a_change_in_the_middle_of_a_fade_does_not_jump(clock, device):
         loop.show(picture((n + 1,) * 5, mapping="sheared", contrast=(n % 5) / 4))
         run(loop, 0.03)
     assert biggest_step(device.sent) <= 1 / 100 + 1e-9
+
+
+@pytest.mark.parametrize("change", ["start", "pause", "leave"])
+def test_a_machine_that_stalls_makes_no_fade_faster(clock, device, change):
+    device.move(straight((0, 3.0), (20, 3.0)))
+    loop = Loop(device, clock)
+    run(loop, 0.1)
+    loop.show(picture())
+    if change != "start":
+        run(loop, 0.3)
+    device.sent.clear()
+    send = device._send
+
+    def stall(frame):
+        send(frame)
+        clock.advance_ns(39 * MS * (len(device.sent) % 4 == 1))
+
+    device._send = stall
+    if change == "leave":
+        loop.fade_to_rest()
+        assert loop.resting
+    else:
+        loop.paused = change == "pause"
+        run(loop, 0.3)
+        assert loop.resting == loop.paused
+    step = 1 / 20 if change == "pause" else 1 / 100
+    assert 0 < biggest_step(device.sent) <= step + 1e-9
+
+
+def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):
+    device.move(straight((0, 3.0), (20, 3.0)))
+    ring = Ring(memoryview(bytearray(Ring.bytes_needed((6, 10), 2000))), (6, 10), 2000)
+    loop = Loop(device, clock, ring=ring)
+    loop.show(picture())
+    run(loop, 0.3)
+    device.taking = False
+    run(loop, 0.2)
+    assert loop.resting
+    device.sent.clear()
+    device.taking = True
+    run(loop, 0.2)
+    assert not loop.resting
+    assert biggest_step([np.zeros((6, 10)), *device.sent]) <= 1 / 100 + 1e-9
+    ticks = ring.drain()
+    resting = (ticks["flags"] & Flag.RESTING) > 0
+    assert resting[301:499].all()
+    assert not ticks["frame"][301:499].any()
+    assert not resting[501:].any()
 
 
 @pytest.mark.no_cover

@@ -1,56 +1,85 @@
-"""Whether FRAMEs reach a device: it says so, and its watchdog says when they do not."""
+"""Whether FRAMEs hold a device's actuators, or these rest; nothing may jump between the two.
+
+A device rests when it is told to, and by its watchdog, perhaps while the host was itself
+stopped and could not hear of it. On its ramp to rest a FRAME would jump, and one from after
+it too. So a host that has stopped, for whatever reason, sends none until the device has said
+for the ramp's time that it rests. It then sends FRAMEs of rest, until the device says that it
+has taken one: what that STATE and those after it tell is no older, and the array may fade in.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS
+from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS
 
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
 
-REFUSED_MS = 2 * WATCHDOG_MS  # without a FRAME taken: more than one that is lost now and then
 _NS_PER_MS = 1_000_000
-_U32 = 0xFFFF_FFFF
+_US_PER_S = 1_000_000
+_U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 
 
 class Delivery:
-    """What becomes of FRAMEs in one conversation.
+    """What becomes of FRAMEs in one conversation, which begins at rest.
+
+    Parameters
+    ----------
+    rate_hz
+        Of the device's STATEs: its ramp ends with a period.
 
     Attributes
     ----------
-    held : bool
-        Whether the device went to rest for want of FRAMEs and has taken none since.
-        It is sent FRAMEs of rest as long: the first that arrives must not be a jump.
+    taking : bool
+        Whether FRAMEs hold the actuators.
+    at_rest : bool
+        Whether, if not, the ramp is over, so that FRAMEs of rest may be sent.
+    rest_due : bool
+        Whether the device must be told to rest: it may not know yet, or not have heard.
+    stuck : bool
+        Whether it does not rest, though it is told to and is sent no FRAME: it is not safe.
     trips : int
         Of its watchdog, since its first WATCHDOG.
     disbelieved : int
         Reports that tell of more trips than there was time for.
     """
 
-    def __init__(self) -> None:
-        self.held = False
+    def __init__(self, rate_hz: int) -> None:
+        self.taking = self.at_rest = self.rest_due = self.stuck = False
         self.trips = self.disbelieved = 0
-        self._held_ns = self._reported_ns = 0
+        self._ramp_us = RAMP_MS * 1000 + -(-_US_PER_S // rate_hz)
+        self._resting_us: int | None = None  # since when it says so, by its own clock
+        self._resting_sequence = 0
+        self._held_us: int | None = None  # since when a FRAME holds it that should not, likewise
+        self._told_ns: int | None = None
+        self._offered: int | None = None  # first FRAME of rest sent since
+        self._sent = 0
+        self._sent_ns: int | None = None
+        self._reported_ns = 0
         self._trips_before: int | None = None
-        self._sent = 0  # the last FRAME sent, and the last that the device says it took
-        self._taken: int | None = None
-        self._owed_ns: int | None = None  # since when FRAMEs are sent and none was taken
+        self._counted = False  # the trip that STATEs tell of
+        self._unreported = 0  # trips that were counted by STATEs alone
 
     def sent(self, sequence: int, now_ns: int) -> None:
-        """A FRAME was sent."""
-        self._sent = sequence
-        if self._owed_ns is None:
-            self._owed_ns = now_ns
+        """A FRAME was sent; one of rest, if none is taken."""
+        if not self.taking and self._offered is None:
+            self._offered = sequence
+        self._sent, self._sent_ns = sequence, now_ns
 
-    def idle(self) -> None:
-        """No FRAME is owed any more."""
-        self._owed_ns = None
-        self.held = False
+    def told(self, now_ns: int) -> None:
+        """REST was sent."""
+        self.rest_due, self._told_ns = False, now_ns
 
-    def refused(self, now_ns: int) -> bool:
-        """Whether FRAMEs have been owed for a while, and none was taken."""
-        return self._owed_ns is not None and now_ns - self._owed_ns >= REFUSED_MS * _NS_PER_MS
+    def stop(self, *, tell: bool = True) -> None:
+        """Send no FRAME until the device is at rest; if it should not be, it is told so."""
+        self.taking = self.at_rest = False
+        self.rest_due = tell
+        self._resting_us = self._held_us = self._told_ns = self._offered = self._sent_ns = None
+
+    def stalled(self, now_ns: int) -> bool:
+        """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
+        return self._sent_ns is not None and now_ns - self._sent_ns >= STALL_MS * _NS_PER_MS
 
     def take_watchdog(self, watchdog: Watchdog, now_ns: int) -> bool:
         """Take a report; whether the device went to rest, which was not known."""
@@ -64,27 +93,51 @@ class Delivery:
             return False
         if not tripped:
             return False
-        self.trips += tripped
-        return self._hold(now_ns)
+        self.trips += max(tripped - self._unreported, 0)
+        self._unreported = 0
+        self._counted = True
+        if not self.taking:
+            return False
+        self.stop(tell=False)
+        return True
 
     def take_state(self, state: State, now_ns: int) -> bool:
-        """See what was taken; whether FRAMEs must fade in from rest from now on."""
-        moved = state.frame_sequence != self._taken
-        self._taken = state.frame_sequence
-        if self._owed_ns is None:
+        """See whether it rests; whether it went there, which was not known."""
+        if state.tripped and not self._counted:  # its WATCHDOG was lost
+            self.trips += 1
+            self._unreported += 1
+        self._counted = state.tripped
+        fell = self.taking and state.resting
+        if fell:
+            self.stop(tell=False)
+        if self.taking:
             return False
-        if moved:
-            self._owed_ns = now_ns
-            late = self.held and now_ns - self._held_ns > RAMP_MS * _NS_PER_MS
-            self.held = False
-            # What has faded in meanwhile was not felt.
-            return late
-        overdue = now_ns - self._owed_ns >= WATCHDOG_MS * _NS_PER_MS
-        # Its WATCHDOG was lost.
-        return overdue and state.resting and self._taken != self._sent and self._hold(now_ns)
+        if state.resting:
+            self._rest_on(state)
+        elif self._has_taken(state.frame_sequence):
+            self.taking, self.rest_due = True, False
+        else:
+            self._mind_held(state.time_us, now_ns)
+        return fell
 
-    def _hold(self, now_ns: int) -> bool:
-        known, self.held = self.held, True
-        if not known:
-            self._held_ns = now_ns
-        return not known
+    def _rest_on(self, state: State) -> None:
+        self.rest_due = False
+        self._held_us = None
+        if self._resting_us is None or state.frame_sequence != self._resting_sequence:
+            self._resting_us, self._resting_sequence = state.time_us, state.frame_sequence
+        self.at_rest = (state.time_us - self._resting_us) & _U32 >= self._ramp_us
+
+    def _has_taken(self, sequence: int) -> bool:
+        """Whether it is a FRAME of rest, sent since it is at rest, that holds it."""
+        if self._offered is None:
+            return False
+        return (sequence - self._offered) & _U16 <= (self._sent - self._offered) & _U16
+
+    def _mind_held(self, time_us: int, now_ns: int) -> None:
+        """A FRAME holds it: REST is under way, or was lost, or an old FRAME came after it."""
+        self.at_rest, self._resting_us = False, None
+        if self._held_us is None:
+            self._held_us = time_us
+        self.stuck = (time_us - self._held_us) & _U32 >= LOST_MS * 1000
+        if self._told_ns is None or now_ns - self._told_ns >= RAMP_MS * _NS_PER_MS:
+            self.rest_due = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,9 +27,11 @@ class Drive:
         The INFO that began the conversation.
     now_ns
         When: the actuators are at rest.
+    rate_hz
+        FRAMEs a second that the host is to send.
     """
 
-    def __init__(self, info: Info, now_ns: int) -> None:
+    def __init__(self, info: Info, now_ns: int, rate_hz: float) -> None:
         shape = info.rows, info.columns
         gain, enabled, inverted = (
             np.frombuffer(given, np.uint8).reshape(shape).astype(np.float64)
@@ -40,6 +43,8 @@ class Drive:
         self._top_level = info.top_level
         self._bits = packing.bits
         self._slew_per_ns = info.largest_slew_per_s / _NS_PER_S
+        self._limited = info.largest_slew_per_s > 0
+        self._period_ns = _NS_PER_S / rate_hz
         self._wanted = np.zeros(shape)
         self._last = np.zeros(shape)
         self._last_ns = now_ns
@@ -55,13 +60,17 @@ class Drive:
         deflections : float64[rows, columns]
             In [0, 1].
         now_ns
-            When; the slew limit is by the time since the frame before.
+            When; the slew limit is by the time since the frame before. After a longer time than
+            a period it is by a period: an actuator that stood still must not make up for it.
         """
+        step = math.inf
+        if self._limited:
+            step = self._slew_per_ns * min(now_ns - self._last_ns, self._period_ns)
         return kernels.fill(
             deflections,
             self._last,
             self._wanted,
-            self._slew_per_ns * (now_ns - self._last_ns),
+            step,
             self._swing,
             self._rest_level,
             self._top_level,

@@ -13,10 +13,12 @@ import numpy as np
 from vbraille import __version__
 from vbraille.devices.messages import (
     FAULTY,
+    FIRST_STEP,
     NOTICES,
     PLACED,
     RAMP_MS,
     RESTING,
+    TRIPPED,
     VERSION,
     WATCHDOG_MS,
     CountSign,
@@ -150,6 +152,11 @@ class Controller:
         return sum(self._decoder.dropped.values()) + self._misfits
 
     @property
+    def resting(self) -> bool:
+        """Whether no FRAME holds the actuators: they are at rest, or on the ramp to it."""
+        return self.at_rest or self._ramp_us is not None
+
+    @property
     def mark_mm(self) -> float:
         """Way from the left stop to the mark of an index encoder."""
         return min(MARK_MM, self.info.travel_um / 2000)
@@ -225,10 +232,13 @@ class Controller:
         if not self.greeted or self.faulty:
             return b""
         try:
-            self.levels = self._packing.unpack(frame.packed)
+            levels = self._packing.unpack(frame.packed)
         except ValueError:
             self._misfits += 1
             return b""
+        if not self._takes(frame.sequence, levels):
+            return b""
+        self.levels = levels
         self._ramp_us = None
         self.at_rest = False
         self.frames += 1
@@ -239,6 +249,20 @@ class Controller:
             return b""
         self._tripped = False
         return self._watchdog()
+
+    def _takes(self, sequence: int, levels: NDArray[np.uint16]) -> bool:
+        """Whether a FRAME may move the actuators now.
+
+        The host may not know that they went to rest, or its FRAME may be an old one that was late.
+        """
+        if self._ramp_us is not None:
+            return False
+        if self.at_rest:
+            away = np.abs(levels.astype(np.int64) - self._rest).max()
+            return bool(away * FIRST_STEP <= self.info.top_level)
+        newer = 0 < (sequence - self._frame_sequence) & _U16 < _U16 // 2
+        self._misfits += not newer
+        return newer
 
     def _go_to_rest(self) -> None:
         self._armed = self._tripped = False
@@ -288,17 +312,22 @@ class Controller:
         counts = info.count_sign * round(way_mm * info.counts_per_m / 1000)
         return (info.left_stop_count + self._astray + counts) & ((1 << info.count_bits) - 1)
 
+    def _flags(self) -> int:
+        return (
+            PLACED * self.placed
+            | RESTING * self.resting
+            | FAULTY * self.faulty
+            | TRIPPED * self._tripped
+        )
+
     def _state(self, count: int) -> bytes:
-        flags = PLACED * self.placed | FAULTY * self.faulty
-        if self.at_rest or self._ramp_us is not None:
-            flags |= RESTING
         return encode(
             State(
                 sequence=self._sequence,
                 time_us=self._now_us & _U32,
                 count=count,
                 frame_sequence=self._frame_sequence if self.acknowledges else 0,
-                flags=flags,
+                flags=self._flags(),
                 buttons=self.buttons,
                 force_mn=self.force_mn,
             )

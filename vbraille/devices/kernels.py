@@ -20,7 +20,7 @@ def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
         Where the actuators are to be; where the FRAME before left them; where this
         one leaves them, to fill.
     step : float64
-        The furthest that one may move from ``last``; 0 for no limit.
+        The furthest that one may move from ``last``; infinite for no limit.
     swing : float64[rows, columns]
         Levels of a full swing, before it is inverted.
     rest : int64[rows, columns]
@@ -38,8 +38,7 @@ def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
     for row in range(rows):
         for column in range(columns):
             place = deflections[row, column]
-            if step > 0.0:
-                place = min(max(place, last[row, column] - step), last[row, column] + step)
+            place = min(max(place, last[row, column] - step), last[row, column] + step)
             wanted[row, column] = place
             felt = felt or place > 0.0
             level = int(np.rint(place * swing[row, column]))

@@ -24,6 +24,9 @@ VERSION: Final = 1
 # A device without a valid FRAME for so long begins a ramp to rest, which takes so long.
 WATCHDOG_MS: Final = 50
 RAMP_MS: Final = 20
+# A host that has sent no FRAME for so long takes it that the watchdog trips meanwhile: the device
+# counts from when a FRAME arrives, and FRAMEs may be late by some milliseconds.
+STALL_MS: Final = 40
 # A host asks HELLO so often, and gives a device so long to answer (boards restart when opened).
 HELLO_PERIOD_MS: Final = 250
 ANSWER_MS: Final = 3000
@@ -37,6 +40,9 @@ NOTICES: Final = 0x80
 PLACED: Final = 0x01
 RESTING: Final = 0x02
 FAULTY: Final = 0x04
+TRIPPED: Final = 0x08
+# A device that is at rest leaves it by no more than this part of the swing at once.
+FIRST_STEP: Final = 20
 
 U8: Final = Number("B", 0, 0xFF)
 U16: Final = Number("H", 0, 0xFFFF)
@@ -155,6 +161,11 @@ class State(Message):
     def faulty(self) -> bool:
         """Whether the device takes no FRAME until the next HELLO."""
         return bool(self.flags & FAULTY)
+
+    @property
+    def tripped(self) -> bool:
+        """Whether the watchdog has tripped and no FRAME was taken since; older devices say no."""
+        return bool(self.flags & TRIPPED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import serial
 
 from vbraille.devices.greeting import greet
+from vbraille.devices.messages import STALL_MS
 from vbraille.devices.ports import BAUD, parse_address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.serialport import LOOK_S, SerialPort
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 # A start bit and a stop bit with each byte.
 _BITS_PER_BYTE = 10
 _FRAME_HEAD_BYTES = 3
+# A frame may be late by half a period.
+LOWEST_RATE_HZ: Final = 40
 
 
 def open_serial(
@@ -57,12 +60,29 @@ def open_serial(
     port = SerialPort(parse_address(address), look_s=look_s)
     try:
         greeted = greet(port, now_ns, pause)
-        if wanted is not None:
-            _check_baud(port.address, greeted.info, wanted.rate_hz)
-        return SerialDevice(port, greeted, now_ns, pause)
+        if wanted is None:
+            return SerialDevice(port, greeted, now_ns, pause)
+        _check_rate(greeted.info, wanted.rate_hz)
+        _check_baud(port.address, greeted.info, wanted.rate_hz)
+        return SerialDevice(port, greeted, now_ns, pause, wanted.rate_hz)
     except BaseException:  # a signal's, too
         port.close(pause)
         raise
+
+
+def _check_rate(info: Info, rate_hz: float) -> None:
+    """See that frames come often enough for the device's watchdog.
+
+    Raises
+    ------
+    InputError
+        If they do not.
+    """
+    if rate_hz < LOWEST_RATE_HZ:
+        raise InputError(
+            f"{info.name} goes to rest when frames are further apart than {STALL_MS} ms, and "
+            f"{rate_hz:g} a second are asked for; choose --rate {LOWEST_RATE_HZ} or more"
+        )
 
 
 def _check_baud(address: Address, info: Info, rate_hz: float) -> None:

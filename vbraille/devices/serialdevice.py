@@ -23,7 +23,6 @@ from vbraille.devices.messages import (
     LOST_MS,
     NOTICES,
     SILENCE_MS,
-    WATCHDOG_MS,
     Error,
     Info,
     Rest,
@@ -49,6 +48,8 @@ if TYPE_CHECKING:
 # Frames without anything to feel for so long, and there is nothing to show: no gap between words.
 IDLE_MS: Final = 5000
 _NS_PER_MS = 1_000_000
+# Reads that empty a line: what a stopped host has not read is some kB at most.
+_MOST_READS = 64
 _REST = encode(Rest())
 _U16 = 0xFFFF
 
@@ -72,6 +73,8 @@ class SerialDevice(Device):
         What it answered.
     now_ns, pause
         The host's clock, and how to wait for so many seconds.
+    rate_hz
+        FRAMEs a second that it is going to be sent; None is as many as it is made for.
     """
 
     acknowledges = True
@@ -82,7 +85,9 @@ class SerialDevice(Device):
         greeted: Greeted,
         now_ns: Callable[[], int] = time.monotonic_ns,
         pause: Callable[[float], None] = time.sleep,
+        rate_hz: float | None = None,
     ) -> None:
+        self._rate_hz = rate_hz or float(greeted.info.rate_hz)
         self._port = port
         self._now_ns = now_ns
         self._pause = pause
@@ -97,14 +102,20 @@ class SerialDevice(Device):
         self._trips_before = self._disbelieved_before = 0
         self._losses = port.losses
         self.watchdog_trips = 0
-        self._delivery = Delivery()
+        self._delivery = Delivery(greeted.info.rate_hz)
         self._begin(greeted.info, now_ns())
         self._take(greeted.events, now_ns())
+        self._tell_taking()
 
     @property
     def info(self) -> DeviceInfo:
         """What the device said of itself first."""
         return self._info
+
+    def rest(self) -> None:
+        """Tell the device to rest; it ramps there, where a FRAME of rest would be a jump."""
+        self._delivery.stop()
+        self._tell()
 
     def set_zero(self) -> None:
         """Take it that the carriage is at the left stop now: the reader says so."""
@@ -135,18 +146,25 @@ class SerialDevice(Device):
             If the device says that it cannot go on.
         """
         now_ns = self._now_ns()
+        stalled = self._mind_stall(now_ns)
         chunk = self._port.read()
+        for _ in range(_MOST_READS * stalled):
+            chunk += (more := self._port.read())
+            if not more:
+                break
         if self._port.losses != self._losses:
             self._losses = self._port.losses
             self._link = _Link.GONE
             self._note_away("device: unplugged; plug it in again and reading goes on", now_ns)
         if self._port.gone:
+            self._tell_taking()
             return None
         if self._link is _Link.GONE:
             self._decoder.feed(DELIMITER)  # what was begun will not be ended
             self._greet(now_ns)
         sample = self._take(self._decoder.feed(chunk), now_ns) if chunk else None
         self._mind_silence(now_ns)
+        self._tell_taking()
         return sample
 
     def _take(self, events: Sequence[Event], now_ns: int) -> Sample | None:
@@ -161,8 +179,8 @@ class SerialDevice(Device):
             elif self._link not in (_Link.LIVE, _Link.SILENT):
                 pass  # of an earlier conversation
             elif isinstance(event, Watchdog):
-                self._delivered(self._delivery.take_watchdog(event, now_ns), now_ns)
-                self.watchdog_trips = self._trips_before + self._delivery.trips
+                if self._delivery.take_watchdog(event, now_ns):
+                    self._fell(now_ns)
             elif isinstance(event, Error):
                 if event.code < NOTICES:
                     raise DeviceError(f"{self._info.name}: {event.text or f'error {event.code}'}")
@@ -187,8 +205,13 @@ class SerialDevice(Device):
             gap = unwrap(state.sequence, self._state_sequence, 16) - self._state_sequence - 1
             self._missed += max(gap, 0)
         self._state_sequence = state.sequence
-        self._delivered(self._delivery.take_state(state, now_ns), now_ns)
-        self.taking = not self._delivery.refused(now_ns)
+        if self._delivery.take_state(state, now_ns):
+            self._fell(now_ns)
+        if self._delivery.stuck:
+            raise DeviceError(
+                f"{self._info.name} does not go to rest, neither when it is told to nor without "
+                f"frames; switch it off, and do not read on it until that is mended"
+            )
         if self._sent_ns is not None and state.frame_sequence == self._sequence:
             self.acknowledged_ns = now_ns - self._sent_ns
             self._sent_ns = None
@@ -239,21 +262,13 @@ class SerialDevice(Device):
         self._place = Place(info)
         self.placing = self._place.placing
         self._time.restart()
-        self._drive = Drive(info, now_ns)
+        self._drive = Drive(info, now_ns, self._rate_hz)
         self._trips_before += self._delivery.trips
         self._disbelieved_before += self._delivery.disbelieved
-        self._delivery = Delivery()
+        self._delivery = Delivery(info.rate_hz)
         self._rest_frame = np.zeros((info.rows, info.columns))
-        self._idle(now_ns)
-
-    def _idle(self, now_ns: int) -> None:
-        """No FRAME is owed any more: the device is at rest, or told to go there."""
-        self._drive.rested(now_ns)
         self._felt_ns = now_ns  # when a frame last had anything to feel
-        self._resting = False  # for want of anything to feel
-        self._told = False  # to rest, because it is silent
-        self._delivery.idle()
-        self.taking = True
+        self._idle = False  # at rest for want of anything to feel
 
     def _greet(self, now_ns: int) -> None:
         """Begin to ask who is there."""
@@ -265,29 +280,50 @@ class SerialDevice(Device):
         silent_ns = now_ns - self._heard_ns
         if self._link is _Link.LIVE and silent_ns >= SILENCE_MS * _NS_PER_MS:
             self._link = _Link.SILENT
-            self._idle(now_ns)
+            self._stop()
             note = "device: silent, and sent to rest; reading goes on once it speaks"
             self._note_away(note, now_ns)
-        if self._link is _Link.SILENT:
-            self._told = self._told or self._port.write(_REST)
-            if silent_ns >= LOST_MS * _NS_PER_MS:
-                self._greet(now_ns)
+        if self._link in (_Link.LIVE, _Link.SILENT):
+            self._tell()
+        if self._link is _Link.SILENT and silent_ns >= LOST_MS * _NS_PER_MS:
+            self._greet(now_ns)
         if self._link is _Link.GREETING and now_ns >= self._hello_ns and self._port.write(HELLO):
             self._asked = True
             self._hello_ns = now_ns + HELLO_PERIOD_MS * _NS_PER_MS
 
-    def _delivered(self, fades_in: bool, now_ns: int) -> None:
-        if not fades_in:
-            return
+    def _stop(self, *, tell: bool = True) -> None:
+        """Send no FRAME until the device is at rest, and nothing that lies about unsent."""
+        self._delivery.stop(tell=tell)
+        self._idle = False
+        self._port.drop_unsent()
+        self._tell()
+
+    def _tell(self) -> None:
+        if self._delivery.rest_due and self._port.write(_REST):
+            self._delivery.told(self._now_ns())
+
+    def _mind_stall(self, now_ns: int) -> bool:
+        """Whether this process was stopped for so long that the device may rest; it does then."""
+        if self._link is not _Link.LIVE or not self._delivery.stalled(now_ns):
+            return False
+        if self._delivery.taking:
+            self._fell(now_ns)
+        else:
+            self._stop(tell=False)
+        return True
+
+    def _fell(self, now_ns: int) -> None:
+        """The device went to rest, or may have."""
+        self._stop(tell=False)
+        self._felt_ns = now_ns
         self.rested += 1
-        if self._delivery.held:
-            self._drive.rested(now_ns)
-            self._notes.add(
-                "watchdog",
-                f"device: no frame reached it for {WATCHDOG_MS} ms, so it went to rest; "
-                f"reading goes on",
-                now_ns,
-            )
+        note = "device: no frame reached it in time, so it went to rest; reading goes on"
+        self._notes.add("watchdog", note, now_ns)
+
+    def _tell_taking(self) -> None:
+        """Say whether FRAMEs hold the actuators, or would if there were anything to feel."""
+        self.taking = self._link is _Link.LIVE and (self._delivery.taking or self._idle)
+        self.watchdog_trips = self._trips_before + self._delivery.trips
 
     def _note_away(self, note: str, now_ns: int) -> None:
         if not self._away:
@@ -296,32 +332,42 @@ class SerialDevice(Device):
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         self.acknowledged_ns = self._sent_ns = None
-        now_ns = self._now_ns()
-        if self._link is not _Link.LIVE or not self._place.known:
+        if self._link is _Link.LIVE:
+            self._send_live(frame, self._now_ns())
+        self._tell_taking()
+
+    def _send_live(self, frame: NDArray[np.float64], now_ns: int) -> None:
+        if not self._place.known:
+            if self._delivery.taking:
+                self._stop()
+            return
+        self._mind_stall(now_ns)
+        delivery = self._delivery
+        if delivery.taking:
+            felt = self._drive.fill(frame, now_ns)
+            if felt:
+                self._felt_ns = now_ns
+            elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS:
+                delivery.stop()
+                self._tell()
+                self._idle = True
+                return
+        else:
+            if self._idle and not frame.any():
+                return
+            self._idle = False
+            if not delivery.at_rest:
+                return
             self._drive.rested(now_ns)
-            return
-        held = self._delivery.held
-        felt = self._drive.fill(self._rest_frame if held else frame, now_ns)
-        if held:
-            pass
-        elif felt:
-            if self._resting:
-                self._idle(now_ns)
+            self._drive.fill(self._rest_frame, now_ns)
             self._felt_ns = now_ns
-        elif self._resting:
-            return
-        elif now_ns - self._felt_ns >= IDLE_MS * _NS_PER_MS:
-            if self._port.write(_REST):
-                self._idle(now_ns)
-                self._resting = True
-            return
         sequence = (self._sequence + 1) & _U16
         if not self._port.write(self._drive.frame(sequence)):
             self._unsent += not self._port.gone
             return
         self._sequence, self._sent_ns = sequence, now_ns
         self._drive.sent(now_ns)
-        self._delivery.sent(sequence, now_ns)
+        delivery.sent(sequence, now_ns)
 
     def _release(self) -> None:
         try:

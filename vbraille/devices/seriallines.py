@@ -48,6 +48,10 @@ class Line(Protocol):
         """Send a frame whole, or not at all; whether it was taken. Never waits."""
         ...
 
+    def drop_unsent(self) -> None:
+        """Take back what has not gone out yet; a frame of which a part has is ended by the next."""
+        ...
+
     def drained(self) -> bool:
         """Whether all that was taken has gone out."""
         ...
@@ -91,6 +95,12 @@ class DescriptorLine:
         # Not a byte of this one went out: later it would be late.
         self._left = self._left[written:]
         return False
+
+    def drop_unsent(self) -> None:
+        """Have the driver forget what it has not sent; a socket cannot, and sends it all."""
+        with suppress(OSError, termios.error):
+            termios.tcflush(self._descriptor, termios.TCOFLUSH)
+            self._left = DELIMITER
 
     def drained(self) -> bool:
         """Whether the driver has nothing more to send."""
@@ -151,6 +161,12 @@ class ThreadedLine:
         if self._bell.empty():
             self._bell.put(None)
         return True
+
+    def drop_unsent(self) -> None:
+        """Empty the letter box."""
+        with suppress(IndexError):
+            self._box.popleft()
+            self.lost += 1
 
     def drained(self) -> bool:
         """Whether the thread has written what there was."""

@@ -96,6 +96,11 @@ class SerialPort:
             self._lose()
             return False
 
+    def drop_unsent(self) -> None:
+        """Take back what has not gone out yet, as far as the system lets us."""
+        if not self.gone:
+            self._line.drop_unsent()
+
     def close(self, pause: Callable[[float], None] = time.sleep) -> None:
         """Let the port go once all is out, or time is up; whoever looks for it stops."""
         if self._finder is not None:

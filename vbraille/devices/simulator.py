@@ -180,7 +180,6 @@ class Simulator:
         self._spoiler = Spoiler(self._faults)
         self._begun_ns = time.monotonic_ns()
         self._greetings = self._frames = self._trips = 0
-        self._tripped_at: int | None = None  # FRAMEs taken when it tripped
         self._stalled = False
         self._turn_us = round(STALL_EVERY_S * 1e6)  # when it stalls, or goes on
         self._plug_us = 0  # when it is unplugged, or back
@@ -269,19 +268,14 @@ class Simulator:
 
     def _report_watchdog(self) -> None:
         controller = self.controller
-        if controller.trips != self._trips:
-            self._trips, self._tripped_at = controller.trips, controller.frames
-        if self._tripped_at is None:
+        if controller.trips == self._trips or not controller.at_rest:
             return
-        if controller.frames != self._tripped_at:
-            self._say(f"watchdog: trip {self._trips}, and a frame before it was at rest")
-            self._tripped_at = None
-        elif controller.at_rest and controller.rest_after_us is not None:
-            after_ms = controller.rest_after_us / 1000
-            self._say(
-                f"watchdog: trip {self._trips}, at rest {after_ms:.1f} ms after the last frame"
-            )
-            self._tripped_at = None
+        self._trips = controller.trips
+        assert controller.rest_after_us is not None
+        self._say(
+            f"watchdog: trip {self._trips}, at rest {controller.rest_after_us / 1000:.1f} ms "
+            f"after the last frame"
+        )
 
     def _plug(self, now_us: int) -> None:
         """Unplug it, or plug it in again."""

@@ -236,7 +236,12 @@ class BatchEngine:
             self._output = self._held = np.zeros_like(self._output)
             self._fading_ns, self._faded_from_ns = _FADE_NS, times_ns[0]
             flags[0] |= int(Flag.RESTED | Flag.CHANGED)
-        resting = idle | (self._paused or self._picture is None)
+        held = not self.device.taking
+        if held:
+            self._output = self._held = np.zeros_like(self._output)
+            self._shown = None
+            self._faded_from_ns = times_ns[0] - self._fading_ns
+        resting = idle | (self._paused or self._picture is None or held)
         turns = (np.flatnonzero(resting[1:] != resting[:-1]) + 1).tolist()
         for first, end in pairwise((0, *turns, ticks.size)):
             picture = None if resting[first] else self._picture

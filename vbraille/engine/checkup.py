@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 NS_PER_S = 1_000_000_000
 SWING_S = 0.25  # of one actuator, out and back
+_MOST_SWINGS = 8  # of one actuator of a device that goes to rest again and again
 _PATIENCE_S = 0.25  # with a frame that is never acknowledged
 _LOOK_NS = 50_000
 # How far the actuators go, and how long they take, before a watchdog is left without frames.
@@ -72,12 +73,20 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
             continue
         yield row, column
         due_ns = clock.now_ns()
-        for step in range(1, steps + 1):
+        taking, step = device.taking, 0
+        for _ in range(_MOST_SWINGS * steps):
+            step += 1
             frame[row, column] = math.sin(math.pi * step / steps) ** 2 if step < steps else 0.0
             due_ns += round(NS_PER_S / info.rate_hz)
             clock.sleep_until_ns(due_ns)
             device.read()
+            if device.taking != taking:  # it has gone to rest, or leaves it: by no jump
+                taking, step = device.taking, 0
+                frame[row, column] = 0.0
             device.write(frame)
+            if step == steps:
+                break
+        frame[row, column] = 0.0
 
 
 def warm_up() -> None:
@@ -160,6 +169,7 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
     frame = np.zeros((device.info.rows, device.info.columns))
     taken = []
     for _ in range(count):
+        _begin(device, clock, frame)
         device.write(frame)
         give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
         while device.acknowledged_ns is None and clock.now_ns() < give_up_ns:
@@ -187,6 +197,7 @@ def trip_ms(device: Device, clock: Clock) -> float | None:
     DeviceError
         If the device is gone.
     """
+    _begin(device, clock, np.zeros((device.info.rows, device.info.columns)))
     _move(device, clock, 0.0, _HELD)
     _move(device, clock, _HELD, _HELD)
     trips, last_ns = device.watchdog_trips, clock.now_ns()
@@ -214,3 +225,12 @@ def _move(device: Device, clock: Clock, from_: float, to: float) -> None:
         clock.sleep_until_ns(due_ns)
         device.read()
         device.write(frame)
+
+
+def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
+    """Send rest until the device takes frames, or patience is over."""
+    give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
+    while not device.taking and clock.now_ns() < give_up_ns:
+        device.write(frame)
+        clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.info.rate_hz))
+        device.read()

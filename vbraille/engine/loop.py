@@ -114,8 +114,10 @@ class Loop:
         self._rested = device.rested
         self._shown: Picture | None = None  # what the target is of; None at rest
         self._fade_ns = int(fade_s * NS_PER_S)
-        self._fading_ns = self._fade_ns
-        self._faded_from_ns = clock.now_ns() - self._fade_ns
+        # How long this fade takes, and how far it has come: by ticks, since a loop that was
+        # held up would jump if it took the time that it lost for time in which it faded.
+        self._fading_ns = self._faded_ns = self._fade_ns
+        self._ticked_ns = clock.now_ns()
         self._share = 1.0
         self._happened = 0  # flags of what this tick began with
         self._idle_ns = int(idle_s * NS_PER_S)
@@ -159,17 +161,23 @@ class Loop:
         lateness_ns = now_ns - self._deadline_ns
         followed = self.device.followed  # asked before the place, which is then the last one
         self._happened = 0
+        self._faded_ns += min(now_ns - self._ticked_ns, self._period_ns)
+        self._ticked_ns = now_ns
         self._read(now_ns)
         if self.device.rested != self._rested:
             self._rested = self.device.rested
             self.output.fill(0.0)
             self._happened |= _RESTED
-            self._change(now_ns, self._shown, self._fade_ns)
+            self._change(self._shown, self._fade_ns)
+        if not self.device.taking:
+            self.output.fill(0.0)
+            self._shown = None
+            self._faded_ns = self._fading_ns
         picture = self._wanted(now_ns)
         if picture is not self._shown:
             fade_ns = int(PAUSE_FADE_S * NS_PER_S) if self._paused else self._fade_ns
-            self._change(now_ns, picture, fade_ns)
-        self._write(now_ns, picture)
+            self._change(picture, fade_ns)
+        self._write(picture)
         self.tally.ticks += 1
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
@@ -207,12 +215,13 @@ class Loop:
         """
         self.show(None)
         np.copyto(self._held, self.output)
-        begun_ns = self._deadline_ns = self.clock.now_ns()
+        self._deadline_ns = self.clock.now_ns()
+        faded_ns = 0
         while not self.resting:
-            self._deadline_ns += self._period_ns
+            self._deadline_ns = max(self._deadline_ns + self._period_ns, self.clock.now_ns())
             self.clock.sleep_until_ns(self._deadline_ns)
-            since_ns = self.clock.now_ns() - begun_ns
-            share = since_ns / self._fade_ns if since_ns < self._fade_ns else 1.0
+            faded_ns += self._period_ns
+            share = faded_ns / self._fade_ns if faded_ns < self._fade_ns else 1.0
             blend(self._held, self._rest, share, self.output)
             self.device.write(self.output)
         self._shown = None
@@ -267,7 +276,7 @@ class Loop:
             elapsed_s = max(now_ns - self._sampled_ns, self._period_ns) / NS_PER_S
             if abs(step_mm) > JUMP_MM_S * elapsed_s:
                 self.velocity.reset()
-                self._change(now_ns, self._shown, self._fade_ns)
+                self._change(self._shown, self._fade_ns)
             elif step_mm > 0:
                 self.tally.forward_mm += step_mm
                 self.tally.forward_s += elapsed_s
@@ -286,25 +295,26 @@ class Loop:
         idle = now_ns - self._moved_ns > self._idle_ns
         if self._paused or idle or self._silent(now_ns) or self.x_mm is None:
             return None
+        if not self.device.taking:
+            return None
         return self._picture
 
-    def _change(self, now_ns: int, picture: Picture | None, fade_ns: int) -> None:
+    def _change(self, picture: Picture | None, fade_ns: int) -> None:
         np.copyto(self._held, self.output)
         self._shown = picture
         self._happened |= _CHANGED
         self._fading_ns = fade_ns
-        self._faded_from_ns = now_ns
+        self._faded_ns = 0
 
-    def _write(self, now_ns: int, picture: Picture | None) -> None:
+    def _write(self, picture: Picture | None) -> None:
         # The first tick of a change still sends what was there, the last one all of the new.
-        since_ns = now_ns - self._faded_from_ns
-        fading = since_ns < self._fading_ns
+        fading = self._faded_ns < self._fading_ns
         out = self._target if fading else self.output
         if picture is not None and self.x_mm is not None:
             picture.frame(self.x_mm, out)
         else:
             out.fill(0.0)
-        self._share = since_ns / self._fading_ns if fading else 1.0
+        self._share = self._faded_ns / self._fading_ns if fading else 1.0
         if fading:
             blend(self._held, out, self._share, self.output)
         self.device.write(self.output)

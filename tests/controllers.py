@@ -1,0 +1,26 @@
+"""Controllers that are out there: vbraille must not hurt anybody with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.devices.firmware import Controller
+from vbraille.devices.messages import TRIPPED
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class ControllerOf20261121(Controller):
+    """Built from the protocol's page as it was on 2026-11-21.
+
+    Each valid FRAME is shown at once, on the ramp to rest and after it too, and STATE does not
+    repeat that the watchdog tripped.
+    """
+
+    def _takes(self, _sequence: int, _levels: NDArray[np.uint16]) -> bool:
+        return True
+
+    def _flags(self) -> int:
+        return super()._flags() & ~TRIPPED

@@ -1,0 +1,52 @@
+"""Nothing jumps, over the wire: the law of `tests.wired`, and that it finds what it is for."""
+
+import pytest
+
+from tests.controllers import ControllerOf20261121
+from tests.wired import reading
+from vbraille.devices.firmware import Controller
+from vbraille.devices.serialdevice import SerialDevice
+
+BLOCK = 20
+BLOCKS = pytest.mark.parametrize("block", range(5))
+
+
+def breaches(seeds, kind, *made):
+    return [(seed, breach) for seed in seeds for breach in reading(seed, kind, *made).breaches]
+
+
+@BLOCKS
+@pytest.mark.no_cover
+@pytest.mark.parametrize(
+    ("kind", "controller"),
+    [("host", Controller), ("host", ControllerOf20261121), ("line", Controller)],
+)
+def test_no_actuator_moves_faster_than_fade_slew_and_hand_ask_for(block, kind, controller):
+    assert breaches(range(block * BLOCK, (block + 1) * BLOCK), kind, controller) == []
+
+
+@pytest.mark.no_cover
+def test_the_troubles_are_such_that_devices_rest_and_are_read_on_again():
+    read = [reading(seed, "line") for seed in range(10)]
+    assert sum(wired.rests for wired in read) > 15
+    assert sum(wired.controller.trips for wired in read) > 5
+    assert sum(wired.shown for wired in read) > 1000
+
+
+class Heedless(SerialDevice):
+    """A host that does not mind that it was stopped."""
+
+    def _mind_stall(self, _now_ns: int) -> bool:
+        return False
+
+
+@pytest.mark.no_cover
+def test_the_law_misses_a_host_that_does_not_mind_that_it_was_stopped():
+    found = breaches(range(40), "host", ControllerOf20261121, Heedless)
+    assert found
+
+
+@pytest.mark.no_cover
+def test_the_law_misses_a_controller_that_a_frame_cuts_short():
+    found = breaches(range(20), "line", ControllerOf20261121)
+    assert any("frame out of rest" in breach for _, breach in found)
