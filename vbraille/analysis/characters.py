@@ -93,8 +93,8 @@ def characters(trials: Trials, places: Places) -> Table:
 def strings(trials: Trials) -> Table:
     """Table 3.3, a row a string."""
     codes, names = trials.string_set.codes, trials.string_set.levels
-    shown = np.unique(np.stack((codes, trials.presented.codes)), axis=1)[0]
-    orders = np.bincount(shown).tolist()
+    shown = trials.presented
+    orders = np.bincount(np.unique(codes * len(shown) + shown.codes) // len(shown)).tolist()
     found = _count(codes, trials.correct, trials.participant.codes, trials.condition.codes)
     rows = [
         {"name": name_string(names[code]), "braille": names[code], "orders": orders[code]} | counts
