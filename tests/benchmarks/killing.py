@@ -50,6 +50,7 @@ name = "textured"
 texture = 1.0
 [practice]
 trials = 2
+strings = ["c", "l"]
 [trial]
 gap_s = 0.0
 [session]

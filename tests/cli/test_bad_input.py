@@ -166,6 +166,14 @@ def test_options_of_a_showing(call, text, options, pattern, command):
     [
         ("--device latero", r"there is no device kind 'latero'; there is .*sim"),
         ("--device=", r"there is no device kind ''; there is .*sim"),
+        (
+            "--device serial:x --hand sweep:60",
+            r"^--hand is for the simulated device, and serial:x is",
+        ),
+        (
+            "--device serial:x --seed 1",
+            r"^--seed is for .*; leave --seed out, or leave --device out",
+        ),
         ("--advance slowly", r"argument --advance: invalid choice: 'slowly'"),
         ("--advance key", r"--advance key needs a terminal to type at; leave it out without one"),
         ("--echo loud", r"argument --echo: invalid choice: 'loud'"),

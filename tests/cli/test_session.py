@@ -11,12 +11,14 @@ import subprocess
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.cli import program
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import COMPARED, MINI, crash
 from vbraille.sessions.planning.protocol import builtin_names
+from vbraille.sessions.record.traces import read_trace
 
 WHO = ("--participant", "P07")
 PAPER = MINI.replace('model = "vbd"', 'model = "vbd"\nmedium = "paper"')
@@ -92,6 +94,21 @@ def test_a_seed_that_was_drawn_is_said_and_makes_the_plan_again(call):
     assert (again.out, again.err) == (drawn.out, "")
     other = call("session", "plan", "letters", *WHO, "--seed", int(seed) + 1)
     assert other.out != drawn.out
+
+
+def test_participants_have_hands_of_their_own(tmp_path):
+    (tmp_path / "mini.toml").write_text(MINI)
+    places = []
+    for name, who in (("a", "P01"), ("b", "P02"), ("c", "P01")):
+        how = ("--seed", "1", "--answers", "simulated", "--hand", "fluent", "--fast")
+        run = program.run(
+            "session", "run", tmp_path / "mini.toml", "--participant", who, *how,
+            "--out", tmp_path / name,
+        )  # fmt: skip
+        assert run.returncode == 0, run.stderr
+        places.append(read_trace(tmp_path / name / "trace-001.gz").ticks["x_mm"])
+    assert (places[0] == places[2]).all()
+    assert not np.array_equal(places[0], places[1])
 
 
 def test_the_strings_of_a_plan_can_be_embossed(call):

@@ -87,6 +87,10 @@ def test_protocols_of_no_use(call, room, old, new, pattern):
     ("options", "pattern"),
     [
         ("--answers typed", "--fast is for answers that are not typed; give --answers simulated"),
+        (
+            "--device serial:/dev/ttyACM0 --hand device",
+            "^--hand is for the simulated device, and serial:/dev/ttyACM0 is moved by a",
+        ),
         ("--device serial:/dev/ttyACM0", "--fast is for the simulated device; leave out --device"),
         ("--answers simulated:loud", "noise is 'loud'; give a number, such as simulated:0.2"),
         ("--answers simulated:-1", "noise is -1; it must be 0 to"),

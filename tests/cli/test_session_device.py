@@ -128,6 +128,24 @@ def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_pa
     assert whole(tmp_path / "s")
 
 
+@pytest.mark.parametrize("repeats", [True, False])
+def test_a_trial_in_which_the_array_rested_is_marked(tmp_path, mini, repeats):
+    mini.write_text(mini.read_text() + f"[faults]\nrepeat = {str(repeats).lower()}\n")
+    # It takes no frames and says nothing for 80 ms of each second: too short to be silence.
+    options = ("--model", "vbd", "--hand", "sweep:30", "--travel", "60", "--stall", "80ms")
+    with simulated(tmp_path, *options) as (spec, _):
+        arguments = session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
+        process = program.start(*arguments, text=True)
+        until(process, "cue: trial 1")
+        how = "is repeated" if repeats else "goes on"
+        until(process, f"fault: the array went to rest by itself; trial 1 of 2 {how}")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=program.PATIENCE_S)
+    faults = events(tmp_path / "s", "fault")
+    assert {fault["what"] for fault in faults} == {"the array went to rest by itself"}
+    assert whole(tmp_path / "s")
+
+
 def test_a_host_that_dies_is_started_again_and_its_trial_repeated(tmp_path, mini):
     arguments = session(mini, tmp_path / "s", "--answers", "simulated", "--hand", "sweep:100")
     process = program.start(*arguments, text=True)

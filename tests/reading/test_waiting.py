@@ -104,7 +104,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
         "waiting: the device takes no frames, so that nothing is felt; switch it off and on, and "
         "line 1 goes on"
     ]
-    assert bench.engine.poll()["flags"][-1] & Flag.REFUSED
+    assert bench.engine.poll()["flags"][-1] & Flag.HELD
     assert bench.reader.hopeless is None
     bench.device.taking = True
     bench.run(0.1)

@@ -56,6 +56,7 @@ class Person:
     felt: bool = False
     said: list = field(default_factory=list)
     seen: int = 0
+    waited: int = 0
 
     def lines(self, _wait_s):
         if not self.script:
@@ -67,7 +68,8 @@ class Person:
                 self.seen = n + 1
                 self.script.pop(0)
                 return [line]
-        assert len(self.said) < 2000, f"{pattern!r} is never said: {self.said[-20:]}"
+        self.waited += 1
+        assert self.waited < 5000, f"{pattern!r} is never said: {self.said[-20:]}"
         return []
 
     def next(self, *_):
@@ -83,6 +85,7 @@ class Sat:
     played: list
     record: object
     progress: object
+    course: object
 
 
 class Session:
@@ -101,11 +104,15 @@ class Session:
         }  # fmt: skip
         create(folder, self.protocol, self.plan, head)
 
+    def person(self, *script):
+        """A person who types these lines."""
+        return Person(list(script))
+
     def sit(self, *script, engine=BatchEngine, noise=0.0):
-        """Run it: by a person who types these lines, else by a simulated reader."""
-        said, played = [], []
-        person = Person(list(script), said=said)
-        answers = person if script else Simulated(self.protocol, self.plan.seed, noise)
+        """Run it: by a person, or one who types these lines, else by a simulated reader."""
+        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
+        said, played = person.said, []
+        answers = person if script else Simulated(self.protocol, self.plan, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
             array = model.array
@@ -138,7 +145,7 @@ class Session:
                     display.close()
         record = load(self.folder)
         progress = Progress(self.plan, record.told.events)
-        return Sat(said, record.told.events, played, record, progress)
+        return Sat(said, record.told.events, played, record, progress, course)
 
 
 def crash(folder, size):

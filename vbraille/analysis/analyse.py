@@ -12,6 +12,7 @@ from vbraille.analysis import (
     figures,
     legibility,
     levels,
+    matrices,
     motion,
     overtime,
     remarks,
@@ -49,7 +50,7 @@ class Options:
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Of bootstraps.
+        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
 
     Raises
     ------
@@ -71,7 +72,7 @@ class Options:
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),
-            ("Intervals", f"95 %; bootstraps with seed {self.seed}"),
+            ("Intervals", f"95 %; random draws with seed {self.seed}"),
         ]
 
 
@@ -139,7 +140,7 @@ def _of_trials(
     places = Places.of(trials)
     scores = of_trials(trials, places, options.factors)
     return [
-        _legibility(trials, places, options),
+        _legibility(trials, places),
         _characters(trials, places),
         _confusions(trials, places, options),
         _errors(trials, places),
@@ -149,9 +150,9 @@ def _of_trials(
     ]
 
 
-def _legibility(trials: Trials, places: Places, options: Options) -> Section:
+def _legibility(trials: Trials, places: Places) -> Section:
     table = legibility.legibility(trials, places)
-    averages = legibility.averages(table, seed=options.seed)
+    averages = legibility.averages(table)
     return Section(
         "Legibility",
         "Who read how much of it right, and how long it took.",
@@ -171,7 +172,7 @@ def _characters(trials: Trials, places: Places) -> Section:
 
 
 def _confusions(trials: Trials, places: Places, options: Options) -> Section:
-    tables: list[Table] = [confusion.transmitted(trials, places)]
+    tables: list[Table] = [confusion.transmitted(trials, places, seed=options.seed)]
     pictures: list[Picture] = []
     for counts, schema, reason in (
         (
@@ -189,7 +190,7 @@ def _confusions(trials: Trials, places: Places, options: Options) -> Section:
             tables.append(schema.fill([], [reason]))
         else:
             tables.append(confusion.to_table(counts, places, options.marks))
-            pictures.append(figures.confusion(tables[-1]))
+            pictures.append(matrices.confusion(tables[-1]))
     return Section("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
 
 
@@ -224,7 +225,7 @@ def _motion(study: Study, trials: Trials) -> Section:
 
 
 def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Section:
-    means = levels.level_means(scores, seed=options.seed)
+    means = levels.level_means(scores)
     own = levels.own_means(scores)
     table, dropped = levels.analyses(scores)
     left_out += dropped

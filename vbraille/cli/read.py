@@ -21,6 +21,7 @@ from vbraille.cli.wanted import (
     device_spec,
     is_simulated,
     model_of,
+    refuse_hand,
 )
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.engine.tally import Tally
 
+_HAND = "sweep:60"
 _POLL_S = 0.02
 _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
@@ -55,13 +57,16 @@ _PLACES = {
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
     rate_hz = check_rate(arguments.rate)
-    once = isinstance(parse_hand(arguments.hand, arguments.seed), Recorded)
+    refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
+    hand = _HAND if arguments.hand is None else arguments.hand
+    seed = 1 if arguments.seed is None else arguments.seed
+    once = isinstance(parse_hand(hand, seed), Recorded)
     # What the options ask for: a simulated device is just so, a real one is what it is.
     asked = MODELS[arguments.model or "stress2"]
     wanted = device_info(asked, build_geometry(arguments, asked), rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    host = Host(device_spec(arguments.device, arguments.hand, arguments.seed), wanted)
+    host = Host(device_spec(arguments.device, hand, seed), wanted)
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
@@ -159,7 +164,7 @@ class _Reading:
         line = self._reader.lines
         self._reader.step(ticks)
         done = (
-            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.REFUSED) == Flag.FOLLOWED
+            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.HELD) == Flag.FOLLOWED
             and not self._keyboard.attached
         )
         if done and self._reader.lines == line and not self._reader.done:

@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.wanted import check_rate
+from vbraille.cli.wanted import check_rate, refuse_hand
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.answers import Answers
 
+_HAND = "device"  # of the simulated device, unless told otherwise
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
 
 
@@ -72,9 +73,12 @@ def _plan(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace) -> int:
     from vbraille.cli.sitting import Sitting
 
+    refuse_hand(arguments.device, hand=arguments.hand)
+    if arguments.hand is None:
+        arguments.hand = _HAND
     protocol, plan = _planned(arguments)
     sitting = Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate), say=_say)
-    answers = parse_answers(arguments.answers, protocol, plan.seed)
+    answers = parse_answers(arguments.answers, protocol, plan)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, protocol, Progress(plan))
@@ -119,6 +123,7 @@ def _resume(arguments: argparse.Namespace) -> int:
             f"{len(record.told.events)} events before it are whole, and nothing was changed"
         )
     head = record.head
+    refuse_hand(arguments.device or head["device"], hand=arguments.hand)
     for name in ("device", "hand", "answers"):
         if getattr(arguments, name) is None:
             setattr(arguments, name, head[name])
@@ -130,7 +135,7 @@ def _resume(arguments: argparse.Namespace) -> int:
         arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"], say=_say
     )
     used = progress.script_lines.get(arguments.answers, 0)
-    answers = parse_answers(arguments.answers, record.protocol, record.plan.seed, used)
+    answers = parse_answers(arguments.answers, record.protocol, record.plan, used)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, record.protocol, progress)

@@ -13,6 +13,7 @@ from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
 from vbraille.sessions.record.folder import check_end
 from vbraille.sessions.record.journal import NAME, Journal, sum_of
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import seed_of
 
 if TYPE_CHECKING:
     import argparse
@@ -47,8 +48,9 @@ class Sitting:
         self._real = not arguments.fast
         self._engine: RunEngine | None = None
         self._opened = False
-        # Another hand each time that the session is gone on with, and the same for the same seed.
-        spec = device_spec(arguments.device, arguments.hand, plan.seed + runs)
+        # Another hand for each participant, and each time that the session is gone on with.
+        drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {runs}"
+        spec = device_spec(arguments.device, arguments.hand, seed_of(drawn))
         if arguments.fast and not spec.startswith("sim:"):
             raise InputError("--fast is for the simulated device; leave out --device")
         if protocol.medium == "device":

@@ -103,6 +103,24 @@ def check_rate(rate_hz: float) -> float:
     return rate_hz
 
 
+def refuse_hand(device: str, **given: object) -> None:
+    """Raise InputError if options of the simulated hand are given for another device.
+
+    Parameters
+    ----------
+    device
+        The spec of the device.
+    given
+        Values of the options by their names; None where they were not given.
+    """
+    for option, value in given.items():
+        if value is not None and not is_simulated(device):
+            raise InputError(
+                f"--{option} is for the simulated device, and {device} is moved by a person; "
+                f"leave --{option} out, or leave --device out"
+            )
+
+
 def device_spec(device: str, hand: str, seed: int) -> str:
     """Spec of a device; the simulated one is told its hand."""
     if not is_simulated(device):

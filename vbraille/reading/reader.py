@@ -134,7 +134,7 @@ class Reader:
             self._waiting.rest()
             return
         # What the device did not take was not felt.
-        felt_mm = ticks["x_mm"][ticks["flags"] & Flag.REFUSED == 0]
+        felt_mm = ticks["x_mm"][ticks["flags"] & Flag.HELD == 0]
         if self._end.find(felt_mm) is not None and self._advance and not self._finished:
             self.go_on()
         else:

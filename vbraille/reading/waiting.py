@@ -99,7 +99,7 @@ class Waiting:
 
     def _watch_device(self, ticks: NDArray[np.void]) -> Iterator[str]:
         """Whether the device takes what it is sent."""
-        if not ticks["flags"][-1] & Flag.REFUSED:
+        if not ticks["flags"][-1] & Flag.HELD:
             if "refused" in self._said:
                 self._said.remove("refused")
                 yield f"device: takes frames again; line {self._number} is felt from here on"

@@ -101,7 +101,9 @@ def test_faults_are_of_the_trial_that_was_open():
 
 
 def test_practice_counts_on_its_own_and_ends_when_it_is_over():
-    plan = make_plan(parse_protocol(MINI + "[practice]\ntrials = 2\n", "test"), "P1", 1)
+    plan = make_plan(
+        parse_protocol(MINI + '[practice]\ntrials = 2\nstrings = ["aa"]\n', "test"), "P1", 1
+    )
     practised = [RUN, shown(1, practice=True), answered(1, practice=True)]
     progress = told(*practised, plan=plan)
     assert (progress.done, progress.begun) == (0, False)

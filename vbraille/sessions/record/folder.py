@@ -212,7 +212,7 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     return Record(
         folder,
         json.loads(contents[HEAD]),
-        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL)),
+        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True),
         Plan.from_json(contents[PLAN]),
         told,
     )

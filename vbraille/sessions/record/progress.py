@@ -62,6 +62,8 @@ class Told:
         The same, by the wall clock.
     paused_s
         How long it was paused since the cue.
+    early
+        Whether it was answered before the hand had been at its end.
     source
         Where the answer came from: typed, simulated:0.2, a file's name.
     lost
@@ -76,6 +78,7 @@ class Told:
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
+    early: bool = False
     source: str = ""
     lost: list[int] = field(default_factory=list)
 
@@ -248,7 +251,10 @@ class Progress:
         told.source = self._answers
         if self.correcting is not None:
             self.correcting = None
-        elif not event.get("practice"):
+            return
+        told.early = event.get("early", False)
+        self._end_pause(told, event)  # what is not gone on with is over all the same
+        if not event.get("practice"):
             self._answered += 1
 
     def _take_undo(self, event: Event) -> None:
@@ -267,7 +273,9 @@ class Progress:
         self._paused_s = event["t_s"]
 
     def _take_go(self, event: Event) -> None:
-        told = self._of(event)
+        self._end_pause(self._of(event), event)
+
+    def _end_pause(self, told: Told | None, event: Event) -> None:
         if told is not None and self._paused_s is not None:
             told.paused_s += event["t_s"] - self._paused_s
         self._paused_s = None

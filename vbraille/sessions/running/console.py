@@ -7,7 +7,7 @@ whether an answer is right, is said before it, practice excepted.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
@@ -52,6 +52,7 @@ class Console:
         self._answers = answers
         self._say = say
         self._wait_s = POLL_S if real else 0.0
+        self._early = ()  # the trial, its attempt, and the answer to it that was asked about
 
     def run(self) -> None:
         """Go on from where the progress is."""
@@ -71,6 +72,8 @@ class Console:
             if lines is None:
                 self._leave()
                 return
+            if lines:
+                course.look()  # what was felt up to them counts before they do
             for line in lines:
                 if course.phase is not Phase.OVER:
                     self.take(line)
@@ -172,11 +175,15 @@ class Console:
                 raise InputError(f"line {course.script_line} of the answers: {error}") from None
             self._say(f"no answer: {error}")
             return
-        if correcting is None:
-            course.withdraw()
-        told = {"attempt": self._progress.told(trial).attempts, "answer": answer}
+        told: dict[str, Any] = {"attempt": self._progress.told(trial).attempts, "answer": answer}
         if correcting is not None:
             told["corrects"] = True
+        elif not course.reached:
+            if self._asks_whether(trial, answer):
+                return
+            told["early"] = True
+        if correcting is None:
+            course.withdraw()
         course.log("answer", trial, durable=True, **told)
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
         if trial.practice:
@@ -184,6 +191,22 @@ class Console:
         if correcting is None or course.trial is None:
             course.paused = False
             course.next()
+
+    def _asks_whether(self, trial: Trial, answer: str) -> bool:
+        """Ask about an answer that comes before the trial was read, once; whoever is there to."""
+        told = self._progress.told(trial)
+        early = trial.practice, trial.number, told.attempts, answer
+        if not self._answers.typed or early == self._early:
+            return False
+        self._early = early
+        if self._course.display is None:
+            why = "Enter has not said yet that it was read"
+        elif "contact" in told.t_s:
+            why = "it was not read to its end yet"
+        else:
+            why = "nothing was read yet"
+        self._say(f"no answer: {why}; the same answer again is taken")
+        return True
 
     def undo(self, _: str = "") -> None:
         """Take back the last answer."""
