@@ -229,6 +229,13 @@ def test_a_matrix_of_letters_is_legible():
     assert len(to_bytes(figure, "svg")) < 200_000
 
 
+def test_large_counts_have_room_in_their_cells():
+    counts = tuple((15_387,) * 26 for _ in range(26))
+    (axes,) = draw_chart(matrix(counts, tuple(range(26)))).axes
+    cell = axes.get_window_extent().width / 26
+    assert max(text.get_window_extent().width for text in axes.texts) < cell
+
+
 LONG = "a participant whose pseudonym is as long as anybody would ever have it"
 
 

@@ -12,6 +12,7 @@ from vbraille.analysis import (
     figures,
     legibility,
     levels,
+    matrices,
     motion,
     overtime,
     remarks,
@@ -189,7 +190,7 @@ def _confusions(trials: Trials, places: Places, options: Options) -> Section:
             tables.append(schema.fill([], [reason]))
         else:
             tables.append(confusion.to_table(counts, places, options.marks))
-            pictures.append(figures.confusion(tables[-1]))
+            pictures.append(matrices.confusion(tables[-1]))
     return Section("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
 
 

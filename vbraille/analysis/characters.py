@@ -72,12 +72,12 @@ DOTS = Schema(
 DOTS_OWN = Schema(
     "dots_participants",
     "Legibility by number of dots, of each participant",
-    "Shares of each participant's own places, all conditions together.",
+    "Shares of each participant's own places, averaged over conditions.",
     (
         Column("participant", "participant", "pseudonym"),
         Column("dots", "dots", "dots of the character", Kind.COUNT),
         *_COUNTS[:2],
-        Column("pooled", "legibility (%)", "correct by presented", Kind.PERCENT),
+        Column("legibility", "legibility (%)", "mean over conditions", Kind.PERCENT),
     ),
 )
 
@@ -96,8 +96,8 @@ def characters(trials: Trials, places: Places) -> Table:
 def strings(trials: Trials) -> Table:
     """Table 3.3, a row a string."""
     codes, names = trials.string_set.codes, trials.string_set.levels
-    shown = np.unique(np.stack((codes, trials.presented.codes)), axis=1)[0]
-    orders = np.bincount(shown).tolist()
+    shown = trials.presented
+    orders = np.bincount(np.unique(codes * len(shown) + shown.codes) // len(shown)).tolist()
     found = _count(codes, trials.correct, trials.participant.codes, trials.condition.codes)
     rows = [
         {"name": name_string(names[code]), "braille": names[code], "orders": orders[code]} | counts
@@ -116,22 +116,25 @@ def dots(trials: Trials, places: Places) -> Table:
 def dots_of_participants(trials: Trials, places: Places) -> Table:
     """Legibility by number of dots, a row a participant and number."""
     many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
-    who = trials.participant.codes[places.at]
-    codes, index = np.unique(9 * who + many, return_inverse=True)  # a cell has eight dots at most
-    shown = np.bincount(index)
-    right = np.bincount(index, places.correct).astype(np.int64)
-    rows: list[Row] = [
-        {
-            "participant": trials.participant.levels[code // 9],
-            "dots": code % 9,
-            "presented": presented,
-            "correct": correct,
-            "pooled": correct / presented,
-        }
-        for code, presented, correct in zip(
-            codes.tolist(), shown.tolist(), right.tolist(), strict=True
-        )
-    ]
+    who, condition = (factor.codes[places.at] for factor in (trials.participant, trials.condition))
+    rows: list[Row] = []
+    if len(places):
+        level = 9 * who + many  # a cell has eight dots at most
+        codes, own, _ = over_participants(level, places.correct, who, condition)
+        index = np.searchsorted(codes, level)
+        shown, right = np.bincount(index), np.bincount(index, places.correct).astype(np.int64)
+        rows = [
+            {
+                "participant": trials.participant.levels[code // 9],
+                "dots": code % 9,
+                "presented": presented,
+                "correct": correct,
+                "legibility": float(mean[0]),
+            }
+            for code, presented, correct, mean in zip(
+                codes.tolist(), shown.tolist(), right.tolist(), own, strict=True
+            )
+        ]
     return DOTS_OWN.fill(rows, _notes(rows, places))
 
 

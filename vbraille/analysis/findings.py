@@ -46,7 +46,13 @@ def interval_words(
     """Words for a row's 95 % interval; why it has none, as its note says."""
     low, high = (row.get(end) for end in ends)
     if low is None or high is None:
-        reasons = [part for part in str(row.get(NOTE, "")).split("; ") if _NO_INTERVAL in part]
+        # A note may tell of the interval of something else too: "no interval of d_z: …".
+        own = tuple(ends) == ("low", "high")
+        reasons = [
+            part
+            for part in _parts(row)
+            if part.startswith(_NO_INTERVAL) and part.startswith(f"{_NO_INTERVAL} of ") != own
+        ]
         return reasons[0] if reasons else f"{_NO_INTERVAL} is known"
     return f"95 % interval {to_print(low, kind)} to {to_print(high, kind)}{unit}"
 
@@ -184,20 +190,14 @@ def _information(of: Mapping[str, Table]) -> Iterator[str]:
         if row["condition"] != "all" or row["of"] != "characters":
             continue
         if row["corrected_bits"] is None:
-            yield f"How much information answers carried is not known: {row[NOTE]}."
+            reasons = [part for part in _parts(row) if "corrected bits" in part] or _parts(row)
+            yield f"How much information answers carried is not known: {reasons[0]}."
         else:
             yield (
                 f"An answer carried {to_print(row['corrected_bits'], Kind.NUMBER)} of the "
                 f"{to_print(row['presented_bits'], Kind.NUMBER)} bits of a character"
-                f"{_bits_interval(row)}."
+                f" ({interval_words(row, Kind.NUMBER)})."
             )
-
-
-def _bits_interval(row: Row) -> str:
-    """Of the information, if the table has one."""
-    if "low" not in row:
-        return ""
-    return f" ({interval_words(row, Kind.NUMBER)})"
 
 
 def _over_time(of: Mapping[str, Table]) -> Iterator[str]:
@@ -225,9 +225,10 @@ def _preferred(of: Mapping[str, Table]) -> Iterator[str]:
             f"{count(row['participants'], 'participant')}"
         )
         if row["preferred"] is None:
-            yield f"No {words} is known to be preferred ({who}): {row[NOTE]}."
+            yield f"No {words} is known to be preferred ({who}): {_parts(row)[0]}."
             continue
-        note = f". {row[NOTE]}" if row[NOTE] and _NO_INTERVAL not in row[NOTE] else ""
+        more = [part for part in _parts(row) if not part.startswith((_NO_INTERVAL, "no p:"))]
+        note = "".join(f"; {part}" for part in more)
         yield (
             f"The preferred {words} is {to_print(row['preferred'], Kind.NUMBER)}{unit} "
             f"({interval_words(row, Kind.NUMBER, unit)}; {who}){note}."
@@ -240,6 +241,11 @@ def _by_measure(of: Mapping[str, Table], name: str) -> Iterator[tuple[str, list[
         found = [row for row in rows if row["measure"] == measure]
         if found:
             yield measure, found
+
+
+def _parts(row: Row) -> list[str]:
+    """Clauses of a row's note."""
+    return str(row.get(NOTE, "")).split("; ")
 
 
 def _whose(row: Row) -> str:

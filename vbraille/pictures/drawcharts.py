@@ -234,8 +234,7 @@ def _matrix(chart: Matrix) -> Figure:
     axes.set(xlim=(0, len(columns)), ylim=(len(rows), 0), aspect="equal")
     axes.hlines(range(len(rows) + 1), 0, len(columns), color=FAINT, linewidth=0.6)
     axes.vlines(range(len(columns) + 1), 0, len(rows), color=FAINT, linewidth=0.6)
-    # Three digits have room in a cell; letters are 0.6 em wide, of 72 points an inch.
-    size = min(max(cell * 72 * 0.85 / (3 * 0.64), 4.0), 11)
+    size = _digits_size(3, cell)
     for down, (counts, right) in enumerate(zip(chart.counts, chart.diagonal, strict=True)):
         for across, count in enumerate(counts):
             if across == right:
@@ -243,7 +242,9 @@ def _matrix(chart: Matrix) -> Figure:
             elif frame := _frame(count, chart.marks):
                 axes.add_patch(_cell(down, across, fill=False, linewidth=frame))
             if count:
-                axes.text(across + 0.5, down + 0.5, str(count), ha="center", va="center", size=size)
+                text = str(count)
+                own = min(_digits_size(len(text), cell), size)
+                axes.text(across + 0.5, down + 0.5, text, ha="center", va="center", size=own)
     for within in (*axes.texts, *axes.patches):
         within.set_in_layout(False)  # hundreds, that need no room of their own
     axes.spines[:].set_visible(False)
@@ -254,6 +255,11 @@ def _matrix(chart: Matrix) -> Figure:
     axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
     axes.set(xlabel=plain(chart.across), ylabel=plain(chart.down))
     return figure
+
+
+def _digits_size(digits: int, cell: float) -> float:
+    """Points of a number that has room in a cell of so many inches; a digit is 0.64 em wide."""
+    return min(cell * 72 * 0.85 / (digits * 0.64), 11.0)
 
 
 def _frame(count: int, marks: tuple[int, ...]) -> float:
