@@ -29,6 +29,7 @@ def sitting(readings, who="P1", conditions=("T0",), session="s1"):
             "trial": n + 1,
             "presented": "⠁⠈",
             "paused_s": 0.0,
+            "early": 0,
         }
         for n in range(len(readings) + 1)  # the last is not read
     ]

@@ -14,6 +14,7 @@ from vbraille.analysis import (
     levels,
     motion,
     overtime,
+    remarks,
     tuning,
 )
 from vbraille.analysis.results import Results, Section
@@ -86,6 +87,9 @@ def analyse(study: Study, options: Options) -> Results:
         sections += _of_trials(study, study.trials, options, left_out)
     if study.comparisons is not None:
         sections.append(_of_comparisons(study.comparisons, options))
+    if any(sitting.notes for sitting in study.sittings):
+        table = remarks.notes(study.sittings)
+        sections.append(Section("Notes", "What the experimenter wrote down.", (table,)))
     about = (*study.about, *_excluded(left_out), *options.told())
     return Results("Legibility sessions", about, study.warnings, tuple(sections))
 

@@ -113,6 +113,8 @@ def trajectories(sittings: Iterable[Sitting], trials: Trials | None = None) -> T
             }
             if isinstance(seen, Reading) and told["paused_s"] > 0:
                 seen = f"it was paused for {to_print(told['paused_s'], Kind.SECONDS)} s"
+            elif isinstance(seen, Reading) and told["early"]:
+                seen = "it was answered before it was read to its end"
             rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))
     return TRAJECTORIES.fill(rows, [] if rows else ["no trial has a trajectory"])
 

@@ -6,8 +6,8 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
-from vbraille.cli.printable import printable
 from vbraille.errors import InputError
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
