@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest, ttest_1samp
@@ -255,8 +255,11 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
         return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
     if own.size < FEWEST_PARTICIPANTS:
         return PositionBias(float(own.mean()), None, None)
-    p = None if np.ptp(own) <= ROUNDING else float(ttest_1samp(own, 0.5).pvalue)
-    return PositionBias(float(own.mean()), mean_share(own, trials), p)
+    interval = mean_share(own, trials)
+    if np.ptp(own) <= ROUNDING:
+        return PositionBias(float(own.mean()), interval, None)
+    test: Any = ttest_1samp(own, 0.5)
+    return PositionBias(float(own.mean()), interval, float(test.pvalue))
 
 
 def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
