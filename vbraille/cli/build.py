@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.printable import printable
+from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
-from vbraille.translate import Book, Document, Table, find_table
+from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
 
 if TYPE_CHECKING:
     import argparse
@@ -32,6 +33,8 @@ class Page:
         What they are laid out for.
     first, last
         Lines asked for.
+    unknown
+        Counts what the table does not know.
     """
 
     layout: Layout
@@ -39,6 +42,7 @@ class Page:
     geometry: Geometry
     first: int
     last: int | None
+    unknown: Unknown
 
     @property
     def document(self) -> Document:
@@ -46,10 +50,17 @@ class Page:
         return self.layout.book.document
 
     def lines(self) -> Iterator[Line]:
-        """Lines asked for; says on stderr what the text's encoding needs saying."""
+        """Lines asked for; says on stderr what the text's encoding and script need saying."""
         for line in self.layout.lines(self.first, self.last):
             self.say_note()
+            self.unknown.see(line)
             yield line
+
+    def see(self, number: int) -> None:
+        """Count what the table does not know on a line that was laid out."""
+        line = self.layout.line(number)
+        if line is not None:
+            self.unknown.see(line)
 
     def progress(self, line: Line) -> float:
         """How much of the lines asked for is done with this one, about, 0 to 1."""
@@ -58,10 +69,16 @@ class Page:
         return (line.number - self.first + 1) / (self.last - self.first + 1)
 
     def say_note(self) -> None:
-        """Say once if the text is not UTF-8."""
-        note = self.document.note()
-        if note is not None:
-            print(printable(note), file=sys.stderr, flush=True)
+        """Say once if the text is not UTF-8, and of each script that the table does not know."""
+        for note in (self.document.note(), self.layout.book.table.note()):
+            if note is not None:
+                print(printable(note), file=sys.stderr, flush=True)
+
+    def say_unknown(self) -> None:
+        """Say at the end how many characters the table does not know, if there were any."""
+        sentence = self.unknown.sentence
+        if sentence is not None:
+            print(printable(sentence), file=sys.stderr, flush=True)
 
 
 def build_geometry(arguments: argparse.Namespace) -> tuple[Model, Geometry]:
@@ -93,15 +110,18 @@ def build_table(arguments: argparse.Namespace) -> Table:
     InputError
         If there is none such.
     """
+    undefined = Undefined(arguments.undefined)
     if arguments.table is None:
-        return Table(find_table(arguments.language or "en", arguments.grade))
+        return Table(find_table(arguments.language or "en", arguments.grade), undefined)
     if arguments.language is not None or arguments.grade is not None:
         raise InputError("a table has its language and grade; give either --table or those")
-    return Table(arguments.table)
+    return Table(arguments.table, undefined)
 
 
-def build_page(arguments: argparse.Namespace) -> Page:
+def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
     """Page of the text, and say on stderr how wide it is.
+
+    With `six_dots`, a table of eight dots is refused.
 
     Raises
     ------
@@ -114,6 +134,8 @@ def build_page(arguments: argparse.Namespace) -> Page:
     except ValueError as error:
         raise InputError(str(error)) from None
     table = build_table(arguments)
+    if six_dots and table.eight_dots:
+        raise InputError(_eight_dots(table))
     document = Document.open(arguments.file, arguments.encoding, keep_lines=arguments.keep_lines)
     first, last = arguments.lines
     layout = Layout(Book(document, table), width)
@@ -123,7 +145,19 @@ def build_page(arguments: argparse.Namespace) -> Page:
             raise InputError(f"{arguments.file} has no text in it; give a text file")
         raise InputError(f"{arguments.file} ends at line {lines}; --lines {first} is past that")
     print(f"line width: {width} cells", file=sys.stderr, flush=True)
-    return Page(layout, model, geometry, first, last)
+    unknown = Unknown(table, Undefined(arguments.undefined))
+    return Page(layout, model, geometry, first, last, unknown)
+
+
+def _eight_dots(table: Table) -> str:
+    """What to say of a table of eight dots where only six can be written."""
+    info = table.info
+    other = None if info is None else six_dot_table(info.language)
+    instead = f"give --table {other}, which has six, or" if other else "give"
+    return (
+        f"the table {table.name} has eight dots and BRF has six; "
+        f"{instead} --format unicode, which writes all eight"
+    )
 
 
 def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tuning]:

@@ -264,6 +264,13 @@ def _text_options(parser: argparse.ArgumentParser, *, optional: bool = False) ->
     parser.add_argument("--grade", type=whole, metavar="N", help="of the language's braille")
     parser.add_argument("--encoding", metavar="NAME", help="of the text, if it is not what it says")
     parser.add_argument(
+        "--undefined",
+        choices=("mark", "name", "code", "drop"),
+        default="mark",
+        help="what to write for a character that the table does not know: a marker such as [?] "
+        "(default), its name in Unicode, its number, or nothing; they are counted at the end",
+    )
+    parser.add_argument(
         "--keep-lines", action="store_true", help="keep the text's line breaks (verse, code)"
     )
     parser.add_argument(

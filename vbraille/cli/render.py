@@ -82,6 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     if too_fast is not None:
         print(too_fast, file=sys.stderr)
     page.say_note()
+    page.say_unknown()
     print(f"rendered: {lines} lines, {frames} frames, {frames / rate_hz:.1f} s of reading")
     return 0
 

@@ -29,6 +29,7 @@ _KINDS[[0x0C, 0x2029]] = _BREAK
 _KINDS[0xAD] = _DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
+_BACKSPACE, _UNDERLINE = 0x08, 0x5F
 # Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
 _COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A))
 # Words before which a hyphen stands for the rest of the word before it.
@@ -138,6 +139,7 @@ def split_paragraphs(
     """
     kinds = _KINDS[np.minimum(codes, _KINDS.size - 1)]
     kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
+    kinds[_overstruck(codes)] = _DROPPED
     text = np.flatnonzero(kinds == _TEXT)
     newline = (kinds == _NEWLINE) | (kinds == _BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
@@ -205,6 +207,23 @@ def split_paragraphs(
             at = first + int(stop[n])
             paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
     return Split(paragraphs, codes.size, continues=False)
+
+
+def _overstruck(codes: NDArray[np.uint32]) -> NDArray[np.intp]:
+    """Where printers of old were told to underline or to strike twice, which is no text.
+
+    An underline stands before or after a backspace and a character; one that is struck twice
+    stands on both sides of it.
+    """
+    backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
+    if not backspaces.size:
+        return backspaces
+    before, after = codes[backspaces - 1], codes[backspaces + 1]
+    first = (before == _UNDERLINE) | (before == after)
+    second = ~first & (after == _UNDERLINE)
+    return np.concatenate(
+        (backspaces[first | second], backspaces[first] - 1, backspaces[second] + 1)
+    )
 
 
 def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
