@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
-from vbraille.geometry import PRESETS, STRESS2, VBD
 from tests.laid import cuts_inside, laid_out, rebuilt
+from vbraille.geometry import PRESETS, STRESS2, VBD
 from vbraille.page import Layout, Line, locate, place_of
 from vbraille.translate import Book, Cells, Document, Table
 from vbraille.wrapping import wrap
@@ -158,9 +158,7 @@ class TestWholeSymbols:
         # A blank between two cells of one character is a part of it.
         owners = [ord(c) for c in starts]
         for n in range(1, len(starts) - 1):
-            if starts[n] == " " and starts[n - 1] == starts[n + 1]:
-                owners[n] = owners[n - 1]
-            elif starts[n] == " ":
+            if (starts[n] == " " and starts[n - 1] == starts[n + 1]) or starts[n] == " ":
                 owners[n] = owners[n - 1]
         found = [starts[start:stop] for start, stop, _ in wrap(breaks, width, starts=owners)]
         assert found == lines
@@ -182,13 +180,43 @@ class TestWholeSymbols:
 
 # Letters of several cells, symbols, hyphens, blanks of all kinds, and what tables do not know.
 pieces_of_text = st.one_of(
-    st.sampled_from([
-        "/", "\u2014", " -- ", "Ä", "É", "ABC", "12,5", "3/4", "\u4e2d\u6587", "\u0434\u0430", "\U0001f600",
-        "\xa0", "\u2800", "\u200b", "e\u0301", "\n", "\n\n", "\t", "-\n", "\xad", "\ufeff", "\f", "_\bx",
-        "https://example.org/a/b", "Tragödie. --", "McDonald", "...", "(", '"', "\0", "\x1c",
-    ]),
+    st.sampled_from(
+        [
+            "/",
+            "\u2014",
+            " -- ",
+            "Ä",
+            "É",
+            "ABC",
+            "12,5",
+            "3/4",
+            "\u4e2d\u6587",
+            "\u0434\u0430",
+            "\U0001f600",
+            "\xa0",
+            "\u2800",
+            "\u200b",
+            "e\u0301",
+            "\n",
+            "\n\n",
+            "\t",
+            "-\n",
+            "\xad",
+            "\ufeff",
+            "\f",
+            "_\bx",
+            "https://example.org/a/b",
+            "Tragödie. --",
+            "McDonald",
+            "...",
+            "(",
+            '"',
+            "\0",
+            "\x1c",
+        ]
+    ),
     st.text("abcdefghijklm .,-ABC123", max_size=12),
-)  # fmt: skip
+)
 mixed_texts = st.lists(pieces_of_text, min_size=1, max_size=25).map("".join).filter(bool)
 # None of German: liblouis 3.24 never returns from some lines of dashes and addresses with those.
 MIXED_TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "ru-litbrl.ctb", "zh-tw.ctb", "ko-g2.ctb")

@@ -221,7 +221,7 @@ class Layout:
             paragraph, cells = carried.paragraph + paragraph, carried.cells + cells
             first = int(np.searchsorted(paragraph.source, carried.character))
         breaks = breaks_of(paragraph, cells)
-        bounds = wrap(breaks, self.width, indent, runover, memoryview(cells.starts))
+        bounds = wrap(breaks, self.width, indent, runover, cells.starts.data)
         laid = _Laid(paragraph, cells, bounds, first)
         following = self.book.document.paragraph(number + 1)
         if following is None or not following.continues:

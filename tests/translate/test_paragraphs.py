@@ -74,6 +74,22 @@ class TestProse:
     def test_hyphens_at_the_end_of_a_line(self, text, paragraph):
         assert split(text) == [paragraph]
 
+    @pytest.mark.parametrize(
+        ("text", "paragraph"),
+        [
+            ("_\bb_\bo", "bo"),
+            ("b\b_o\b_", "bo"),
+            ("b\bbo\bo\bo", "bo"),
+            ("_\bb\bb", "b"),
+            ("a _\bb\n_\bc", "a b c"),
+            ("e\b'", "e\b'"),
+            ("\ba\b", "\ba\b"),
+        ],
+    )
+    def test_overstrikes_are_no_text(self, text, paragraph):
+        assert split(text) == [paragraph]
+        assert split(text, keep_lines=True) == paragraph.replace("b c", "b\nc").split("\n")
+
     @pytest.mark.parametrize("space", ["\xa0", "\u2007", "\u202f"])
     def test_no_break_spaces_stay(self, space):
         assert split(f"12{space}500  {space} km") == ["12\xa0500 \xa0 km"]
