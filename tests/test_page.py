@@ -163,6 +163,10 @@ class TestWholeSymbols:
         found = [starts[start:stop] for start, stop, _ in wrap(breaks, width, starts=owners)]
         assert found == lines
 
+    def test_a_symbol_takes_the_indent_if_it_needs_it(self):
+        assert wrap(b"\1\1\1\1\1\0\1", 5, 2, 0, list(b"aaaaabc")) == [(0, 5, 0), (6, 7, 0)]
+        assert wrap(b"\1\1\1\1\1\1", 5, 2, 0, list(b"aaaabb")) == [(0, 4, 1), (4, 6, 0)]
+
     def test_a_symbol_of_two_cells_goes_to_the_next_line(self, table):
         # The slash of UEB is two cells; so is a capital with its sign.
         assert brf(lay_out("abcdefgh/klm", table, 9)) == ["  ABCDEF<", "_/KLM"]

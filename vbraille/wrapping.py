@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,8 +36,8 @@ def wrap(
 ) -> list[tuple[int, int, int]]:
     """Break a paragraph into lines, each as full as it can be.
 
-    The cells of one source character stay together. Only where they are more than a line has
-    room for are they cut, where the line is full.
+    The cells of one source character stay together, if need be at the cost of the indent. Only
+    where they are more than a line's width are they cut, where the line is full.
 
     Parameters
     ----------
@@ -65,7 +66,13 @@ def wrap(
     start = leading - min(leading, width // 2, max(0, width - indent - word))
     bounds = []
     while end - start > width - indent:
-        stop, following = _cut(breaks, start, start + width - indent, starts)
+        full = start + width - indent
+        if indent and starts[start] == starts[full]:
+            own = bisect_right(starts, starts[start], start) - start
+            if own <= width:  # without so much of an indent, its cells stay together
+                indent = width - own
+                continue
+        stop, following = _cut(breaks, start, full, starts)
         bounds.append((start, stop, indent))
         start = following
         indent = runover

@@ -19,6 +19,7 @@ from vbraille.translate.paragraphs import (
 
 # What the rules speak of, and a few letters.
 AWKWARD = list("aaé- \n\r\t\f\v\x85\xa0\xad\u2010\u2028\u2029\u202f\u0301\ufeff\0\ud800😀.")
+AWKWARD += ["\b", "_", "_\b", "a\ba", "\b_"]
 AWKWARD += ["\n\n", "\r\n", " and", "-\n", "-\nor ", "\xad\n", "  "]
 awkward_texts = st.lists(st.sampled_from(AWKWARD), max_size=40).map("".join)
 

@@ -139,7 +139,7 @@ def split_paragraphs(
     """
     kinds = _KINDS[np.minimum(codes, _KINDS.size - 1)]
     kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
-    kinds[_overstruck(codes)] = _DROPPED
+    kinds[_overstruck(codes, kinds)] = _DROPPED
     text = np.flatnonzero(kinds == _TEXT)
     newline = (kinds == _NEWLINE) | (kinds == _BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
@@ -209,7 +209,7 @@ def split_paragraphs(
     return Split(paragraphs, codes.size, continues=False)
 
 
-def _overstruck(codes: NDArray[np.uint32]) -> NDArray[np.intp]:
+def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
     """Where printers of old were told to underline or to strike twice, which is no text.
 
     An underline stands before or after a backspace and a character; one that is struck twice
@@ -218,6 +218,8 @@ def _overstruck(codes: NDArray[np.uint32]) -> NDArray[np.intp]:
     backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
     if not backspaces.size:
         return backspaces
+    struck = (kinds[backspaces - 1] == _TEXT) & (kinds[backspaces + 1] == _TEXT)
+    backspaces = backspaces[struck & (codes[backspaces - 1] != _BACKSPACE)]
     before, after = codes[backspaces - 1], codes[backspaces + 1]
     first = (before == _UNDERLINE) | (before == after)
     second = ~first & (after == _UNDERLINE)
