@@ -41,11 +41,13 @@ class Logged(SimulatedDevice):
 '''
 
 
-def install(folder: Path) -> dict[str, str]:
-    """Install it there as the device kind ``logged``; the environment of programs that know it."""
-    package = folder / "logged-1.dist-info"
+def install(
+    folder: Path, name: str = "logged", opener: str = "Logged", module: str = _MODULE
+) -> dict[str, str]:
+    """Install it there as a device kind of its name; the environment of programs that know it."""
+    package = folder / f"{name}-1.dist-info"
     package.mkdir()
-    (package / "METADATA").write_text("Name: logged\nVersion: 1\n")
-    (package / "entry_points.txt").write_text("[vbraille.devices]\nlogged = logged:Logged\n")
-    (folder / "logged.py").write_text(_MODULE)
+    (package / "METADATA").write_text(f"Name: {name}\nVersion: 1\n")
+    (package / "entry_points.txt").write_text(f"[vbraille.devices]\n{name} = {name}:{opener}\n")
+    (folder / f"{name}.py").write_text(module)
     return {**os.environ, "PYTHONPATH": str(folder)}

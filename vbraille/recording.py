@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -53,8 +54,17 @@ class Recorder:
         rows, columns = array.shape
 
         def growing(name: str, dtype: str, *shape: int, chunk: int = CHUNK_FRAMES) -> h5py.Dataset:
+            # The filters that every HDF5 library has. Bytes of frames are shared out by their
+            # places in a number (shuffle) to no advantage; those of times and places are.
             return file.create_dataset(
-                name, (0, *shape), dtype, maxshape=(None, *shape), chunks=(chunk, *shape)
+                name,
+                (0, *shape),
+                dtype,
+                maxshape=(None, *shape),
+                chunks=(chunk, *shape),
+                compression="gzip",
+                compression_opts=1,
+                shuffle=name != "frames",
             )
 
         self._time = growing("t_s", "f8")
@@ -90,6 +100,12 @@ class Recorder:
             source=source,
             source_sha256=sha256,
         )
+
+    @property
+    def stored_bytes(self) -> int:
+        """What the frames and their places take on the disk so far, compressed."""
+        kept = (self._time, self._place, self._line, self._frames)
+        return sum(dataset.id.get_storage_size() for dataset in kept)
 
     def add_line(self, masks: NDArray[np.uint8]) -> int:
         """Append a line of the page; its row in ``page/cells``."""
@@ -132,15 +148,22 @@ class Recorder:
 
 
 @contextmanager
-def new_file(path: Path | str) -> Iterator[NewFile]:
+def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
     """Write an HDF5 file under another name, which gets its own once it is whole.
 
     Whatever ends the writing early leaves nothing behind.
 
+    Parameters
+    ----------
+    path
+        The file to make.
+    replace
+        Whether it may take the place of a file that is there.
+
     Raises
     ------
     InputError
-        If no file can be made there.
+        If no file can be made there, or one is there that may not be replaced.
     VbrailleError
         If writing fails, as on a full disk.
     """
@@ -150,6 +173,8 @@ def new_file(path: Path | str) -> Iterator[NewFile]:
         try:
             if path.is_dir():
                 raise InputError(f"{path} is a directory; give the name of a file in it")
+            if not replace:
+                _refuse_existing(path)
             target = _Target(partial)
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None
@@ -157,12 +182,19 @@ def new_file(path: Path | str) -> Iterator[NewFile]:
             with target, NewFile(target) as file:
                 yield file
             target.check()
+            if not replace:  # somebody may have made one meanwhile
+                _refuse_existing(path)
             partial.replace(path)
         except _DiskError as error:
             raise VbrailleError(f"{path} could not be written: {error}") from None
     finally:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
+
+
+def _refuse_existing(path: Path) -> None:
+    if os.path.lexists(path):
+        raise InputError(f"{path} is there already; choose another name, or replace it by --force")
 
 
 class NewFile(h5py.File):

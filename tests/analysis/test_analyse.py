@@ -188,7 +188,7 @@ def test_several_protocols_are_told_of_and_kept_apart(sessions, tmp_path):
 
 def test_a_session_broken_off_is_told_of(tmp_path):
     session = Session(tmp_path / "broken", MINI, "P1")
-    session.sit(("cue: trial 1", "a"), ("cue: trial 2", "stop"))
+    session.sit(("read:", "a"), ("cue: trial 2", "stop"))
     study = load_study([session.folder])
     assert any("broken is not whole: broken off in trial 2" in w for w in study.warnings)
     assert len(study.trials) == 1
@@ -198,7 +198,7 @@ def test_a_session_broken_off_is_told_of(tmp_path):
 
 def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
     session = Session(tmp_path / "paused", MINI, "P1")
-    session.sit(("cue: trial 1", "pause"), ("pause", ""), ("go", "a"), ("cue: trial 2", "stop"))
+    session.sit(("cue: trial 1", "pause"), ("pause", ""), ("read:", "a"), ("cue: trial 2", "stop"))
     study = load_study([session.folder])
     (told,) = [row for row in study.sittings[0].rows if row["answered"]]
     assert told["paused_s"] > 0
@@ -279,3 +279,26 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
     assert written[0] == written[1]
     assert {path.suffix for path in written[0]} == {".html", ".md", ".json", ".csv", ".svg", ".png"}
     assert Path("trials.csv") in written[0]
+
+
+def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
+    session = Session(tmp_path / "early", MINI, "P1", hand="sweep:10")
+    notes = [("note", "note x")] * 9
+    session.sit(
+        ("cue: trial 1", "note x"), *notes, ("note", "c"), ("no answer", "c"),
+        ("read:", "c"), ("cue: trial 3", "stop"),
+    )  # fmt: skip
+    study = load_study([session.folder])
+    first, second = [row for row in study.sittings[0].rows if row["answered"]]
+    assert (first["early"], second["early"]) == (1, 0)
+    assert first["duration_s"] > 0
+    assert [left.reason for left in study.left_out] == [
+        "no answer",
+        "it was answered before it was read to its end",
+    ]
+    found = tables(analyse(study, Options()))
+    (row,) = found["legibility"].records()
+    assert (row["trials"], row["timed"]) == (2, 1)
+    early, timed = found["trajectories"].records()
+    assert early["note"] == "it was answered before it was read to its end"
+    assert (early["duration_s"], timed["note"]) == (None, "")

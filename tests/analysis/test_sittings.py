@@ -147,7 +147,7 @@ def test_a_session_broken_off_says_where(folder, tmp_path):
     planned = read_sitting(Session(tmp_path / "planned").folder)
     assert planned.state == "not ended: 0 of 4 trials answered"
     assert (planned.readings, planned.examples) == ({}, ())
-    practised = Session(tmp_path / "practice", MINI + "[practice]\ntrials = 1\n")
+    practised = Session(tmp_path / "practice", MINI + '[practice]\ntrials = 1\nstrings = ["aa"]\n')
     practised.sit(("cue: practice 1", "stop"))
     assert read_sitting(practised.folder).state == "broken off in practice trial 1"
 

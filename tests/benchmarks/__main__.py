@@ -3,7 +3,18 @@
 import sys
 from importlib import import_module
 
-PARTS = ("render", "text", "lines", "wire", "engine", "faults", "sessions", "analysis", "reader")
+PARTS = (
+    "render",
+    "text",
+    "lines",
+    "wire",
+    "engine",
+    "faults",
+    "sessions",
+    "analysis",
+    "coverage",
+    "reader",
+)
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
     sys.exit(f"there is no benchmark {', '.join(sorted(unknown))}; there is {', '.join(PARTS)}")

@@ -18,7 +18,9 @@ import numpy as np
 from tests.benchmarks.killing import kill_often
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
-from vbraille.sessions.planning.protocol import builtin_text
+from tests.sessions.planning.rulebook import broken_rules
+from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace
 
@@ -55,6 +57,7 @@ repeats = {repeats}
 [trial]
 gap_s = 0.0
 """
+PLANNED_SEEDS = 500
 # What a resume has to import, and a host to come up with: seconds of each.
 _START = """
 import time
@@ -75,7 +78,7 @@ with Host("sim:?hand=sweep:150", device_info(VBD, VBD.geometry, 1000.0), 4) as h
 def run() -> Iterator[Result]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for part in (_acknowledged, _resumed, _block, _recorded, _killed):
+        for part in (_planned, _acknowledged, _resumed, _block, _recorded, _killed):
             inner = folder / part.__name__
             inner.mkdir()
             yield part(inner)
@@ -94,6 +97,24 @@ def _killed(folder: Path) -> Result:
         f"({tally.acknowledged} acknowledged answers; {tally.starting} kills in the start, "
         f"{tally.torn} torn lines, up to {tally.most_attempts} attempts)",
         not (tally.lost or tally.skipped or tally.others),
+    )
+
+
+def _planned(_: Path) -> Result:
+    broken, plans, alike = 0, 0, 0
+    for name in builtin_names():
+        protocol = load_protocol(name)
+        seen = set()
+        for seed in range(PLANNED_SEEDS):
+            broken += bool(broken_rules(protocol, f"P{seed % 20:02}", seed))
+            seen.add(make_plan(protocol, f"P{seed % 20:02}", seed).trials)
+        plans += PLANNED_SEEDS
+        alike += PLANNED_SEEDS - len(seen)
+    return Result(
+        f"plans of all protocols, {PLANNED_SEEDS} seeds each: breaking a rule, alike",
+        "0, 0",
+        f"{broken}, {alike} (of {plans} plans)",
+        not (broken or alike),
     )
 
 

@@ -1,5 +1,7 @@
 """The program as its users have it: a process, perhaps at a terminal."""
 
+import array
+import fcntl
 import os
 import re
 import select
@@ -29,15 +31,16 @@ def start(*arguments, **options):
 class Terminal:
     """A process at a terminal of its own: what it prints is read, keys are typed."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, program=PROGRAM, **environment):
         self.master, self._slave = os.openpty()
         self.before = termios.tcgetattr(self._slave)
         self.printed = ""
         # The first terminal that the leader of a new session opens is the session's: Ctrl-C works.
         at_terminal = 'exec "$@" <>"$0" >&0 2>&0'
         self.process = subprocess.Popen(
-            ["sh", "-c", at_terminal, os.ttyname(self._slave), *PROGRAM, *map(str, arguments)],
+            ["sh", "-c", at_terminal, os.ttyname(self._slave), *program, *map(str, arguments)],
             start_new_session=True,
+            env={**os.environ, "TERM": "xterm", **environment},
         )
 
     def __enter__(self):
@@ -59,6 +62,15 @@ class Terminal:
         """Type keys."""
         os.write(self.master, keys.encode())
 
+    def type_apart(self, pieces):
+        """Type bytes, each piece when the process has read the one before."""
+        for piece in pieces:
+            os.write(self.master, piece)
+            waiting = array.array("i", [1])
+            while waiting[0]:
+                os.sched_yield()
+                fcntl.ioctl(self._slave, termios.FIONREAD, waiting)
+
     def until(self, pattern):
         """Read until something new that matches is printed; give the new part."""
         new = ""
@@ -78,6 +90,11 @@ class Terminal:
         while self._read(0.0):
             pass
         return code
+
+    @property
+    def lines(self):
+        """What was printed, without the marks that turn the marking of pastes on and off."""
+        return re.sub(r"\x1b\[\?2004[hl]", "", self.printed)
 
     def settings(self):
         """The terminal's settings now."""

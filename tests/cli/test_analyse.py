@@ -58,7 +58,7 @@ def test_a_report_is_written(call, room):
     said = call("analyse", "good.csv", "--out", "new/report", "--marks", "0,1", "--seed", "7")
     assert (said.code, said.out, said.err) == (0, "written: new/report/report.html\n", "")
     page = (room / "new" / "report" / "report.html").read_text()
-    assert "bootstraps with seed 7" in page
+    assert "random draws with seed 7" in page
     assert "above 0" in page
 
 

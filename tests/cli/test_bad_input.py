@@ -61,8 +61,8 @@ def test_files_that_cannot_be_read(call, tmp_path):
         assert "cannot be read" in refused(call(*command, loop))
 
 
-def test_a_name_that_would_move_the_cursor_is_spelled(call):
-    assert "\\x1b[2J\\x07" in refused(call("page", "no\x1b[2J\x07"))
+def test_a_control_character_in_a_name_is_named(call):
+    assert "no<escape>[2J<bell>" in refused(call("page", "no\x1b[2J\x07"))
     assert "\\udcff" in refused(call("page", "no\udcff"))
 
 
@@ -143,7 +143,7 @@ def test_options_of_the_page(call, text, options, pattern, command):
         ("--texture-cycles 4", r"texture cycles are 4; they must be an odd number, 1 to 11"),
         ("--texture-cycles 13", r"odd number, 1 to 11"),
         ("--texture-cycles 7.0", r"'7.0' is not a whole number"),
-        ("--hand glove", r"there is no hand 'glove'; give sweep:SPEED in mm/s, device, fluent or"),
+        ("--hand glove", r"there is no hand 'glove'; give sweep:SPEED in mm/s, slow, fluent or"),
         ("--hand recorded:", r"there is no hand 'recorded:'"),
         ("--hand sweep:0", r"sweep speed is 0 mm/s; it must be 0.1 to 1000 mm/s"),
         ("--hand sweep:nan", r"sweep speed is nan mm/s; it must be 0.1 to 1000 mm/s"),
@@ -166,6 +166,14 @@ def test_options_of_a_showing(call, text, options, pattern, command):
     [
         ("--device latero", r"there is no device kind 'latero'; there is .*sim"),
         ("--device=", r"there is no device kind ''; there is .*sim"),
+        (
+            "--device serial:x --hand sweep:60",
+            r"^--hand is for the simulated device, and serial:x is",
+        ),
+        (
+            "--device serial:x --seed 1",
+            r"^--seed is for .*; leave --seed out, or leave --device out",
+        ),
         ("--advance slowly", r"argument --advance: invalid choice: 'slowly'"),
         ("--advance key", r"--advance key needs a terminal to type at; leave it out without one"),
         ("--echo loud", r"argument --echo: invalid choice: 'loud'"),

@@ -58,7 +58,7 @@ def test_a_long_text_is_all_there(call, texts):
 )
 def test_lines_are_counted_from_1_in_the_book(call, texts, lines, wanted):
     whole = call("page", texts / "english.txt", "--format", "text").out.splitlines()
-    assert len(whole) == 293
+    assert len(whole) == 297
     part = call("page", texts / "english.txt", "--format", "text", f"--lines={lines}")
     assert part.code == 0
     assert part.out.splitlines() == whole[wanted]
@@ -94,7 +94,7 @@ def test_a_text_that_is_not_utf_8_is_told_once(call, text):
 def test_nothing_in_a_text_moves_the_cursor(call, text):
     text.write_bytes(b"red \x1b[31m ring \x07 rub \x7f csi \xc2\x9b2J")
     said = call("page", text, "--format", "text", "--travel", "1000")
-    assert said.out == "red \\x1b[31m ring \\x07 rub \\x7f csi \\x9b2J\n"
+    assert said.out == "red <escape>[31m ring <bell> rub <delete> csi <9b>2J\n"
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,25 @@ def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
         assert process.stdout.readline() == "⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑\n".encode()
         process.stdout.close()
         assert process.stderr.read() == b"line width: 26 cells\n"
-        assert process.wait(program.PATIENCE_S) == 0
+        assert process.wait(program.PATIENCE_S) == 1  # not all of it was printed
+
+
+def test_a_file_that_changes_while_it_is_read_is_not_said_to_be_done(tmp_path):
+    big = tmp_path / "big.txt"
+    paragraph = "one two three\n\n"
+    for size, code, said in [
+        (5_000, 1, f"vbraille: {big} has become shorter since it was opened; open it again"),
+        (30_000, 0, f"{big} has grown since it was opened; open it again to read what was added"),
+    ]:
+        big.write_text(paragraph * 20_000)
+        with program.start("page", big, text=True) as process:
+            process.stdout.readline()  # a pipe holds little: it waits for us
+            with big.open("r+") as file:
+                file.truncate(size * len(paragraph))
+            lines = 1 + sum(1 for _ in process.stdout)
+            assert process.wait(program.PATIENCE_S) == code
+            assert process.stderr.read().splitlines()[-1] == said
+        assert lines < 20_000 if code else lines == 20_000
 
 
 def test_a_pipe_is_read_like_a_file(text):
@@ -222,8 +240,20 @@ def test_a_full_disk_under_the_output(text, arguments):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize("arguments", ["page {}", "tables", "--help", "--version"])
+def test_what_is_printed_into_a_closed_output_is_not_said_to_be_done(text, arguments):
+    command = [*program.PROGRAM, *arguments.format(text).split()]
+    done = subprocess.run(
+        ["sh", "-c", 'exec "$@" >&-', "sh", *command],
+        check=False, stderr=subprocess.PIPE, encoding="utf-8",
+    )  # fmt: skip
+    assert done.returncode == 1
+    wanted = "vbraille: the output is closed; give it a file, or /dev/null"
+    assert done.stderr.splitlines()[-1] == wanted
+
+
 def test_closed_streams_are_no_fault(text):
-    shell = 'exec "$@" <&- >&- 2>&-'
+    shell = 'exec "$@" <&- >/dev/null 2>&-'
     done = subprocess.run(["sh", "-c", shell, "sh", *program.PROGRAM, "page", text], check=False)
     assert done.returncode == 0
     shell = 'exec "$@" 2>&-'

@@ -92,14 +92,16 @@ def test_a_hand_that_is_at_the_end_between_two_ticks_goes_on(call, text):
 def test_nothing_in_a_text_moves_the_cursor(call, text):
     text.write_bytes(b"red \x1b[31m\n")
     said = call("read", text, *FAST)
-    assert "text: red \\x1b[31m\n" in said.out
+    assert "text: red <escape>[31m\n" in said.out
     assert "\x1b" not in said.out
 
 
 def check_plain(terminal):
-    """Nothing was printed but lines."""
-    assert not re.search(r"[^\n\x20-\x7e\u00a0-\U0010ffff\r]", terminal.printed)
-    assert not re.search(r"\r(?!\n)", terminal.printed)
+    """Nothing was printed but lines; pasted text is marked while keys are taken, and no longer."""
+    on, off = terminal.printed.find("\x1b[?2004h"), terminal.printed.find("\x1b[?2004l")
+    assert 0 <= on < off
+    assert not re.search(r"[^\n\x20-\x7e\u00a0-\U0010ffff\r]", terminal.lines)
+    assert not re.search(r"\r(?!\n)", terminal.lines)
 
 
 def test_keys_at_a_terminal(tmp_path, text):
@@ -132,20 +134,87 @@ def test_keys_at_a_terminal(tmp_path, text):
         press(" ", "paused")
         press(" ", "reading")
         press("x", "no command: 'x'; h says the keys")
-        press("n\x1b[Bn", "last line")
-        press("\x1b[A\x1bOAp", "first line")
-        press("\x1b[15~\x1b[1;5Cé", "no command: 'é'; h says the keys")
-        assert "~" not in terminal.printed  # keys that stand for nothing are passed over whole
+        press("n", "line: 2")
+        press("\x1b[B", "line: 3")
+        press("n", "last line")
+        press("\x1bOA", "line: 2")
+        press("\x1b[A", "line: 1")
+        press("p", "first line")
+        press("\x1b[15~", "no command: 'f5'; h says the keys")
+        press("\x1b[1;5C", "no command: 'ctrl-right'; h says the keys")
+        press("\x1b[99~é", "no command: 'é'; h says the keys")
+        assert "~" not in terminal.printed  # a sequence that stands for no key is passed over whole
+        press("\x1b[200~nq\nq\x1b[201~", "paste: text that is pasted is passed over; type the keys")
         press("\x04", "no command: '\\x04'; h says the keys")
         terminal.type("q")
         assert terminal.end() == 0
         assert terminal.settings() == terminal.before
-        *_, summary = terminal.printed.splitlines()
+        *_, summary = terminal.lines.splitlines()
         assert re.fullmatch(SUMMARY, summary)
         assert summary.startswith("summary: lines 5,")
-        for label in ("line: ", "cells: ", "text: "):  # no echo unless asked for
+        for label in ("cells: ", "text: "):  # no echo unless asked for
             assert label not in terminal.printed
         check_plain(terminal)
+
+
+def test_a_key_in_two_pieces_is_one(text):
+    with program.Terminal("read", text, "--advance", "key") as terminal:
+        terminal.until("h says the keys")
+        terminal.type_apart([b"\xc3", b"\xa9"])
+        terminal.until("no command: 'é'; h says the keys")
+        terminal.type_apart([b"\x1b[", b"B"])
+        terminal.until("line: 2\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_standard_input_is_read_while_keys_come_from_the_terminal(text):
+    piped = f"cat {text} | {' '.join(program.PROGRAM)} read - --advance key --echo text"
+    with program.Terminal(piped, program=["sh", "-c"]) as terminal:
+        terminal.until("text: one two three\r\nh says the keys\r\n")
+        assert terminal.settings() != terminal.before
+        terminal.type("n")
+        terminal.until("line: 2\r\ntext: four five six\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+        assert terminal.settings() == terminal.before
+        check_plain(terminal)
+
+
+def test_a_text_can_be_typed():
+    with program.Terminal("read", "-", "--advance", "key", "--echo", "text") as terminal:
+        terminal.until("type the text; Ctrl-D on an empty line ends it\r\n")
+        terminal.type("one\n\ntwo\n\x04")
+        terminal.until("h says the keys")
+        terminal.type("n")
+        terminal.until("line: 2\r\ntext: two\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_standard_input_is_read_without_a_terminal_too(text):
+    for command in (("read", *FAST, "--echo", "text"), ("page", "--format", "text")):
+        with text.open() as stdin:
+            done = program.run(*command, "-", "--lines", "2", stdin=stdin)
+        assert done.returncode == 0
+        assert "four five six\n" in done.stdout
+    for command in ("read", "page"):
+        done = program.run(command, "-")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == "vbraille: standard input is empty; give a text file\n"
+
+
+def test_a_line_of_one_cell_is_said_in_the_singular(call, text):
+    done = call("read", text, *FAST, "--travel", "18", "--lines", "1")
+    assert done.err == "line width: 1 cell\n"
+
+
+def test_help_says_the_keys_and_how_a_slow_hand_is_called():
+    done = program.run("read", "--help")
+    assert done.returncode == 0
+    for command in COMMANDS:
+        assert re.search(rf"^  \S.*  {re.escape(command.help)}$", done.stdout, re.MULTILINE)
+    assert "slow" in done.stdout
 
 
 def test_a_key_brings_the_next_line_and_nothing_else_does(text):
@@ -158,7 +227,7 @@ def test_a_key_brings_the_next_line_and_nothing_else_does(text):
         terminal.until("line: 2\r\ntext: two\r\n")
         terminal.type("\x03")  # Ctrl-C
         assert terminal.end() == 1
-        assert terminal.printed.endswith("\r\nvbraille: stopped\r\n")
+        assert terminal.lines.endswith("\r\nvbraille: stopped\r\n")
         assert terminal.settings() == terminal.before
         check_plain(terminal)
 

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
+from vbraille import __version__
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 
@@ -137,16 +139,41 @@ def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     )
 
 
+def test_the_page_is_laid_out_for_the_travel_that_there_is(tmp_path, text):
+    with simulated(tmp_path, "--travel", "60") as (spec, _):
+        done = program.run("read", text, "--device", spec)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == "line width: 4 cells\n"
+        said = [line for line in done.stdout.splitlines() if line.startswith("text: ")]
+        assert " ".join(line.removeprefix("text: ") for line in said[:3]) == "one two three"
+        narrower = program.run("read", text, "--device", spec, "--travel", "50", "--lines", "1")
+        assert narrower.returncode == 0, narrower.stderr
+        assert narrower.stderr == "line width: 3 cells\n"
+
+
+def test_the_page_is_laid_out_for_the_actuators_that_there_are(tmp_path, text):
+    with simulated(tmp_path, "--model", "vbd") as (spec, _):
+        done = program.run("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == "line width: 28 cells\n"
+        other = program.run("read", text, "--device", spec, "--mapping", "paired")
+        assert other.returncode == 2
+        assert other.stderr == (
+            "vbraille: the VBD has one row of actuators; --dot-row chooses dots\n"
+        )
+
+
 def test_a_device_that_does_not_fit_the_page(tmp_path, text):
-    with simulated(tmp_path) as (spec, _):
+    with simulated(tmp_path, "--travel", "200") as (spec, _):
         for options, sentence in (
+            (("--travel", "300"), "goes 200 mm and --travel asks for 300 mm; leave --travel out"),
             (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
             (("--rate", "2000"), "choose --rate 1000 or less"),
         ):
             done = program.run("read", text, "--device", spec, *options)
             assert done.returncode == 2
             assert sentence in done.stderr
-            assert len(done.stderr.splitlines()) == 2  # the line's width, and the sentence
+            assert len(done.stderr.splitlines()) == 1
 
 
 def test_a_port_that_is_not_there(text):
@@ -155,23 +182,117 @@ def test_a_port_that_is_not_there(text):
     assert "there is no port /dev/nothing" in done.stderr
 
 
+# Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
+SHORT = """
+from vbraille.devices.base import Sample
+from vbraille.devices.motion import Way
+from vbraille.devices.simulated import SimulatedDevice
+
+class Hand:
+    def read_line(self, start_mm, end_mm):
+        way = Way(start_mm)
+        for _ in range(4):
+            way.move(end_mm, 900.0)
+            way.move(start_mm, 900.0)
+        return way.motion()
+
+class Short(SimulatedDevice):
+    def __init__(self, address, wanted):
+        super().__init__(wanted, hand=Hand())
+        self.taking = address != "refusing"
+
+    def read(self):
+        sample = super().read()
+        return Sample(sample.time_ns, min(sample.x_mm, 60.0))
+"""
+
+
+def test_a_line_that_the_carriage_cannot_finish_ends_the_reading_where_nobody_can_act(
+    tmp_path, text
+):
+    driver = drivers.install(tmp_path, "short", "Short", SHORT)
+    done = program.run("read", text, "--device", "short:", "--rate", "500", env=driver)
+    assert done.returncode == 1
+    assert "waiting: the finger turns back at 65 mm, and line 1 ends at" in done.stdout
+    assert done.stderr.splitlines()[1:] == [
+        "vbraille: line 1 cannot be read to its end: the finger turns back at 65 mm each time, and "
+        "the line ends at 140 mm; see what is in the carriage's way, or give a shorter --travel"
+    ]
+    with Terminal(
+        "read", text, "--device", "short:", "--rate", "500", PYTHONPATH=driver["PYTHONPATH"]
+    ) as terminal:
+        terminal.until("waiting: the finger turns back at 65 mm.* or n brings the next line\r\n")
+        terminal.type("n")
+        terminal.until("line: 2")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_a_device_that_takes_nothing_is_not_read_on(tmp_path, text):
+    driver = drivers.install(tmp_path, "short", "Short", SHORT)
+    text.write_text("a\n\nb\n")
+    with program.start(
+        "read", text, "--device", "short:refusing", env=driver, text=True
+    ) as process:
+        said = [process.stdout.readline()]
+        while not said[-1].startswith("waiting: "):
+            assert process.poll() is None, said
+            said.append(process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        said += process.stdout.readlines()
+    assert "line: 1\n" in said
+    assert "line: 2\n" not in said
+    assert [line for line in said if line.startswith("waiting: ")] == [
+        "waiting: the device takes no frames, so that nothing is felt; switch it off and on, "
+        "and line 1 goes on\n"
+    ]
+
+
 def test_device_info_and_check(tmp_path):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
         told = program.run("device", "info", spec)
         assert told.returncode == 0
-        assert told.stdout.splitlines()[:2] == ["name: simulated VBD", "actuators: 1 row of 12"]
+        assert told.stdout.splitlines() == [
+            "name: simulated VBD",
+            "actuators: 1 row of 12",
+            "pitch: 0.7 mm along the line, 0.7 mm across",
+            "levels: 1024",
+            "rest side: left",
+            "travel: 300 mm",
+            "encoder: 200 counts a mm, absolute",
+            "rate: 1000 Hz",
+            f"firmware: {__version__}",
+            "slew: without a limit",
+            "disabled actuators: none",
+            "inverted actuators: none",
+        ]
         other = program.run("device", "info", spec, "--model", "stress2")
         assert other.returncode == 2
         checked = program.run("device", "check", spec)
     said = checked.stdout.splitlines()
     swung = [line for line in said if line.startswith("actuator: ")]
     assert swung == [f"actuator: row 1, column {n}" for n in range(1, 13)]
-    assert re.search(r"^rate: 1000 Hz, \d+ of \d+ ticks late$", checked.stdout, re.MULTILINE)
-    assert re.search(r"^round trip: median \d+\.\d\d ms, ", checked.stdout, re.MULTILINE)
-    assert "corrupt" in checked.stdout or "bad CRC: 0" in checked.stdout
+    for measured in (
+        r"rate: 1000 Hz, \d+ of \d+ ticks late",
+        r"clock: \d\.\d{3} s pass on it in a second, 0.98 to 1.02 s are allowed",
+        r"place: [\d.]+ to [\d.]+ mm from the left stop, of 300 mm; 2 mm beyond .*",
+        r"round trip: median \d+\.\d\d ms, .*",
+        r"bad CRC: 0",
+        r"watchdog: tripped \d of 3 times, median [\d.]+ ms after the last frame, .* 71 ms are .*",
+    ):
+        assert re.search(f"^{measured}$", checked.stdout, re.MULTILINE), checked.stdout
     # The machine at hand may stall: what the verdict is, is not tested; that there is one, is.
-    assert said[-1].startswith("verdict: ")
+    assert said[-1].startswith(("verdict: fit to be read on", "verdict: not fit to be read on: "))
     assert checked.returncode == (0 if said[-1] == "verdict: fit to be read on" else 1)
+
+
+def test_a_device_without_a_watchdog_is_not_fit_to_be_read_on(tmp_path):
+    with simulated(tmp_path, "--model", "vbd", "--defect", "no-watchdog") as (spec, _):
+        checked = program.run("device", "check", spec)
+    verdict = checked.stdout.splitlines()[-1]
+    assert verdict.startswith("verdict: not fit to be read on: ")
+    assert "its watchdog does not trip when no frame comes" in verdict
+    assert (checked.returncode, checked.stderr) == (1, "")
 
 
 def test_device_list_and_a_simulated_device_without_a_model():

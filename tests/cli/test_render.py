@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 import signal
 import subprocess
 
@@ -17,6 +18,7 @@ from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.render.reference import deflections
 from vbraille.render.renderer import Renderer
 from vbraille.translate import Book, Document, Table
+from vbraille.wording import count
 
 RECORDED = "t_s,x_mm\n" + "".join(f"{t / 10},{x}\n" for t, x in enumerate((-9, 40, 155, 20, -11)))
 
@@ -108,9 +110,8 @@ def test_the_file_holds_all_that_was_rendered(
         again, twin = from_the_file_alone(file)
     np.testing.assert_array_equal(frames, again)
     np.testing.assert_allclose(frames, twin, rtol=0, atol=1e-6)
-    assert said.out == (
-        f"rendered: {len(masks)} lines, {t_s.size} frames, {t_s.size / rate:.1f} s of reading\n"
-    )
+    lines, seconds = count(len(masks), "line"), f"{t_s.size / rate:.1f} s"
+    assert said.out == f"rendered: {lines}, {t_s.size} frames, {seconds} of reading\n"
 
 
 def test_options_are_in_the_file(call, tmp_path, text):
@@ -131,7 +132,7 @@ def test_options_are_in_the_file(call, tmp_path, text):
 def test_a_hand_s_chances_come_from_the_seed(call, tmp_path, text):
     def places(seed):
         out = tmp_path / "out.h5"
-        options = ("--out", out, "--hand", "fluent", "--lines", "1", "--rate", "100")
+        options = ("--out", out, "--force", "--hand=fluent", "--lines=1", "--rate=100")
         assert call("render", text, *options, "--seed", seed).code == 0
         with h5py.File(out) as file:
             return file["x_mm"][:].tolist()
@@ -141,7 +142,7 @@ def test_a_hand_s_chances_come_from_the_seed(call, tmp_path, text):
 
 
 def test_progress_in_lines(call, tmp_path, texts):
-    arguments = ("render", texts / "english.txt", "--out", tmp_path / "out.h5")
+    arguments = ("render", texts / "english.txt", "--out", tmp_path / "out.h5", "--force")
     fast = ("--hand", "sweep:1000", "--rate", "100")
     whole = call(*arguments, *fast, "--plain")
     tenths = [f"{tenth}0 percent" for tenth in range(1, 10)]
@@ -159,7 +160,7 @@ def test_progress_in_lines(call, tmp_path, texts):
 
 
 def test_texture_that_passes_the_filters_is_told(call, tmp_path, text):
-    arguments = ("render", text, "--out", tmp_path / "out.h5", "--lines", "1", "--hand")
+    arguments = ("render", text, "--force", "--out", tmp_path / "out.h5", "--lines=1", "--hand")
     assert "below 74 mm/s it is felt" in call(*arguments, "sweep:80").err
     assert "speed" not in call(*arguments, "sweep:70").err
     assert "speed" not in call(*arguments, "sweep:80", "--texture", "0").err
@@ -173,6 +174,44 @@ def old(call, tmp_path, text):
     return out, out.read_bytes()
 
 
+def test_a_file_that_is_there_is_replaced_only_if_told_so(old, call, text):
+    out, before = old
+    said = call("render", text, "--out", out, "--lines", "2")
+    assert (said.code, said.out) == (2, "")
+    wanted = f"vbraille: {out} is there already; choose another name, or replace it by --force"
+    assert said.err.splitlines()[-1] == wanted
+    assert out.read_bytes() == before
+    assert call("render", text, "--out", out, "--lines", "2", "--force").code == 0
+    assert out.read_bytes() != before
+
+
+def test_frames_are_compressed_and_read_back_the_same(call, tmp_path, text):
+    out = tmp_path / "out.h5"
+    assert call("render", text, "--out", out, "--hand", "device", "--texture", "0.5").code == 0
+    with h5py.File(out) as file:
+        grown = [file[name] for name in ("t_s", "x_mm", "line", "frames", "page/cells")]
+        assert {dataset.compression for dataset in grown} == {"gzip"}
+        assert out.stat().st_size < 0.2 * sum(dataset.nbytes for dataset in grown)
+        again, _ = from_the_file_alone(file)
+        np.testing.assert_array_equal(file["frames"][:], again)
+
+
+def test_a_long_recording_is_estimated_before_it_is_written(call, tmp_path, texts):
+    arguments = ("render", texts / "english.txt", "--out", tmp_path / "out.h5", "--force")
+    said = call(*arguments, "--hand", "sweep:1000", "--rate", "10000", "--dot-width", "2")
+    (sentence,) = [line for line in said.err.splitlines() if line.startswith("estimate: ")]
+    millions, minutes, size = re.fullmatch(
+        r"estimate: about ([0-9.]+) million frames, ([0-9]+) min of reading, "
+        r"([0-9.]+) MB, [0-9]+ s of work",
+        sentence,
+    ).groups()
+    frames, seconds = map(float, re.search(r"([0-9]+) frames, ([0-9.]+) s", said.out).groups())
+    assert float(millions) == pytest.approx(frames / 1e6, rel=0.5)
+    assert float(minutes) == pytest.approx(seconds / 60, rel=0.6)
+    assert float(size) == pytest.approx((tmp_path / "out.h5").stat().st_size / 1e6, rel=0.5)
+    assert "estimate" not in call(*arguments, "--hand", "sweep:1000").err
+
+
 def files_in(folder):
     return sorted(path.name for path in folder.iterdir() if path.suffix != ".txt")
 
@@ -184,7 +223,7 @@ def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, t
         limited = f'ulimit -f {blocks}; exec "$@"'
         done = subprocess.run(
             ["sh", "-c", limited, "sh", *program.PROGRAM, "render", text, "--out", out,
-             "--hand", "sweep:1000"],
+             "--force", "--hand", "sweep:1000"],
             capture_output=True, check=False, encoding="utf-8", timeout=program.PATIENCE_S,
         )  # fmt: skip
         assert done.returncode == 1
@@ -199,7 +238,7 @@ def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, t
 def half_done(texts, out):
     """Start a long run, and wait until a part of it is written."""
     process = program.start(
-        "render", texts / "english.txt", "--out", out, "--hand", "sweep:200", "--plain"
+        "render", texts / "english.txt", "--out", out, "--force", "--hand=sweep:200", "--plain"
     )
     for line in process.stderr:
         if line == b"10 percent\n":
@@ -234,7 +273,10 @@ def test_a_killed_run_leaves_the_old_file_and_the_next_run_cleans_up(old, call, 
         process.kill()
     assert out.read_bytes() == before
     assert files_in(tmp_path) == [".out.h5.partial", "out.h5"]
-    assert call("render", tmp_path / "text.txt", "--out", out, "--hand=sweep:1000").code == 0
+    assert (
+        call("render", tmp_path / "text.txt", "--out", out, "--force", "--hand=sweep:1000").code
+        == 0
+    )
     assert files_in(tmp_path) == ["out.h5"]
     assert out.read_bytes() == before  # the same run as before
 

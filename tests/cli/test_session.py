@@ -1,6 +1,7 @@
 """``vbraille session``: plans, sessions, tables and what is said of them."""
 
 import csv
+import hashlib
 import io
 import os
 import re
@@ -10,12 +11,14 @@ import subprocess
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.cli import program
 from tests.cli.test_session_bad_input import contents
-from tests.sessions.sittings import COMPARED, MINI
+from tests.sessions.sittings import COMPARED, MINI, crash
 from vbraille.sessions.planning.protocol import builtin_names
+from vbraille.sessions.record.traces import read_trace
 
 WHO = ("--participant", "P07")
 PAPER = MINI.replace('model = "vbd"', 'model = "vbd"\nmedium = "paper"')
@@ -93,6 +96,21 @@ def test_a_seed_that_was_drawn_is_said_and_makes_the_plan_again(call):
     assert other.out != drawn.out
 
 
+def test_participants_have_hands_of_their_own(tmp_path):
+    (tmp_path / "mini.toml").write_text(MINI)
+    places = []
+    for name, who in (("a", "P01"), ("b", "P02"), ("c", "P01")):
+        how = ("--seed", "1", "--answers", "simulated", "--hand", "fluent", "--fast")
+        run = program.run(
+            "session", "run", tmp_path / "mini.toml", "--participant", who, *how,
+            "--out", tmp_path / name,
+        )  # fmt: skip
+        assert run.returncode == 0, run.stderr
+        places.append(read_trace(tmp_path / name / "trace-001.gz").ticks["x_mm"])
+    assert (places[0] == places[2]).all()
+    assert not np.array_equal(places[0], places[1])
+
+
 def test_the_strings_of_a_plan_can_be_embossed(call):
     said = call("session", "plan", "control", *WHO, "--seed", "3", "--brf")
     assert said.code == 0
@@ -111,7 +129,10 @@ def test_a_session_says_what_happens_and_has_its_files(ended):
     assert (said.returncode, said.stderr) == (0, "")
     lines = said.stdout.splitlines()
     assert lines[0] == f"session: {folder}"
-    assert lines[-1] == "end: all trials are done; 4 of 4 have answers"
+    assert lines[-2] == "end: all trials are done; 4 of 4 have answers"
+    journal = (folder / "journal.jsonl").read_bytes()
+    sum_of = hashlib.sha256(journal).hexdigest()
+    assert lines[-1] == f"record: {len(journal.splitlines())} events, SHA-256 {sum_of}"
     assert [line[:17] for line in lines if line.startswith("answer")] == [
         f"answer: trial {n} o" for n in range(1, 5)
     ]
@@ -130,7 +151,8 @@ def test_check_says_what_is_whole(call, folder):
         r"plan: 4 trials, all design rules hold\n"
         r"journal\.jsonl: \d+ events, whole\n"
         r"trace-001\.gz: \d+ ticks, 0 missing, 0 deadlines late\n"
-        r"answers: 4 of 4; the session is ended\n",
+        r"answers: 4 of 4; the session is ended\n"
+        r"record: \d+ events, SHA-256 [0-9a-f]{64}\n",
         said.out,
     )
     assert contents(folder) == before
@@ -138,7 +160,7 @@ def test_check_says_what_is_whole(call, folder):
 
 def test_what_a_crash_cut_short_is_said_and_all_else_is_clean(call, folder):
     path = folder / "journal.jsonl"
-    path.write_bytes(path.read_bytes()[:-200])
+    path.write_bytes(path.read_bytes()[:-200])  # in the last line, which no trace was written after
     said = call("session", "check", folder)
     assert (said.code, said.err) == (0, "")
     assert "journal.jsonl: its last line was cut short, " in said.out
@@ -157,7 +179,9 @@ def test_damage_is_said_by_all_and_mended_by_none(call, folder, tmp_path):
     said = call("session", "check", folder)
     assert (said.code, said.err) == (1, "")
     assert f"fault: journal.jsonl: damaged, {what}; the {second + 1} events before it" in said.out
-    assert "answers: 2 of 4" in said.out
+    assert "after it, which session export --salvage has too" in said.out
+    assert said.out.count("fault: ") == 1
+    assert "answers: 4 of 4" in said.out
 
     said = call("session", "resume", folder)
     assert (said.code, said.out) == (1, "")
@@ -165,7 +189,7 @@ def test_damage_is_said_by_all_and_mended_by_none(call, folder, tmp_path):
     assert f"the {second + 1} events before it are whole, and nothing was changed" in said.err
 
     said = call("session", "export", folder, "--out", tmp_path / "t.csv")
-    assert (said.code, said.out) == (1, f"written: {tmp_path}/t.csv, 4 rows\n")
+    assert (said.code, said.out.splitlines()[0]) == (1, f"written: {tmp_path}/t.csv, 4 rows")
     assert said.err == f"vbraille: exported is what is whole; journal.jsonl is damaged, {what}\n"
     table = list(csv.DictReader(io.StringIO((tmp_path / "t.csv").read_text())))
     assert [row["answered"] != "" for row in table] == [True, True, False, False]
@@ -197,13 +221,15 @@ def test_a_missing_plan_is_said_and_nothing_goes_on_without(call, folder):
 
 def test_tables_can_always_be_made_again_byte_for_byte(call, folder, tmp_path):
     printed = call("session", "export", folder)
-    assert (printed.code, printed.err) == (0, "")
+    assert printed.code == 0
+    assert re.fullmatch(r"record: \d+ events, SHA-256 [0-9a-f]{64}\n", printed.err)
     for name in ("one", "two"):
         said = call("session", "export", folder, "--out", tmp_path / f"{name}.csv")
-        assert (said.code, said.out) == (0, f"written: {tmp_path}/{name}.csv, 4 rows\n")
+        assert (said.code, said.err) == (0, "")
+        assert said.out == f"written: {tmp_path}/{name}.csv, 4 rows\n{printed.err}"
         assert (tmp_path / f"{name}.csv").read_text() == printed.out
         said = call("session", "export", folder, "--bids", "--out", tmp_path / name)
-        assert (said.code, said.err, said.out.count("written: ")) == (0, "", 5)
+        assert (said.code, said.err, said.out.count("written: ")) == (0, "", 10)
     sets = [{p.relative_to(tmp_path / n): c for p, c in contents(tmp_path / n).items()}
             for n in ("one", "two")]  # fmt: skip
     assert sets[0] == sets[1]
@@ -228,7 +254,7 @@ def test_texture_and_contrast_that_are_given_are_in_the_record(call, tmp_path):
 @pytest.mark.skipif(bool(PLAIN) and not shutil.which("setpriv"), reason="root may write anywhere")
 def test_a_directory_that_is_read_only_is_checked_and_exported_and_not_resumed(folder):
     path = folder / "journal.jsonl"
-    path.write_bytes(path.read_bytes()[:-400])
+    crash(folder, path.read_bytes().index(b'"event":"end"'))
     before = contents(folder)
     for each in folder.iterdir():
         each.chmod(0o444)
@@ -241,7 +267,7 @@ def test_a_directory_that_is_read_only_is_checked_and_exported_and_not_resumed(f
         )  # fmt: skip
     folder.chmod(0o755)
     assert [done.returncode for done in said.values()] == [0, 0, 2]
-    assert said["check"].stderr == said["export"].stderr == ""
+    assert said["check"].stderr == ""
     assert said["resume"].stderr.count("\n") == 1
     assert "journal.jsonl cannot be opened for writing: Permission denied" in said["resume"].stderr
     assert contents(folder) == before

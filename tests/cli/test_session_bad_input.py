@@ -87,6 +87,10 @@ def test_protocols_of_no_use(call, room, old, new, pattern):
     ("options", "pattern"),
     [
         ("--answers typed", "--fast is for answers that are not typed; give --answers simulated"),
+        (
+            "--device serial:/dev/ttyACM0 --hand device",
+            "^--hand is for the simulated device, and serial:/dev/ttyACM0 is moved by a",
+        ),
         ("--device serial:/dev/ttyACM0", "--fast is for the simulated device; leave out --device"),
         ("--answers simulated:loud", "noise is 'loud'; give a number, such as simulated:0.2"),
         ("--answers simulated:-1", "noise is -1; it must be 0 to"),
@@ -193,7 +197,7 @@ def test_an_undone_answer_is_not_counted_twice(call, tmp_path):
 
 
 def of_a_newer_format(room):
-    (room / journal.NAME).write_bytes(first_lines([{"event": "session", "format": 2, "t_s": 0}]))
+    (room / journal.NAME).write_bytes(first_lines([{"event": "session", "format": 3, "t_s": 0}]))
 
 
 def of_something_else(room):
@@ -213,7 +217,7 @@ def without_its_journal(room):
 @pytest.mark.parametrize(
     ("made", "code", "pattern"),
     [
-        (of_a_newer_format, 2, r"is a session of format 2, and this vbraille knows format 1; use"),
+        (of_a_newer_format, 2, r"is a session of format 3, and this vbraille knows format 2; use"),
         (of_something_else, 2, r"journal\.jsonl is not the journal of a session"),
         (of_no_event, 1, r"is damaged in its first line; there is nothing to go by"),
         (without_its_journal, 1, r"has lost its journal\.jsonl; there is nothing to go by"),
@@ -240,8 +244,7 @@ def test_names_that_no_directory_has(call):
 def test_where_no_table_is_written(call, tmp_path):
     Session(tmp_path / "s")
     (tmp_path / "mine").write_text("mine")
-    (tmp_path / "sub-P1" / "beh").mkdir(parents=True)
-    (tmp_path / "sub-P1" / "beh" / "sub-P1_task-mini_beh.json").write_text("mine")
+    assert call("session", "export", tmp_path / "s", "--bids", "--out", tmp_path / "set").code == 0
     before = contents(tmp_path)
     long = tmp_path / ("a" * 300)
     for options, pattern in [
@@ -254,7 +257,7 @@ def test_where_no_table_is_written(call, tmp_path):
         (("--out", long), "cannot be written: File name too long"),
         (("--bids",), "--bids needs a directory; give one with --out"),
         (("--bids", "--out", ""), "--bids needs a directory"),
-        (("--bids", "--out", tmp_path), "_beh.json is there already; give another directory"),
+        (("--bids", "--out", tmp_path / "set"), "is there already, as .*; give another directory"),
         (("--bids", "--out", tmp_path / "mine"), "mine cannot be written: Not a directory"),
         (("--bids", "--out", "/proc/t"), "/proc/t cannot be written: No such file or directory"),
         (("--bids", "--out", tmp_path / "new" / ("a" * 300)), "cannot be written: File name too"),

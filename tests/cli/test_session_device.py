@@ -94,6 +94,19 @@ def test_every_frame_that_was_sent_is_made_again_bit_for_bit(tmp_path):
     assert ((ticks["share"] > 0) & (ticks["share"] < 1)).sum() > 20
 
 
+def test_a_carriage_too_short_for_the_strings_is_said_before_anything_is_begun(tmp_path, mini):
+    with simulated(tmp_path, "--model", "vbd", "--travel", "20") as (spec, _):
+        done = program.run(
+            *session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
+        )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
+        "vbraille: the carriage of simulated VBD goes 20 mm and the longest string of mini needs "
+        "45.1 mm; choose another --device or shorter strings\n"
+    )
+    assert not (tmp_path / "s").exists()
+
+
 def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_path, mini):
     options = ("--model", "vbd", "--hand", "sweep:60", "--travel", "60")
     with simulated(tmp_path, *options) as (spec, device):
@@ -112,6 +125,24 @@ def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_pa
     assert [row["faults"] for row in table] == ["the device is silent", ""]
     run = events(tmp_path / "s", "run")[0]
     assert (run["device"]["levels"], run["spec"]) == (1024, spec)
+    assert whole(tmp_path / "s")
+
+
+@pytest.mark.parametrize("repeats", [True, False])
+def test_a_trial_in_which_the_array_rested_is_marked(tmp_path, mini, repeats):
+    mini.write_text(mini.read_text() + f"[faults]\nrepeat = {str(repeats).lower()}\n")
+    # It takes no frames and says nothing for 80 ms of each second: too short to be silence.
+    options = ("--model", "vbd", "--hand", "sweep:30", "--travel", "60", "--stall", "80ms")
+    with simulated(tmp_path, *options) as (spec, _):
+        arguments = session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
+        process = program.start(*arguments, text=True)
+        until(process, "cue: trial 1")
+        how = "is repeated" if repeats else "goes on"
+        until(process, f"fault: the array went to rest by itself; trial 1 of 2 {how}")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=program.PATIENCE_S)
+    faults = events(tmp_path / "s", "fault")
+    assert {fault["what"] for fault in faults} == {"the array went to rest by itself"}
     assert whole(tmp_path / "s")
 
 

@@ -21,6 +21,7 @@ from tests.cli.test_session_bad_input import contents
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.replay import frames
+from vbraille.sessions.record.traces import read_trace
 from vbraille.translate.cells import Cells
 
 WRITTEN = Path(__file__).parent.parent / "written-by"
@@ -112,6 +113,8 @@ def test_a_session_checks_as_it_did(call, folder):
     assert (said.code, said.err) == (0, "")
     today = said.out.splitlines()
     assert [line for line in golden(folder, "check.txt").splitlines() if line not in today] == []
+    untied = load(folder).told.format == 1 and bool(list(folder.glob("trace-*.gz")))
+    assert ("traces: of format 1, which does not tie them to the journal" in said.out) == untied
 
 
 @pytest.mark.parametrize("folder", SESSIONS, ids=named)
@@ -169,6 +172,9 @@ def test_a_session_is_gone_on_with_in_its_own_format(call, folder, tmp_path):
             assert after == before
     formats = load(folder).head["format"], load(copy).told.events[0]["format"]
     assert formats[0] == formats[1]
+    if formats[1] == 1:
+        assert not any("up_s" in event for event in load(copy).told.events)
+        assert not any(read_trace(path).ties for path in copy.glob("trace-*.gz"))
 
 
 @pytest.mark.parametrize("folder", [f for f in SESSIONS if ended(f)], ids=named)

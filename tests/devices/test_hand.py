@@ -272,6 +272,9 @@ def test_a_spec_gives_its_hand(tmp_path):
     assert parse_hand("sweep:60") == Sweep(60.0)
     assert isinstance(device, HumanHand)
     assert device.habits == DEVICE
+    slow = parse_hand("slow", 7)
+    assert isinstance(slow, HumanHand)
+    assert slow.habits == DEVICE
     assert isinstance(fluent, HumanHand)
     assert fluent.habits == FLUENT
     assert isinstance(recorded, Recorded)
@@ -289,7 +292,7 @@ def test_a_sweep_spec_out_of_range_names_the_range(speed):
     "spec", ["", "sweeps", "device:", "device:3", "recorded", "recorded:", ":"]
 )
 def test_an_unknown_spec_names_the_forms(spec):
-    with pytest.raises(InputError, match="sweep:SPEED in mm/s, device, fluent or recorded:FILE"):
+    with pytest.raises(InputError, match="sweep:SPEED in mm/s, slow, fluent or recorded:FILE"):
         parse_hand(spec)
 
 

@@ -31,7 +31,9 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
         "from dataclasses import replace\n"
         "from vbraille.devices.simulated import SimulatedDevice\n"
         "def make(address, wanted):\n"
-        "    return SimulatedDevice(replace(wanted, name=address, columns=int(address[-1])))\n"
+        "    columns = int(address[-1])\n"
+        "    made = replace(wanted, name=address, columns=columns, rate_hz=1000.0)\n"
+        "    return SimulatedDevice(made)\n"
     )
     monkeypatch.syspath_prepend(str(tmp_path))
     assert metadata.entry_points(group="vbraille.devices", name="other")
@@ -39,6 +41,10 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
         assert device.info.name == "bench8"
     with pytest.raises(InputError, match=r"bench8 has 6 × 8 .*page is for 6 × 10"):
         open_device("other:bench8", info())
+    with open_device("other:bench8", info(), fits=False) as device:  # what is wanted is a wish
+        assert device.info.columns == 8
+    with pytest.raises(InputError, match="made for 1000 frames a second and 2000 are"):
+        open_device("other:bench8", info(rate_hz=2000), fits=False)
 
 
 OTHER = (

@@ -346,22 +346,34 @@ def test_faults_are_in_range(wrong):
         Faults(**wrong)
 
 
-def test_a_link_is_replaced_and_removed_only_while_it_is_ours(tmp_path):
+def test_a_link_is_never_put_over_what_somebody_else_has_made(tmp_path):
     path = tmp_path / "vb0"
-    path.symlink_to("/nowhere")
     link = Link(str(path))
-    link.remove()
-    assert path.is_symlink()
+    path.symlink_to("/nowhere")
+    for _ in range(2):
+        with pytest.raises(InputError, match="vb0 is there already; remove it, or choose another"):
+            link.point("/dev/pts/98")
+        link.remove()
+        assert path.readlink() == Path("/nowhere")
+    path.unlink()
     link.point("/dev/pts/98")
-    link.point("/dev/pts/99")
+    link.point("/dev/pts/99")  # plugged in again, at another port
     assert path.readlink() == Path("/dev/pts/99")
     assert list(tmp_path.iterdir()) == [path]
-    other = Link(str(path))
-    other.point("/dev/pts/97")
+    path.unlink()
+    path.symlink_to("/dev/pts/97")
+    with pytest.raises(InputError, match="is there already"):
+        link.point("/dev/pts/98")
     link.remove()
     assert path.readlink() == Path("/dev/pts/97")
-    other.remove()
-    assert not os.path.lexists(path)
+
+
+def test_a_link_is_removed_by_who_made_it(tmp_path):
+    link = Link(str(tmp_path / "vb0"))
+    link.point("/dev/pts/98")
+    link.remove()
+    link.remove()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_no_descriptor_is_left_when_there_can_be_no_link(tmp_path):

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.devices.hand import DEVICE, FLUENT, HumanHand, Sweep
-from vbraille.reading import EndOfLine
+from vbraille.engine.advance import EndOfLine
 
 SPAN_MM, END_MM = 10.8, 100.0
 

@@ -202,6 +202,41 @@ def test_unpausing_counts_as_motion():
     assert resting[0] == unpaused + 1000  # 5 s after the tick before
 
 
+class Resting(SimulatedDevice):
+    """A device that may go to rest by itself."""
+
+    taking = True
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize("poll_ticks", [1, 40])
+def test_a_device_that_rests_by_itself_is_the_loop_s(poll_ticks):
+    def rest(held):
+        def act(engine):
+            moved = engine.loop.device if isinstance(engine, LocalEngine) else engine.device
+            moved.rested += held
+            moved.taking = not held
+
+        return act
+
+    # At rest in the middle of a line, then in the middle of a fade, then while it is paused.
+    script = [(0, show(full(SHEARED), 1)), (40, rest(True)), (80, rest(False))]
+    script += [(120, rest(True)), (160, rest(False)), (160, show(full(SHEARED), 2))]
+    script += [(200, pause(True)), (240, rest(True)), (280, rest(False)), (320, pause(False))]
+    info = device(SHEARED, None).info
+    moving = Resting(info, time.monotonic_ns, parse_hand("sweep:5", 7))
+    got = run(BatchEngine(moving, 200, poll_ticks), script, 600)
+    clock = ManualClock()
+    loop = LocalEngine(Resting(info, clock.now_ns, parse_hand("sweep:5", 7)), clock, rate_hz=200)
+    want = run(loop, script, got.size)
+    for field in EXACT:
+        np.testing.assert_array_equal(got[field], want[field], field)
+    np.testing.assert_allclose(got["frame"], want["frame"], rtol=0, atol=1e-6)
+    rested = np.flatnonzero(got["flags"] & Flag.RESTED)
+    assert rested.tolist() == [40, 120, 240]
+    assert (np.flatnonzero(got["flags"] & Flag.HELD)[[0, -1]] == [40, 279]).all()
+
+
 def creep(mm_s):
     return straight((0, 0), (20, 20 * mm_s))
 

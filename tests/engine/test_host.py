@@ -97,6 +97,31 @@ def test_a_device_that_cannot_be_opened():
     assert descriptors() == before
 
 
+def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
+    before = descriptors()
+    host = Host("sim:?hand=sweep:100", info(travel_mm=123.0))
+    try:
+        assert host.open() == info(travel_mm=123.0)
+        host.fit(host.info, 7)
+        host.start()
+        host.show(picture((63,) * 7, mapping="sheared"), 1, 60.0)
+        until(host, lambda new: new.size and new["frame"][-1].any())
+    finally:
+        host.close()
+    unused = Host("sim", info())
+    unused.open()
+    unused.close()  # one that waits to be told how long lines are ends, too
+    assert descriptors() == before
+
+
+def test_keys_of_the_terminal_do_not_stop_the_process_that_drives_the_device():
+    with Host("sim:?hand=sweep:100", info(), 26) as host:
+        for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
+            os.kill(host.process_id, number)
+        ticks = host.tally.ticks
+        until(host, lasting(ticks + 100))
+
+
 _PARENT = """
 import sys, time
 from tests.engine.test_host import info, picture

@@ -8,8 +8,9 @@ from vbraille.devices.hand import Sweep
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.page import Layout
-from vbraille.reading import COMMANDS, Echo, Reader
+from vbraille.reading import COMMANDS
 from vbraille.reading.commands import BY_KEY
+from vbraille.reading.reader import Echo, Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.translate import Book, Document, Table
 

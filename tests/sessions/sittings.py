@@ -1,6 +1,7 @@
 """Sessions in this process, as fast as the machine can, with an experimenter of a few lines."""
 
 import re
+import struct
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from vbraille.devices.base import DeviceInfo
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
-from vbraille.sessions.record.folder import create, load, versions
+from vbraille.sessions.record.folder import FORMAT, check_end, create, load, versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import Simulated
@@ -55,6 +56,7 @@ class Person:
     felt: bool = False
     said: list = field(default_factory=list)
     seen: int = 0
+    waited: int = 0
 
     def lines(self, _wait_s):
         if not self.script:
@@ -66,7 +68,8 @@ class Person:
                 self.seen = n + 1
                 self.script.pop(0)
                 return [line]
-        assert len(self.said) < 2000, f"{pattern!r} is never said: {self.said[-20:]}"
+        self.waited += 1
+        assert self.waited < 5000, f"{pattern!r} is never said: {self.said[-20:]}"
         return []
 
     def next(self, *_):
@@ -82,6 +85,7 @@ class Sat:
     played: list
     record: object
     progress: object
+    course: object
 
 
 class Session:
@@ -93,18 +97,22 @@ class Session:
         self.plan = make_plan(self.protocol, participant, seed)
         self.hand = hand
         head = {
-            "format": 1, "protocol": self.protocol.name, "participant": participant,
+            "format": FORMAT, "protocol": self.protocol.name, "participant": participant,
             "seed": seed, "order": self.plan.order, "model": self.protocol.model.name,
             "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
             "hand": hand, "device": "sim", "versions": versions(),
         }  # fmt: skip
         create(folder, self.protocol, self.plan, head)
 
+    def person(self, *script):
+        """A person who types these lines."""
+        return Person(list(script))
+
     def sit(self, *script, engine=BatchEngine, noise=0.0):
-        """Run it: by a person who types these lines, else by a simulated reader."""
-        said, played = [], []
-        person = Person(list(script), said=said)
-        answers = person if script else Simulated(self.protocol, self.plan.seed, noise)
+        """Run it: by a person, or one who types these lines, else by a simulated reader."""
+        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
+        said, played = person.said, []
+        answers = person if script else Simulated(self.protocol, self.plan, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
             array = model.array
@@ -115,9 +123,12 @@ class Session:
             device = open_device(f"sim:?hand={self.hand}&seed=1", info)
             engine = engine(device, poll_ticks=100)
             engine.start()
-            display = OnDevice(engine, self.protocol, self.folder, keeps=not script)
+            display = OnDevice(
+                engine, self.protocol, self.folder, keeps=not script, tie=lambda: journal.durable
+            )
         record = load(self.folder)
         with Journal(self.folder) as journal:
+            check_end(self.folder, journal.told)
             torn = journal.set_torn_aside()
             progress = Progress(self.plan, journal.told.events)
             course = Course(
@@ -134,7 +145,25 @@ class Session:
                     display.close()
         record = load(self.folder)
         progress = Progress(self.plan, record.told.events)
-        return Sat(said, record.told.events, played, record, progress)
+        return Sat(said, record.told.events, played, record, progress, course)
+
+
+def crash(folder, size):
+    """Cut a session's journal, and what of its traces was written after the lines that are gone.
+
+    As a crash of the machine leaves it: what is on the disk was not written before its time.
+    """
+    path = folder / "journal.jsonl"
+    kept = path.read_bytes()[:size]
+    path.write_bytes(kept)
+    for trace in folder.glob("trace-*.gz"):
+        content, end = trace.read_bytes(), 0
+        while end < len(content):
+            length, _, _, _, number = struct.unpack_from("<II2sHI", content, end + 16)
+            if number > kept.count(b"\n"):
+                break
+            end += length
+        trace.write_bytes(content[:end])
 
 
 def of(events, name):

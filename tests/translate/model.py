@@ -12,6 +12,8 @@ NO_BREAK = "\xa0\u2007\u202f"
 ACCENTS = frozenset(map(chr, (*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A)))
 SUSPENDED = ("and", "or", "to", "und", "oder", "bis", "et", "ou")
 PIECE = 8192
+BLANKS_KEPT = 4096
+BULLETS, DASHES = "•‣◦⁃●○■▪*-", "–—+"
 
 
 class Piece(NamedTuple):
@@ -47,6 +49,7 @@ def _struck(text):
 
 def _paragraphs(text):
     done, characters, newlines, broken, gap = [], [], 0, False, False
+    item = 0
     for at, c in enumerate(text):
         if c == "\n" and text[at - 1 : at] == "\r":
             continue
@@ -58,7 +61,13 @@ def _paragraphs(text):
         elif c in BLANKS:
             gap = True
         elif c not in DROPPED:
-            if characters and (broken or newlines > 1):
+            number = _item(text, at)
+            if not characters or broken or newlines > 1:
+                item = number
+                done += [characters] if characters else []
+                characters = []
+            elif newlines and number and _goes_on(number, item, text[characters[-1][1]]):
+                item = number
                 done.append(characters)
                 characters = []
             elif characters and gap and not _joins(text, characters[-1][1], at, newlines):
@@ -68,6 +77,28 @@ def _paragraphs(text):
     return [*done, characters] if characters else done
 
 
+def _item(text, at):
+    """Number of the list item that begins here, -1 for a bullet, -2 for a dash, 0 for none."""
+    first, blank, _ = text[at : at + 6].replace("\t", " ").replace("\xa0", " ").partition(" ")
+    if not blank:
+        return 0
+    if len(first) == 1 and first in BULLETS + DASHES:
+        return -1 if first in BULLETS else -2
+    body, end = first.removeprefix("("), first[-1:]
+    body = body[:-1]
+    if body.isascii() and body.isdigit() and len(body) < 4 and end in ".)":
+        return int(body)
+    if len(body) == 1 and "a" <= body <= "z" and end == ")":
+        return ord(body) - 96
+    return 0
+
+
+def _goes_on(number, item, before):
+    if number in (-1, 1) or before == ":":
+        return True
+    return number == (item if item < 0 else item + 1)
+
+
 def _joins(text, before, after, newlines):
     if newlines != 1:
         return False
@@ -75,7 +106,7 @@ def _joins(text, before, after, newlines):
         return True
     if text[before] not in "-\u2010" or before == 0:
         return False
-    if not (text[before - 1].isalpha() and text[after].isalpha()):
+    if not (text[before - 1].isalnum() and text[after].isalnum()):
         return False
     return text[after : after + 5].split()[0] not in SUSPENDED
 
@@ -96,7 +127,7 @@ def _lines(text):
         elif c in BLANKS:
             blanks.append((" ", at))
         elif c not in DROPPED:
-            characters += [*blanks, ("\xa0" if c in NO_BREAK else c, at)]
+            characters += [*blanks[:BLANKS_KEPT], ("\xa0" if c in NO_BREAK else c, at)]
             blanks = []
     return done[:-1] if empty else done
 

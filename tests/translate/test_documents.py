@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from tests.translate.model import Piece, pieces_of
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.translate import Document, Paragraph
 from vbraille.translate.documents import BLOCK_BYTES
 
@@ -114,11 +114,28 @@ class TestBlocks:
         assert found == pieces_of(text, keep_lines=keep_lines)
 
     def test_a_paragraph_longer_than_many_blocks(self, words):
-        text = made_text(words, 140_000, ends=False)
+        no_items = tuple(word for word in words if word[0].isalpha() and word[-1] not in ").")
+        text = made_text(no_items, 140_000, ends=False)
         found = pieces(document(text.encode()))
         assert found == pieces_of(text)
         assert len(found) > 16
         assert {p.continues for p in found[1:]} == {True}
+
+    def test_a_run_of_blanks_of_any_length_takes_no_memory_and_keeps_the_places(self):
+        blanks = 4_000_000
+        raw = b"x" + b" " * blanks + b"y\nz"
+        for keep_lines in (False, True):
+            gc.collect()
+            tracemalloc.start()
+            found = pieces(document(raw, keep_lines=keep_lines))
+            _, peak = tracemalloc.get_traced_memory()
+            tracemalloc.stop()
+            assert peak < 12 * BLOCK_BYTES * 8
+            shown = "".join(piece.text for piece in found)
+            places = [place for piece in found for place in piece.source]
+            assert shown.split() == (["x", "yz"] if keep_lines else ["x", "y", "z"])
+            letters = [place for place, c in zip(places, shown, strict=True) if c != " "]
+            assert letters == [0, blanks + 1, blanks + 3]
 
     @pytest.mark.parametrize("unit", ["é", "€", "😀", "\r\n", "\r\n\r\n", "x\xad\n", "e\u0301 "])
     def test_what_straddles_a_boundary(self, unit):
@@ -410,8 +427,33 @@ class TestRefused:
         found = Document.open(path)
         assert len(paragraphs(found)) == 30_000
         path.write_text("A paragraph.\n\n" * 100)
-        with pytest.raises(InputError, match="has changed since it was opened; open it again"):
+        with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
             found.paragraph(10_000)
+        found.close()
+
+    def test_a_file_that_becomes_shorter_before_its_end_is_read(self, tmp_path):
+        path = tmp_path / "book.txt"
+        path.write_text("A paragraph.\n\n" * 30_000)
+        found = Document.open(path)
+        assert found.paragraph(10).text == "A paragraph."
+        path.write_text("A paragraph.\n\n" * 15_000)
+        with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
+            paragraphs(found)
+        found.close()
+
+    def test_a_file_that_grows_is_read_as_far_as_it_was_and_it_is_said_once(self, tmp_path):
+        path = tmp_path / "book.txt"
+        path.write_text("A paragraph.\n\n" * 30_000)
+        found = Document.open(path)
+        assert found.paragraph(10).text == "A paragraph."
+        with path.open("a") as file:
+            file.write("More.\n\n" * 100)
+        assert found.note() is None
+        assert {paragraph.text for paragraph in paragraphs(found)} == {"A paragraph."}
+        assert found.note() == (
+            f"{path} has grown since it was opened; open it again to read what was added"
+        )
+        assert found.note() is None
         found.close()
 
 

@@ -14,6 +14,7 @@ from vbraille.analysis import (
     levels,
     motion,
     overtime,
+    remarks,
     tuning,
 )
 from vbraille.analysis.results import Results, Section
@@ -46,7 +47,7 @@ class Options:
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Of bootstraps.
+        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
 
     Raises
     ------
@@ -68,7 +69,7 @@ class Options:
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),
-            ("Intervals", f"95 %; bootstraps with seed {self.seed}"),
+            ("Intervals", f"95 %; random draws with seed {self.seed}"),
         ]
 
 
@@ -86,6 +87,9 @@ def analyse(study: Study, options: Options) -> Results:
         sections += _of_trials(study, study.trials, options, left_out)
     if study.comparisons is not None:
         sections.append(_of_comparisons(study.comparisons, options))
+    if any(sitting.notes for sitting in study.sittings):
+        table = remarks.notes(study.sittings)
+        sections.append(Section("Notes", "What the experimenter wrote down.", (table,)))
     about = (*study.about, *_excluded(left_out), *options.told())
     return Results("Legibility sessions", about, study.warnings, tuple(sections))
 
@@ -117,7 +121,7 @@ def _of_trials(
     places = Places.of(trials)
     scores = of_trials(trials, places, options.factors)
     return [
-        _legibility(trials, places, options),
+        _legibility(trials, places),
         _characters(trials, places),
         _confusions(trials, places, options),
         _errors(places),
@@ -127,9 +131,9 @@ def _of_trials(
     ]
 
 
-def _legibility(trials: Trials, places: Places, options: Options) -> Section:
+def _legibility(trials: Trials, places: Places) -> Section:
     table = legibility.legibility(trials, places)
-    averages = legibility.averages(table, seed=options.seed)
+    averages = legibility.averages(table)
     return Section(
         "Legibility",
         "Who read how much of it right, and how long it took.",
@@ -148,7 +152,7 @@ def _characters(trials: Trials, places: Places) -> Section:
 
 
 def _confusions(trials: Trials, places: Places, options: Options) -> Section:
-    tables: list[Table] = [confusion.transmitted(trials, places)]
+    tables: list[Table] = [confusion.transmitted(trials, places, seed=options.seed)]
     pictures: list[Picture] = []
     for counts, schema, reason in (
         (
@@ -201,7 +205,7 @@ def _motion(study: Study, trials: Trials) -> Section:
 
 
 def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Section:
-    means = levels.level_means(scores, seed=options.seed)
+    means = levels.level_means(scores)
     table, dropped = levels.analyses(scores)
     left_out += dropped
     return Section(

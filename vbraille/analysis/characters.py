@@ -8,8 +8,9 @@ import numpy as np
 
 from vbraille.analysis.averages import over_participants
 from vbraille.analysis.legibility import unequal_notes
-from vbraille.analysis.statistics.intervals import wilson_each
-from vbraille.analysis.tables import Column, Kind, Schema
+from vbraille.analysis.statistics.shares import mean_share
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import name_cell, name_string
 from vbraille.translate.cells import UNICODE_BLANK
 
@@ -23,17 +24,19 @@ if TYPE_CHECKING:
 
 _ABOUT = (
     "Legibility is the mean of the participants' own means, conditions averaged within a "
-    "participant first (Lévesque 2009, tables 3.2 and 3.3; inferred from the print). Pooled is the "
-    "share of all, with Wilson's interval."
+    "participant first (Lévesque 2009, tables 3.2 and 3.3; inferred from the print). The "
+    "interval is of the population's mean share, by a logit-normal model of how people differ; of "
+    "fewer than three participants there is none. Pooled is the share of all."
 )
 _COUNTS = (
     Column("presented", "presented", "how often it was presented", Kind.COUNT),
     Column("correct", "correct", "how often the answer was right", Kind.COUNT),
     Column("participants", "participants", "to how many participants", Kind.COUNT),
     Column("legibility", "legibility (%)", "mean of participants' means", Kind.PERCENT),
-    Column("pooled", "pooled (%)", "correct by presented", Kind.PERCENT),
-    Column("low", "from (%)", "lower end of the 95 % interval of pooled", Kind.PERCENT),
+    Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
     Column("high", "to (%)", "upper end", Kind.PERCENT),
+    Column("pooled", "pooled (%)", "correct by presented", Kind.PERCENT),
+    NOTE_COLUMN,
 )
 CHARACTERS = Schema(
     "characters",
@@ -115,17 +118,23 @@ def _count(
     """Each level, with the values of `_COUNTS`."""
     if not level.size:
         return []
-    levels, participants, means = over_participants(level, correct, participant, condition)
+    levels, own, numbers = over_participants(level, correct, participant, condition)
     index = np.searchsorted(levels, level)
-    shown, right = np.bincount(index), np.bincount(index, correct).astype(np.int64)
-    lows, highs = wilson_each(right, shown)
-    names = [column.name for column in _COUNTS]
-    columns = (shown, right, participants, means, right / shown, lows, highs)
-    found = zip(*(column.tolist() for column in columns), strict=True)
+    shown, right = np.bincount(index).tolist(), np.bincount(index, correct).astype(int).tolist()
     return [
-        (code, dict(zip(names, values, strict=True)))
-        for code, values in zip(levels.tolist(), found, strict=True)
+        (code, {"presented": n, "correct": k, "pooled": k / n} | _share(means, of))
+        for code, n, k, means, of in zip(levels.tolist(), shown, right, own, numbers, strict=True)
     ]
+
+
+def _share(means: NDArray[np.float64], numbers: NDArray[np.int64]) -> Row:
+    """Mean of the participants' means, with its interval or why there is none."""
+    row: Row = {"participants": means.size, "legibility": float(means.sum()) / means.size}
+    try:
+        interval = mean_share(means, numbers)
+    except Unanswerable as reason:
+        return row | {"note": f"no interval: {reason}"}
+    return row | {"low": interval.low, "high": interval.high}
 
 
 def _notes(rows: Sequence[object], places: Places) -> list[str]:

@@ -86,13 +86,15 @@ def dots(table: Table) -> Picture:
     """Legibility by number of dots: Lévesque 2009, fig. 4.8."""
     rows = table.records()
     series = Series(
-        "all", *(tuple(100 * row[n] for row in rows) for n in ("pooled", "low", "high"))
+        "all", *(tuple(_scaled(row[n], 100) for row in rows) for n in ("legibility", "low", "high"))
     )
-    shares = ", ".join(f"{row['dots']}: {to_print(row['pooled'], Kind.PERCENT)} %" for row in rows)
+    shares = ", ".join(
+        f"{row['dots']}: {to_print(row['legibility'], Kind.PERCENT)} %" for row in rows
+    )
     return Picture(
         "dots",
         "Legibility of characters by their number of dots",
-        f"One bar a number of dots, all trials pooled, with 95 % intervals. {shares}.",
+        f"One bar a number of dots, the mean over participants, with 95 % intervals. {shares}.",
         table.name,
         Bars(
             "Legibility by number of dots",
@@ -246,6 +248,9 @@ def choices(table: Table, preferred: Table) -> Iterator[Picture]:
         said = (
             f"The preferred value is {to_print(liked['preferred'], Kind.NUMBER)}, 95 % interval "
             f"{to_print(liked['low'], Kind.NUMBER)} to {to_print(liked['high'], Kind.NUMBER)}."
+            if liked["low"] is not None
+            else f"The preferred value is {to_print(liked['preferred'], Kind.NUMBER)}; "
+            f"{liked['note']}."
             if liked["preferred"] is not None
             else liked["note"]
         )
@@ -285,7 +290,7 @@ def level_means(table: Table) -> Iterator[Picture]:
         yield Picture(
             f"means_{_file_name(factor)}",
             f"Means by {factor}",
-            f"Means over participants, with bootstrap intervals. {said}.",
+            f"Means over participants, with 95 % intervals. {said}.",
             table.name,
             Bars(f"Means by {factor}", factor, tuple(levels), tuple(panels)),
         )

@@ -11,8 +11,9 @@ import numpy as np
 from vbraille.analysis.averages import mean_or_none
 from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.intervals import bootstrap_mean
+from vbraille.analysis.statistics.intervals import Interval, mean_interval
 from vbraille.analysis.statistics.paired import PairedTest, paired_t
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import LeftOut, natural
@@ -29,8 +30,9 @@ MEANS = Schema(
     "level_means",
     "Means of the levels",
     "Over participants' own means; scores are averaged over other factors, and repeated ones "
-    "within the participant; who misses a cell of a level is left out of it. The interval is a "
-    "percentile bootstrap over participants.",
+    "within the participant; who misses a cell of a level is left out of it. The interval is of "
+    "the population's mean: for shares by a logit-normal model of how people differ, for others "
+    "Student's.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -91,15 +93,13 @@ ANOVA = Schema(
 )
 
 
-def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
+def level_means(measures: Sequence[Scores]) -> Table:
     """Mean of every level of every factor.
 
     Parameters
     ----------
     measures
         What is compared.
-    seed
-        Of the bootstrap.
     """
     rows: list[Row] = []
     for scores in measures:
@@ -107,6 +107,7 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
             means = _means(scores, factor)
             for level in sorted(means, key=natural):
                 own = list(means[level].values())
+                trials = _trials(scores, factor, level)
                 row: Row = {
                     "measure": scores.measure,
                     "factor": factor,
@@ -116,7 +117,7 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
                 }
                 notes = _without(scores.participants, means[level])
                 try:
-                    interval = bootstrap_mean(own, seed=seed)
+                    interval = _interval(means[level], trials)
                     row |= {"low": interval.low, "high": interval.high}
                 except Unanswerable as reason:
                     notes.append(f"no interval: {reason}")
@@ -204,6 +205,24 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
         level: {who: float(np.mean(values)) for who, values in of.items() if len(values) == full}
         for level, of in means.items()
     }
+
+
+def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
+    """How many answers each participant gave at a level; None if scores are no shares."""
+    if scores.trials is None:
+        return None
+    columns = (scores.participants, scores.factors[factor], scores.trials)
+    answers: dict[str, int] = {}
+    for who, at, number in zip(*columns, strict=True):
+        if at == level:
+            answers[who] = answers.get(who, 0) + number
+    return answers
+
+
+def _interval(means: dict[str, float], trials: dict[str, int] | None) -> Interval:
+    """Interval of the population's mean, of a share or of anything else."""
+    own = list(means.values())
+    return mean_interval(own) if trials is None else mean_share(own, [trials[who] for who in means])
 
 
 def _pairs(

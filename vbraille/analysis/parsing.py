@@ -30,6 +30,11 @@ NEEDED = ("participant", "condition", "presented", "answered")
 # What is understood beside these, all optional.
 _KNOWN = {*NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct"}
 _OPEN = {"", "n/a"}  # of a trial that was not answered
+# Columns that say, if they are above 0, why a duration does not count.
+_UNTIMED = {
+    "paused_s": "the trial was paused meanwhile",
+    "early": "it was answered before it was read to its end",
+}
 ALL = "all"  # the condition of a protocol that compares none
 
 
@@ -71,10 +76,10 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
         warnings += _scored_otherwise(sheet, strings, before)
-        paused = _forget_paused(strings, before)
-        if paused:
-            what = f"{count(paused, 'duration')} of {sheet.name}"
-            left_out.append(LeftOut(what, "the trial was paused meanwhile"))
+        for name, why in _UNTIMED.items():
+            untimed = _forget_durations(strings, before, name)
+            if untimed:
+                left_out.append(LeftOut(f"{count(untimed, 'duration')} of {sheet.name}", why))
     _check_once(strings)
     _check_once(pairs)
     return Parsed(_trials(strings), _comparisons(pairs), tuple(left_out), tuple(warnings))
@@ -115,6 +120,7 @@ def _take(sheet: Sheet, strings: _Columns, pairs: _Columns) -> int:
             "answered": _each(sheet, "answered", rows, parse_cells),
             "duration_s": _seconds(sheet, "duration_s", rows, np.nan),
             "paused_s": _seconds(sheet, "paused_s", rows, 0.0),
+            "early": _each(sheet, "early", rows, parse_whole, 0),
         }
         strings.add(sheet, rows, _who(sheet, rows) | places)
     rows = sorted(paired)
@@ -196,14 +202,12 @@ def _scored_otherwise(sheet: Sheet, strings: _Columns, before: int) -> list[str]
     ]
 
 
-def _forget_paused(strings: _Columns, before: int) -> int:
-    """Take durations away that have a pause in them; how many."""
+def _forget_durations(strings: _Columns, before: int, column: str) -> int:
+    """Take durations away for which a column says so; how many."""
     if strings.size == before:
         return 0
-    durations, pauses = strings.values["duration_s"], strings.values["paused_s"]
-    timed = [
-        n for n in range(before, strings.size) if pauses[n] > 0 and not math.isnan(durations[n])
-    ]
+    durations, told = strings.values["duration_s"], strings.values[column]
+    timed = [n for n in range(before, strings.size) if told[n] > 0 and not math.isnan(durations[n])]
     for n in timed:
         durations[n] = np.nan
     return len(timed)

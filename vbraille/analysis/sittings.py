@@ -12,6 +12,7 @@ from vbraille.analysis.reading import PATTERNS, read
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.export import Traces, walk
 from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.notes import read_notes
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.trajectory import Trajectory
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.notes import Note
 
 MOST_PICKED = 600
 EXAMPLE_RULE = (
@@ -93,6 +95,8 @@ class Sitting:
         How far it came.
     versions
         Of the programs it was run with, by name; several if its runs differ.
+    notes
+        What the experimenter wrote down, in order.
     """
 
     folder: Path
@@ -104,6 +108,7 @@ class Sitting:
     faults: list[str]
     state: str
     versions: dict[str, str]
+    notes: tuple[Note, ...] = ()
 
 
 def read_sitting(folder: Path) -> Sitting:
@@ -144,6 +149,7 @@ def read_sitting(folder: Path) -> Sitting:
         faults,
         _state(progress),
         _versions(record, progress),
+        tuple(read_notes(record.told.events)),
     )
 
 

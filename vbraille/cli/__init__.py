@@ -5,15 +5,16 @@ A command's module is imported only when the command is called.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from contextlib import suppress
 from importlib import import_module
-from io import FileIO, TextIOWrapper
+from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
+from vbraille.wording import printable
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
@@ -35,8 +36,10 @@ def main(argv: Sequence[str] | None = None) -> int:
             print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
     try:
         sys.stdout.flush()
-    except OSError:  # Python must not try again at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError:
+        code = code or EXIT_CODE
+        with suppress(OSError):  # Python must not try again at exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return code
 
 
@@ -53,12 +56,34 @@ def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
 
 def _set_streams() -> None:
     """Have both streams, and have them take any text, lone surrogates and all."""
+    # None stands for a stream that was closed by whoever started us. There is nobody to be told
+    # of what goes to stderr, but whoever closed the output has lost what was asked for.
+    if sys.stdout is None:
+        sys.stdout = TextIOWrapper(BufferedWriter(_Closed()))
+    if sys.stderr is None:
+        sys.stderr = TextIOWrapper(FileIO(os.devnull, "w"))
     for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # closed by whoever started us
-            setattr(sys, name, TextIOWrapper(FileIO(os.devnull, "w")))
         stream = getattr(sys, name)
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
+
+
+class _Closed(RawIOBase):
+    """An output that is closed: the first writing says so, and later ones go nowhere."""
+
+    def __init__(self) -> None:
+        self._said = False
+
+    def writable(self) -> bool:
+        """Say yes, so that the fault comes when something is written."""
+        return True
+
+    def write(self, content) -> int:
+        """Refuse the first time."""
+        if not self._said:
+            self._said = True
+            raise OSError(errno.EBADF, "the output is closed; give it a file, or /dev/null")
+        return len(content)
 
 
 def _run(argv: Sequence[str] | None) -> tuple[str, int]:
@@ -66,8 +91,8 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
     try:
         code = _call(argv)
         sys.stdout.flush()
-    except BrokenPipeError:  # whoever read our output has enough
-        return "", 0
+    except BrokenPipeError:  # whoever read our output has enough, and needs no sentence
+        return "", EXIT_CODE
     except VbrailleError as error:
         return str(error), error.exit_code
     except OSError as error:

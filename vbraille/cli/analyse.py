@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.analyse import Options, analyse, analyse_scores
 from vbraille.analysis.study import load_scores, load_study, trials_file
-from vbraille.cli.printable import printable
 from vbraille.errors import InputError, VbrailleError
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -6,13 +6,13 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
 from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
 from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -68,6 +68,14 @@ class Page:
             return self.layout.progress(line)
         return (line.number - self.first + 1) / (self.last - self.first + 1)
 
+    def share_before(self, line: Line) -> float:
+        """How much of the lines asked for stands before one of them, about, 0 to 1."""
+        if self.last is not None:
+            return (line.number - self.first) / (self.last - self.first + 1)
+        first = self.layout.line(self.first)
+        skipped = self.layout.progress(first) if first is not None else 0.0
+        return (self.layout.progress(line) - skipped) / (1 - skipped)
+
     def say_note(self) -> None:
         """Say once if the text is not UTF-8, and of each script that the table does not know."""
         for note in (self.document.note(), self.layout.book.table.note()):
@@ -81,23 +89,26 @@ class Page:
             print(printable(sentence), file=sys.stderr, flush=True)
 
 
-def build_geometry(arguments: argparse.Namespace) -> tuple[Model, Geometry]:
-    """Model and distances.
+def build_geometry(
+    arguments: argparse.Namespace, model: Model, travel_mm: float | None = None
+) -> Geometry:
+    """Distances on a model's page, within a travel where the options give none.
 
     Raises
     ------
     InputError
         If a length is out of range.
     """
-    model = MODELS[arguments.model]
     geometry = PRESETS[arguments.geometry] if arguments.geometry else model.geometry
     given = {
         f"{name}_mm": getattr(arguments, name)
         for name in ("dot_width", "dot_spacing", "cell_gap", "line_pitch", "travel")
         if getattr(arguments, name) is not None
     }
+    if travel_mm is not None:
+        given.setdefault("travel_mm", travel_mm)
     try:
-        return model, replace(geometry, **given)
+        return replace(geometry, **given)
     except ValueError as error:
         raise InputError(str(error)) from None
 
@@ -118,6 +129,59 @@ def build_table(arguments: argparse.Namespace) -> Table:
     return Table(arguments.table, undefined)
 
 
+def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
+    """The text and its table, before anything is laid out.
+
+    With `six_dots`, a table of eight dots is refused.
+
+    Raises
+    ------
+    InputError
+        If an option or the text cannot be used.
+    """
+    table = build_table(arguments)
+    if six_dots and table.eight_dots:
+        raise InputError(_eight_dots(table))
+    keep_lines = arguments.keep_lines
+    if arguments.file == "-":
+        if sys.stdin is None:
+            raise InputError("standard input is closed; give a text there, or the name of a file")
+        if sys.stdin.isatty():
+            print("type the text; Ctrl-D on an empty line ends it", file=sys.stderr, flush=True)
+        document = Document.take(
+            sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
+        )
+    else:
+        document = Document.open(arguments.file, arguments.encoding, keep_lines=keep_lines)
+    return Book(document, table)
+
+
+def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: Geometry) -> Page:
+    """Page of a text for a model, whose width is said on stderr.
+
+    Raises
+    ------
+    InputError
+        If there is no room for a cell, or the text ends before the lines asked for.
+    """
+    try:
+        width = geometry.cells_per_line(model.array.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    first, last = arguments.lines
+    layout = Layout(book, width)
+    if layout.line(first) is None:
+        lines = layout.count()
+        name = book.document.name
+        if not lines:
+            raise InputError(f"{name} has no text in it; give a text file")
+        raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
+    cells = "1 cell" if width == 1 else f"{width} cells"
+    print(f"line width: {cells}", file=sys.stderr, flush=True)
+    unknown = Unknown(book.table, Undefined(arguments.undefined))
+    return Page(layout, model, geometry, first, last, unknown)
+
+
 def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
     """Page of the text, and say on stderr how wide it is.
 
@@ -128,25 +192,9 @@ def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page
     InputError
         If an option or the text cannot be used.
     """
-    model, geometry = build_geometry(arguments)
-    try:
-        width = geometry.cells_per_line(model.array.span_mm)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    table = build_table(arguments)
-    if six_dots and table.eight_dots:
-        raise InputError(_eight_dots(table))
-    document = Document.open(arguments.file, arguments.encoding, keep_lines=arguments.keep_lines)
-    first, last = arguments.lines
-    layout = Layout(Book(document, table), width)
-    if layout.line(first) is None:
-        lines = layout.count()
-        if not lines:
-            raise InputError(f"{arguments.file} has no text in it; give a text file")
-        raise InputError(f"{arguments.file} ends at line {lines}; --lines {first} is past that")
-    print(f"line width: {width} cells", file=sys.stderr, flush=True)
-    unknown = Unknown(table, Undefined(arguments.undefined))
-    return Page(layout, model, geometry, first, last, unknown)
+    model = MODELS[arguments.model]
+    geometry = build_geometry(arguments, model)
+    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model, geometry)
 
 
 def _eight_dots(table: Table) -> str:

@@ -46,6 +46,15 @@ def number(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
 
 
+def checksum(text: str) -> str:
+    """A SHA-256, or so many of its first digits that no other has them."""
+    if not re.fullmatch(r"[0-9a-fA-F]{16,64}", text):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no SHA-256; give its 64 digits, 0 to 9 and a to f, or the first 16"
+        )
+    return text.lower()
+
+
 def whole(text: str) -> int:
     """A whole number."""
     if not re.fullmatch(r"[+-]?[0-9]{1,18}", text):

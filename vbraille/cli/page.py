@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
-from vbraille.cli.printable import printable
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
-from itertools import islice
+from itertools import chain, islice
+from itertools import count as numbers
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from vbraille import pictures
 from vbraille.cli.build import build_geometry, build_page, build_show, build_table
 from vbraille.errors import InputError
-from vbraille.render import VBD
+from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
 
 if TYPE_CHECKING:
@@ -23,8 +28,8 @@ _LINES = 6  # of a page, unless told otherwise
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw a picture, or print its numbers."""
-    if (arguments.out is None) == (not arguments.csv):
-        raise InputError("give --out F.png or F.svg for a picture, or --csv for its numbers")
+    if arguments.out is not None and arguments.csv:
+        raise InputError("--csv prints numbers and draws nothing; leave out either --csv or --out")
     if arguments.kind == "page" and arguments.file is None:
         raise InputError("plot page needs a text: vbraille plot page FILE")
     if arguments.kind != "page" and arguments.file is not None:
@@ -35,15 +40,29 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     from vbraille.pictures import draw
 
-    draw.save(draw.draw(table), arguments.out)
-    print(f"drawn: {table.title}, {arguments.out}")
+    path = Path(arguments.out) if arguments.out is not None else _new_name(arguments.kind)
+    draw.save(draw.draw(table), path)
+    print(f"drawn: {table.title}, {path}")
+    if arguments.kind == "page":
+        drawn = np.unique(table["line"]).size
+        chosen = "" if arguments.lines[1] else "; --lines chooses others"
+        print(f"lines: {drawn} drawn, from line {arguments.lines[0]}{chosen}")
     return 0
+
+
+def _new_name(kind: str) -> Path:
+    """Name of a picture that nobody has named: the first of its kind that is not there yet."""
+    names = (
+        f"vbraille-{kind}{number}.png" for number in chain([""], map("-{}".format, numbers(2)))
+    )
+    return next(path for path in map(Path, names) if not os.path.lexists(path))
 
 
 def _table(arguments: argparse.Namespace) -> Table:
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
-    model, geometry = build_geometry(arguments)
+    model = MODELS[arguments.model]
+    geometry = build_geometry(arguments, model)
     mapping, tuning = build_show(arguments, model)
     match arguments.kind:
         case "profile":

@@ -3,26 +3,39 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import (
-    build_page,
+    build_book,
+    build_geometry,
     build_show,
+    lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.printable import printable
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import check_rate, device_info, device_spec
+from vbraille.cli.wanted import (
+    check_rate,
+    check_travel,
+    device_info,
+    device_spec,
+    is_simulated,
+    model_of,
+    refuse_hand,
+)
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.ring import Flag
-from vbraille.errors import InputError
-from vbraille.reading import Echo, Reader
+from vbraille.engine.suspending import Suspension
+from vbraille.errors import DeviceError, InputError
 from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.keys import PASTE
+from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -33,6 +46,7 @@ if TYPE_CHECKING:
     from vbraille.cli.build import Page
     from vbraille.engine.tally import Tally
 
+_HAND = "sweep:60"
 _POLL_S = 0.02
 _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
@@ -42,35 +56,50 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
-    mapping, tuning = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
-    once = isinstance(parse_hand(arguments.hand, arguments.seed), Recorded)
-    if arguments.advance == "key" and not (sys.stdin and sys.stdin.isatty()):
-        raise InputError("--advance key needs a terminal to type at; leave it out without one")
-    page = build_page(arguments)
-    wanted = device_info(page.model, page.geometry, rate_hz)
-    note_unseen_dots(page, mapping)
-    host = Host(
-        device_spec(arguments.device, arguments.hand, arguments.seed), wanted, page.layout.width
-    )
-    with Keyboard() as keyboard:
-        reader = Reader(
-            page.layout,
-            host,
-            model=page.model,
-            geometry=page.geometry,
-            mapping=mapping,
-            tuning=tuning,
-            say=_say,
-            first=page.first,
-            last=page.last,
-            advance=arguments.advance == "return",
-            stay=keyboard.attached,
-            echo=_echo(arguments.echo),
-        )
+    refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
+    hand = _HAND if arguments.hand is None else arguments.hand
+    seed = 1 if arguments.seed is None else arguments.seed
+    once = isinstance(parse_hand(hand, seed), Recorded)
+    # What the options ask for: a simulated device is just so, a real one is what it is.
+    asked = MODELS[arguments.model or "stress2"]
+    wanted = device_info(asked, build_geometry(arguments, asked), rate_hz)
+    if arguments.model is not None or is_simulated(arguments.device):
+        build_show(arguments, asked)
+    host = Host(device_spec(arguments.device, hand, seed), wanted)
+    with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
+        if arguments.advance == "key" and not keyboard.attached:
+            raise InputError("--advance key needs a terminal to type at; leave it out without one")
         try:
+            book = build_book(arguments)
+            info = wanted if is_simulated(arguments.device) else host.open()
+            model = model_of(info, arguments.model)
+            mapping, tuning = build_show(arguments, model)
+            if arguments.travel is not None:
+                check_travel(info, arguments.travel)
+            geometry = build_geometry(arguments, model, info.travel_mm)
+            page = lay_out(arguments, book, model, geometry)
+            note_unseen_dots(page, mapping)
+            host.fit(info, page.layout.width)
             host.start()
-            _Reading(page, reader, host, keyboard, once=once).run()
+            reader = Reader(
+                page.layout,
+                host,
+                model=page.model,
+                geometry=page.geometry,
+                mapping=mapping,
+                tuning=tuning,
+                say=_say,
+                first=page.first,
+                last=page.last,
+                advance=arguments.advance == "return",
+                stay=keyboard.attached,
+                echo=_echo(arguments.echo),
+            )
+            # Till now Ctrl-Z may do what it does elsewhere.
+            suspension = listening.enter_context(Suspension())
+            keyboard.take()
+            _Reading(page, reader, host, keyboard, suspension, once=once).run()
         finally:
             EAR.close()  # so that the array goes to rest
             host.close()
@@ -86,12 +115,20 @@ class _Reading:
     """One reading: what happens between a reader, its keyboard and its host."""
 
     def __init__(
-        self, page: Page, reader: Reader, host: Host, keyboard: Keyboard, *, once: bool
+        self,
+        page: Page,
+        reader: Reader,
+        host: Host,
+        keyboard: Keyboard,
+        suspension: Suspension,
+        *,
+        once: bool,
     ) -> None:
         self._page = page
         self._reader = reader
         self._host = host
         self._keyboard = keyboard
+        self._suspension = suspension
         self._once = once  # the hand reads no more than it has recorded
         self._placing = Placing.DONE
 
@@ -102,7 +139,7 @@ class _Reading:
         if self._keyboard.attached:
             _say("h says the keys")
         while not self._reader.done:
-            for key in self._keyboard.pressed(_POLL_S):
+            for key in self._pressed():
                 self._press(key)
             try:
                 ticks = self._host.poll()
@@ -128,16 +165,41 @@ class _Reading:
             _say(_PLACES.get(placing, "place: known"))
         line = self._reader.lines
         self._reader.step(ticks)
-        done = ticks["flags"][-1] & Flag.FOLLOWED and not self._keyboard.attached
+        done = (
+            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.HELD) == Flag.FOLLOWED
+            and not self._keyboard.attached
+        )
         if done and self._reader.lines == line and not self._reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._once:
                 self._reader.quit()
             elif ticks["line"][-1] == self._reader.line_number:
                 self._reader.go_on()
+        if self._reader.hopeless is not None and not self._keyboard.attached:
+            raise DeviceError(self._reader.hopeless)
+
+    def _pressed(self) -> list[str]:
+        """Keys typed; before that, the process stops for a while if it is told to."""
+        if self._suspension.asked:
+            self._suspend()
+        elif self._suspension.continued:
+            self._suspension.continued = False
+            self._keyboard.take()  # the shell has had the terminal
+        return self._keyboard.pressed(_POLL_S)
+
+    def _suspend(self) -> None:
+        """Stop, with the array at rest, until the shell says to go on."""
+        host = self._host
+        paused, host.paused = host.paused, True
+        _say("stopped: the array rests; fg goes on")
+        self._keyboard.release()
+        self._suspension.stop()
+        self._keyboard.take()
+        host.paused = paused
+        _say("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
-        if self._placing is Placing.STOP and key != "q":
+        if self._placing is Placing.STOP and key not in ("q", PASTE):
             self._host.set_zero()
         else:
             self._reader.press(key)
@@ -154,12 +216,14 @@ class _Reading:
             raise fault
         _say(f"fault: {fault}; space begins again, q stops")
         while True:
-            keys = self._keyboard.pressed(_POLL_S)
+            keys = self._pressed()
             if "q" in keys:
                 self._reader.quit()
                 return
             if " " in keys:
                 break
+            if keys:
+                _say("fault: nothing drives the device; space begins again, q stops")
         self._placing = Placing.DONE
         self._host.start()
         _say("reading")

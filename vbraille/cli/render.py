@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -17,10 +18,12 @@ from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
 from vbraille.devices.hand import Recorded, parse_hand
+from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
-from vbraille.reading import EndOfLine, too_fast_note
+from vbraille.reading.reader import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
+from vbraille.wording import count, duration
 
 if TYPE_CHECKING:
     import argparse
@@ -34,6 +37,9 @@ if TYPE_CHECKING:
     from vbraille.page import Line
 
 _BLOCK_FRAMES = 16_384
+# So many frames tell how well the rest can be compressed, and take less than half a second.
+_ESTIMATED_FROM = 100_000
+_LONG_FRAMES = 1_000_000
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -48,10 +54,11 @@ def run(arguments: argparse.Namespace) -> int:
     with EAR.at_once():  # numba compiles
         build_renderer(np.zeros(1, np.uint8), page, mapping, tuning).path(np.zeros(1))
     lines = frames = 0
+    estimate = _Estimate(rate_hz)
     too_fast: str | None = None
     with (
         EAR.deferred(),
-        new_file(arguments.out) as file,
+        new_file(arguments.out, replace=arguments.force) as file,
         _Progress(plain=arguments.plain) as progress,
     ):
         recorder = Recorder(file, page.model.array, page.layout.width)
@@ -66,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
             sha256=page.document.sha256(),
         )
         for line, xs in _walk(page, hand, rate_hz):
+            estimate.before(page.share_before(line), frames, recorder)
             row = recorder.add_line(line.masks)
             renderer = build_renderer(line.masks, page, mapping, tuning)
             for start in range(0, xs.size, _BLOCK_FRAMES):
@@ -83,7 +91,10 @@ def run(arguments: argparse.Namespace) -> int:
         print(too_fast, file=sys.stderr)
     page.say_note()
     page.say_unknown()
-    print(f"rendered: {lines} lines, {frames} frames, {frames / rate_hz:.1f} s of reading")
+    print(
+        f"rendered: {count(lines, 'line')}, {count(frames, 'frame')}, "
+        f"{frames / rate_hz:.1f} s of reading"
+    )
     return 0
 
 
@@ -113,6 +124,36 @@ def _fastest(x_mm: NDArray[np.float64], rate_hz: float) -> float:
     if x_mm.size <= window:
         return 0.0
     return float((x_mm[window:] - x_mm[:-window]).max()) * rate_hz / window
+
+
+class _Estimate:
+    """What a long recording will take: said once, when a small part of it is done."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._begun_s = time.monotonic()
+        self._share = 0.0
+        self._said = False
+
+    def before(self, share: float, frames: int, recorder: Recorder) -> None:
+        """Take note of what is done before a line: its share of all, its frames, its file.
+
+        Shares of a book grow from paragraph to paragraph, and are right where one begins.
+        """
+        begins, self._share = share > self._share, share
+        if self._said or not begins or frames < _ESTIMATED_FROM:
+            return
+        self._said = True
+        if frames / share < _LONG_FRAMES:
+            return
+        seconds = (time.monotonic() - self._begun_s) / share
+        print(
+            f"estimate: about {frames / share / 1e6:.2g} million frames, "
+            f"{duration(frames / share / self._rate_hz)} of reading, "
+            f"{recorder.stored_bytes / share / 1e6:.2g} MB, {duration(seconds)} of work",
+            file=sys.stderr,
+            flush=True,
+        )
 
 
 class _Progress:

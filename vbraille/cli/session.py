@@ -10,15 +10,16 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.printable import printable
-from vbraille.cli.wanted import check_rate
+from vbraille.cli.wanted import check_rate, refuse_hand
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import FORMAT, check_free, create, load, versions
+from vbraille.sessions.record.participants import alike, participants_in
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import Script, Typed, parse_answers
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.answers import Answers
 
+_HAND = "device"  # of the simulated device, unless told otherwise
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
 
 
@@ -71,14 +73,19 @@ def _plan(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace) -> int:
     from vbraille.cli.sitting import Sitting
 
+    refuse_hand(arguments.device, hand=arguments.hand)
+    if arguments.hand is None:
+        arguments.hand = _HAND
     protocol, plan = _planned(arguments)
     sitting = Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate), say=_say)
-    answers = parse_answers(arguments.answers, protocol, plan.seed)
+    answers = parse_answers(arguments.answers, protocol, plan)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, protocol, Progress(plan))
     folder = Path(arguments.out or _new_name(plan))
     check_free(folder)
+    if not arguments.another:
+        _ask_who(folder.absolute().parent, plan.participant, answers)
     fields = _ask_fields(protocol, arguments.field, answers)
     head = {
         "format": FORMAT,
@@ -116,6 +123,7 @@ def _resume(arguments: argparse.Namespace) -> int:
             f"{len(record.told.events)} events before it are whole, and nothing was changed"
         )
     head = record.head
+    refuse_hand(arguments.device or head["device"], hand=arguments.hand)
     for name in ("device", "hand", "answers"):
         if getattr(arguments, name) is None:
             setattr(arguments, name, head[name])
@@ -127,7 +135,7 @@ def _resume(arguments: argparse.Namespace) -> int:
         arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"], say=_say
     )
     used = progress.script_lines.get(arguments.answers, 0)
-    answers = parse_answers(arguments.answers, record.protocol, record.plan.seed, used)
+    answers = parse_answers(arguments.answers, record.protocol, record.plan, used)
     sitting.check(answers)
     if isinstance(answers, Script):
         _check_script(answers, record.protocol, progress)
@@ -136,36 +144,58 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.record import bids
+    from vbraille.sessions.record.anonymous import anonymous
     from vbraille.sessions.record.export import Traces, encode, rows, to_csv, write_new
+    from vbraille.sessions.record.folder import whole_lines
+    from vbraille.sessions.record.notes import read_notes
 
     if arguments.bids and not arguments.out:
         raise InputError("--bids needs a directory; give one with --out")
-    record = load(Path(arguments.folder))
-    traces = Traces(record)
+    record = load(Path(arguments.folder), salvaged=arguments.salvage)
+    traces = Traces(record, salvaged=arguments.salvage)
     if arguments.bids:
-        for path in bids.write(record, Path(arguments.out), traces):
+        from vbraille.sessions.record.dataset import write
+
+        written = write(record, Path(arguments.out), traces, without_times=arguments.anonymous)
+        for path in written:
             _say(f"written: {path}")
     else:
-        table = to_csv(rows(record, traces))
+        exported = rows(record, traces)
+        table = to_csv(anonymous(record, exported) if arguments.anonymous else exported)
         if arguments.out is None:
             sys.stdout.write(table)
         else:
             write_new(Path(arguments.out), encode(table))
             _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
+    # Where the table is printed, nothing else may be between it and who reads it.
+    if arguments.anonymous and (notes := len(read_notes(record.told.events))):
+        what = "1 note" if notes == 1 else f"{notes} notes"
+        print(f"left out: {what}, since nobody knows what is in them", file=sys.stderr)
+    told = sys.stdout if arguments.out else sys.stderr
+    print(f"record: {journal.sum_of(whole_lines(record.folder))}", file=told, flush=True)
     faults = list(traces.faults)
-    if record.told.damage is not None:
+    if record.told.bad:
+        faults.append(f"of {journal.NAME}, {_lines(record.told.bad)}")
+    elif record.told.damage is not None:
         faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
     if faults:
         raise VbrailleError(f"exported is what is whole; {'; '.join(faults)}")
     return 0
 
 
+def _lines(bad: tuple[int, ...]) -> str:
+    """Say which lines of a journal are not whole."""
+    from vbraille.sessions.record.export import spans
+
+    one = len(bad) == 1
+    return f"{'line' if one else 'lines'} {spans(bad)} {'is' if one else 'are'} not whole"
+
+
 def _check(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.check import check_folder
 
     good = True
-    for finding in check_folder(Path(arguments.folder)):
+    for finding in check_folder(Path(arguments.folder), arguments.expect):
         good &= finding.good
         _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1
@@ -238,6 +268,35 @@ def _check_script(script: Script, protocol: Protocol, progress: Progress) -> Non
         except ValueError as error:
             raise InputError(f"{script.path} line {number}: {error}") from None
         correcting, answered = None, trial if correcting is None else answered
+
+
+def _ask_who(room: Path, participant: str, answers: Answers) -> None:
+    """Ask whether a new participant is one whose pseudonym is nearly the same.
+
+    Raises
+    ------
+    InputError
+        If it is, or nobody is there who could be asked.
+    """
+    known = participants_in(room)
+    if participant in known:
+        return
+    near = next((other for other in known if alike(other, participant)), None)
+    if near is None:
+        return
+    told = f"{participant} is new here, and {near} has the session {known[near]}"
+    if isinstance(answers, Typed) and sys.stdin.isatty():
+        _say(f"participant: {told}; is {participant} somebody else? (yes or no):")
+        while (line := answers.line()) is not None:
+            if line.strip().lower() in ("y", "yes"):
+                return
+            if line.strip().lower() in ("n", "no"):
+                break
+            _say("type yes or no:")
+        raise InputError(f"nothing was begun; give --participant {near}")
+    raise InputError(
+        f"{told}; give --participant {near}, or --another if {participant} is somebody else"
+    )
 
 
 def _ask_fields(protocol: Protocol, given: dict[str, str], answers: Answers) -> dict[str, str]:

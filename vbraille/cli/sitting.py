@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from datetime import datetime
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info, device_spec
+from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_info, device_spec
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
-from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
+from vbraille.sessions.record.folder import check_end
+from vbraille.sessions.record.journal import NAME, Journal, sum_of
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import seed_of
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable
 
     from vbraille.devices import DeviceInfo
-    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.plan import Plan, Stimulus
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
@@ -40,12 +42,15 @@ class Sitting:
         say: Callable[[str], None],
     ) -> None:
         self._arguments = arguments
+        self._protocol = protocol
+        self._plan = plan
         self._say = say
         self._real = not arguments.fast
         self._engine: RunEngine | None = None
         self._opened = False
-        # Another hand each time that the session is gone on with, and the same for the same seed.
-        spec = device_spec(arguments.device, arguments.hand, plan.seed + runs)
+        # Another hand for each participant, and each time that the session is gone on with.
+        drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {runs}"
+        spec = device_spec(arguments.device, arguments.hand, seed_of(drawn))
         if arguments.fast and not spec.startswith("sim:"):
             raise InputError("--fast is for the simulated device; leave out --device")
         if protocol.medium == "device":
@@ -62,6 +67,7 @@ class Sitting:
         if self._engine is not None and not self._opened:
             self._engine.start()
             self._opened = True
+            check_room(self._engine.info, self._protocol, self._plan)
 
     def run(self, record: Record, answers: Answers, *, why: str) -> int:
         """Conduct the session until its end, or until it is stopped."""
@@ -71,12 +77,17 @@ class Sitting:
         from vbraille.sessions.running.showing import OnDevice
 
         with Journal(record.folder) as book:
+            check_end(record.folder, book.told)
             torn_bytes = book.set_torn_aside()
             self.open()
             progress = Progress(record.plan, book.told.events)
             display = None
             if self._engine is not None:
-                display = OnDevice(self._engine, record.protocol, record.folder, keeps=answers.felt)
+                # A session of format 1 is gone on with in that, whose traces are not tied.
+                tie = None if book.told.format == 1 else lambda: book.durable
+                display = OnDevice(
+                    self._engine, record.protocol, record.folder, keeps=answers.felt, tie=tie
+                )
             sound = self._sound(answers)
             course = Course(
                 record.protocol,
@@ -90,11 +101,15 @@ class Sitting:
                 play=sound.play,
                 real=self._real,
             )
-            told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            told: dict[str, Any] = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            if book.told.format > 1:
+                told["boot"] = boot()
             if torn := book.torn_file():
                 told["torn_file"] = torn
             if progress.runs:
-                told["gap_s"] = _since(progress.wall)
+                told |= gap(Moment.of(book.told.events[-1], progress.runs[-1]), Moment.now())
+                if (moved := say_moved(told)) is not None:
+                    self._say(moved)
                 self._say(
                     f"resume: {progress.done} of {len(record.plan.trials)} trials have answers"
                 )
@@ -121,10 +136,11 @@ class Sitting:
                     display.close()
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
-                trace = progress.runs[-1]["trace"]
-                size = (record.folder / trace).stat().st_size
                 lost = display.engine.lost
-                course.log("closed", lost=lost, counts=counts, trace=trace, trace_bytes=size)
+                course.log(
+                    "closed", durable=True, lost=lost, counts=counts, **display.close_trace()
+                )
+            self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         return 0
 
     def _sound(self, answers: Answers) -> Sound:
@@ -161,12 +177,23 @@ def _build(
         from vbraille.engine.batch import BatchEngine
 
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-    trials = (*plan.practice, *plan.trials)
-    most = max(len(protocol.line(s.masks)) for trial in trials for s in trial.stimuli)
+    most = max(len(protocol.line(stimulus.masks)) for stimulus in _stimuli(plan))
     return Host(spec, wanted, most)
 
 
-def _since(wall: str) -> float:
-    """Seconds since a time of the journal; not below 0, should the clock have been set back."""
-    before = datetime.fromisoformat(wall)
-    return round(max((datetime.now(before.tzinfo) - before).total_seconds(), 0.0), 3)
+def check_room(info: DeviceInfo, protocol: Protocol, plan: Plan) -> None:
+    """Raise InputError if a device's carriage does not take its whole array over every stimulus."""
+    extent_mm = max(
+        stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
+        for stimulus in _stimuli(plan)
+    )
+    needed_mm = extent_mm + info.span_mm
+    if needed_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:
+        raise InputError(
+            f"the carriage of {info.name} goes {info.travel_mm:g} mm and the longest string of "
+            f"{protocol.name} needs {needed_mm:.1f} mm; choose another --device or shorter strings"
+        )
+
+
+def _stimuli(plan: Plan) -> list[Stimulus]:
+    return [stimulus for trial in (*plan.practice, *plan.trials) for stimulus in trial.stimuli]

@@ -9,7 +9,9 @@ from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
 
+REFUSED_MS = 2 * WATCHDOG_MS  # without a FRAME taken: more than one that is lost now and then
 _NS_PER_MS = 1_000_000
+_U32 = 0xFFFF_FFFF
 
 
 class Delivery:
@@ -22,12 +24,14 @@ class Delivery:
         It is sent FRAMEs of rest as long: the first that arrives must not be a jump.
     trips : int
         Of its watchdog, since its first WATCHDOG.
+    disbelieved : int
+        Reports that tell of more trips than there was time for.
     """
 
     def __init__(self) -> None:
         self.held = False
-        self.trips = 0
-        self._held_ns = 0
+        self.trips = self.disbelieved = 0
+        self._held_ns = self._reported_ns = 0
         self._trips_before: int | None = None
         self._sent = 0  # the last FRAME sent, and the last that the device says it took
         self._taken: int | None = None
@@ -44,11 +48,21 @@ class Delivery:
         self._owed_ns = None
         self.held = False
 
+    def refused(self, now_ns: int) -> bool:
+        """Whether FRAMEs have been owed for a while, and none was taken."""
+        return self._owed_ns is not None and now_ns - self._owed_ns >= REFUSED_MS * _NS_PER_MS
+
     def take_watchdog(self, watchdog: Watchdog, now_ns: int) -> bool:
         """Take a report; whether the device went to rest, which was not known."""
-        tripped = 0 if self._trips_before is None else watchdog.trips - self._trips_before
-        self._trips_before = watchdog.trips
-        if tripped <= 0:
+        tripped = 0 if self._trips_before is None else (watchdog.trips - self._trips_before) & _U32
+        # A trip takes a frame, and then its time without one; a device's clock may go a bit fast.
+        elapsed_ms = (now_ns - self._reported_ns) // _NS_PER_MS
+        believable = 1 + elapsed_ms * 5 // (WATCHDOG_MS * 4)
+        self._trips_before, self._reported_ns = watchdog.trips, now_ns
+        if tripped > believable:
+            self.disbelieved += 1
+            return False
+        if not tripped:
             return False
         self.trips += tripped
         return self._hold(now_ns)

@@ -184,6 +184,9 @@ FLUENT = Habits(
 )
 
 
+SLOW = ("slow", "device")  # what the hand that reads so is called; the second is its older name
+
+
 class HumanHand:
     """A hand that reads by habits; the same seed reads the same lines in the same way.
 
@@ -265,7 +268,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
     Parameters
     ----------
     spec
-        ``sweep:SPEED`` in mm/s, ``device``, ``fluent`` or ``recorded:FILE``.
+        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent`` or ``recorded:FILE``.
     seed
         Of the two that are drawn.
 
@@ -276,7 +279,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
     """
     kind, _, rest = spec.partition(":")
     try:
-        if spec == "device":
+        if spec in SLOW:
             return HumanHand(DEVICE, seed)
         if spec == "fluent":
             return HumanHand(FLUENT, seed)
@@ -287,7 +290,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
     except ValueError as error:
         raise InputError(str(error)) from None
     raise InputError(
-        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, device, fluent or recorded:FILE"
+        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE"
     )
 
 

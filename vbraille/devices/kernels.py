@@ -7,8 +7,10 @@ packs the same in numpy.
 import numpy as np
 from numba import njit
 
+from vbraille.caching import keep_compiled
 
-@njit(cache=True, error_model="numpy")
+
+@njit(cache=keep_compiled(), error_model="numpy")
 def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
     """Fill a FRAME's packed levels; whether there is anything to feel in it.
 

@@ -18,7 +18,7 @@ class Link:
     Parameters
     ----------
     path
-        Where; another link there is replaced.
+        Where; whatever is there already is left alone.
     """
 
     def __init__(self, path: str) -> None:
@@ -31,17 +31,16 @@ class Link:
         Raises
         ------
         InputError
-            If there is something else in its place, or no link can be made there.
+            If there is something in its place, or no link can be made there.
         """
-        if os.path.lexists(self.path) and not self.path.is_symlink():
-            raise InputError(f"{self.path} is there, and no link; choose another name for --link")
-        begun = self.path.with_name(f".{self.path.name}.{os.getpid()}")
+        self.remove()
         try:
-            begun.symlink_to(target)
-            begun.replace(self.path)
+            self.path.symlink_to(target)
+        except FileExistsError:
+            raise InputError(
+                f"{self.path} is there already; remove it, or choose another name for --link"
+            ) from None
         except OSError as error:
-            with suppress(OSError):
-                begun.unlink()
             raise InputError(
                 f"no link can be made at {self.path}: {error.strerror}; "
                 f"choose another place for --link"

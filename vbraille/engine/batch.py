@@ -79,7 +79,7 @@ class BatchEngine:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
-            raise InputError("--fast needs a hand that reads lines: device, fluent or sweep:SPEED")
+            raise InputError("--fast needs a hand that reads lines: slow, fluent or sweep:SPEED")
         self.newest: np.void | None = None
         self.tally = Tally()
         self.counts: dict[str, int] = {}
@@ -95,6 +95,7 @@ class BatchEngine:
         self._line = 0
         self._paused = False
         self._followed = False
+        self._rested = device.rested
         self._shown: Renderer | None = None  # what was last under the hand; None at rest
         self._output = np.zeros(shape, np.float32)
         self._held = self._output
@@ -158,6 +159,7 @@ class BatchEngine:
         ticks["line"] = self._line
         ticks["x_mm"] = x_mm
         ticks["flags"] = followed * int(Flag.FOLLOWED) + self._paused * int(Flag.PAUSED)
+        ticks["flags"] += (not self.device.taking) * int(Flag.HELD)
         ticks["share"] = 1.0
         self._measure(ticks, x_mm)
         self._render(ticks, self._idle(times_ns, x_mm), times_ns, x_mm)
@@ -229,6 +231,11 @@ class BatchEngine:
         # Not in the records: for frames that do not lie together the kernel would be compiled anew.
         frames = np.zeros(ticks["frame"].shape, np.float32)
         flags, shares = ticks["flags"], ticks["share"]
+        if self.device.rested != self._rested:
+            self._rested = self.device.rested
+            self._output = self._held = np.zeros_like(self._output)
+            self._fading_ns, self._faded_from_ns = _FADE_NS, times_ns[0]
+            flags[0] |= int(Flag.RESTED | Flag.CHANGED)
         resting = idle | (self._paused or self._picture is None)
         turns = (np.flatnonzero(resting[1:] != resting[:-1]) + 1).tolist()
         for first, end in pairwise((0, *turns, ticks.size)):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import subprocess
 import sys
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.devices import DeviceInfo
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
 _END_S = 5.0
+# How long to wait for an answer before looking whether there is a process that could give it.
+_LOOK_S = 0.1
 
 
 class HostDiedError(VbrailleError):
@@ -42,9 +45,11 @@ class Host:
     device
         Spec, as of `vbraille.devices.open_device`.
     wanted
-        The actuators, travel and rate that the page was laid out for.
+        The actuators, travel and rate that the page was laid out for. With no cells given they are
+        a wish, which a simulated device fulfils; a real one is what it is.
     cells
-        Most cells of a line.
+        Most cells of a line; None if lines are laid out for the device that is found: `open` it,
+        then tell `fit`, then `start`.
 
     Attributes
     ----------
@@ -56,18 +61,19 @@ class Host:
         Ticks that were never polled: the parent was away for too long.
     """
 
-    def __init__(self, device: str, wanted: DeviceInfo, cells: int) -> None:
-        ticks = round(shared.RING_S * wanted.rate_hz)
+    def __init__(self, device: str, wanted: DeviceInfo, cells: int | None = None) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self._device = device
         self._wanted = wanted
-        self._extent = shared.Extent(wanted.rows, wanted.columns, cells, ticks)
+        self._cells = cells
         self._info: DeviceInfo | None = None
+        self._first: DeviceInfo | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
-        self._mailbox: Mailbox
-        self._ring: Ring
+        self._descriptor: int | None = None  # of memory that nobody has a view of yet
+        self._mailbox: Mailbox | None = None
+        self._ring: Ring | None = None
         self._shown: tuple[Renderer, int, float] | None = None
         self._notes: list[str] = []
         self._heard = b""
@@ -75,7 +81,32 @@ class Host:
         self._before = Tally()
         self._lost_before = 0
         self._paused = False
-        self._launched = False
+        self._launched = self._ready = False
+
+    def open(self) -> DeviceInfo:
+        """Start the process, and wait until it has opened the device: what that is like.
+
+        The device is read, and sent nothing, until `start`.
+
+        Raises
+        ------
+        VbrailleError
+            If the device cannot be opened, or is another than at the first start.
+        """
+        if not self._launched:
+            self.launch()
+        while self._info is None:
+            self._wait()
+        if self._first not in (None, self._info):
+            raise InputError(f"{self._info.name} is another device than before; start anew with it")
+        return self._info
+
+    def fit(self, info: DeviceInfo, cells: int) -> None:
+        """Have lines of so many cells at most, for a device that is as this says."""
+        self._wanted = replace(info, rate_hz=self._wanted.rate_hz)
+        self._cells = cells
+        if self._launched:
+            self._share()
 
     def start(self) -> None:
         """Start the process, and wait until it has opened the device; again after its death.
@@ -83,49 +114,70 @@ class Host:
         Raises
         ------
         VbrailleError
-            If the device cannot be opened.
+            If the device cannot be opened, or is another than at the first start.
         """
-        if not self._launched:
-            self.launch()
+        self._first = self.open()
+        while not self._ready:
+            self._wait()
         self._launched = False
-        while self._info is None:
-            if not self._hear():
-                raise self._end()
-        os.set_blocking(self._answers(), False)
         if self._shown is not None:
-            self._mailbox.post(*self._shown)
+            self._posted.post(*self._shown)
 
     def launch(self) -> None:
-        """Start the process and wait for nothing: `start` does, when there is no more to do."""
+        """Start the process and wait for nothing: `start` does, when there is no more to do.
+
+        The system ends the process with the thread that calls this.
+        """
         self.close()
         self._launched = True
         if self.newest is not None:
             self._before, self._lost_before = self.tally, self.lost
         self._info = self._fault = self.newest = None
-        self._paused = False
+        self._paused = self._ready = False
         self._heard = b""
-        descriptor = shared.create(self._extent)
-        try:
-            self._mailbox, self._ring = shared.divide(
-                shared.attach(descriptor, self._extent), self._extent
-            )
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", "vbraille.engine.hosted", str(descriptor)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                pass_fds=(descriptor,),
-            )
-        finally:
-            os.close(descriptor)
-        config = {
-            "device": self._device,
-            "wanted": asdict(self._wanted),
-            "extent": asdict(self._extent),
-            "parent": os.getpid(),
-        }
+        self._descriptor = shared.create()
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "vbraille.engine.hosted", str(self._descriptor)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            pass_fds=(self._descriptor,),
+        )
+        os.set_blocking(self._answers(), False)
+        self._tell(
+            device=self._device,
+            wanted=asdict(self._wanted),
+            fits=self._cells is not None,
+            parent=os.getpid(),
+        )
+        if self._cells is not None:
+            self._share()
+
+    def _share(self) -> None:
+        """Share memory for lines and records, now that it is known how much."""
+        assert self._descriptor is not None
+        assert self._cells is not None
+        wanted = self._wanted
+        ticks = round(shared.RING_S * wanted.rate_hz)
+        extent = shared.Extent(wanted.rows, wanted.columns, self._cells, ticks)
+        memory = shared.attach(self._descriptor, extent)
+        self._forget_memory()
+        self._mailbox, self._ring = shared.divide(memory, extent)
+        self._tell(**asdict(extent))
+
+    def _tell(self, **what: object) -> None:
+        """Tell the host something on its standard input, in a line."""
+        assert self._process is not None
         assert self._process.stdin is not None
-        with suppress(BrokenPipeError), self._process.stdin as stdin:
-            stdin.write(json.dumps(config).encode() + b"\n")
+        with suppress(BrokenPipeError):  # it has ended, and says why
+            self._process.stdin.write(json.dumps(what).encode() + b"\n")
+            self._process.stdin.flush()
+
+    @property
+    def _posted(self) -> Mailbox:
+        """Where orders go, once started."""
+        if self._mailbox is None:
+            raise DeviceError("no device is open; start the host first")
+        return self._mailbox
 
     @property
     def process_id(self) -> int | None:
@@ -156,16 +208,16 @@ class Host:
 
     @paused.setter
     def paused(self, paused: bool) -> None:
-        self._paused = self._mailbox.paused = paused
+        self._paused = self._posted.paused = paused
 
     def show(self, picture: Renderer, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self._shown = picture, line, end_mm
-        self._mailbox.post(picture, line, end_mm)
+        self._posted.post(picture, line, end_mm)
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
-        self._mailbox.zero()
+        self._posted.zero()
 
     def poll(self) -> NDArray[np.void]:
         """Records of all ticks since the last poll.
@@ -176,6 +228,8 @@ class Host:
             If the loop has ended: the device's fault, or `HostDiedError`.
         """
         alive = self._hear()
+        if self._ring is None:
+            raise self._end()
         ticks = self._ring.drain()
         self.lost = self._lost_before + self._ring.lost
         if ticks.size:
@@ -194,18 +248,24 @@ class Host:
         process = self._process
         if process is None:
             return
-        self._mailbox.stop()
-        try:
-            process.wait(_END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        if self._mailbox is not None:
+            self._mailbox.stop()
+        if process.stdin is not None:
+            with suppress(BrokenPipeError):
+                process.stdin.close()  # one that waits to be told more ends, too
+        self._reap()
         while self._hear():
             pass
         if process.stdout is not None:
             process.stdout.close()
         self._process = None
-        del self._mailbox, self._ring  # whose memory holds a descriptor
+        self._forget_memory()
+
+    def _forget_memory(self) -> None:
+        self._mailbox = self._ring = None  # whose memory holds a descriptor
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
 
     def __enter__(self) -> Self:
         try:
@@ -223,20 +283,42 @@ class Host:
         assert self._process.stdout is not None
         return self._process.stdout.fileno()
 
+    def _wait(self) -> None:
+        """Wait for an answer, for a moment; raise why there is no host if it has ended."""
+        select.select((self._answers(),), (), (), _LOOK_S)
+        if not self._hear():
+            raise self._end()
+
     def _hear(self) -> bool:
-        """Take the host's answers; whether more may come."""
+        """Take the host's answers; whether more may come.
+
+        None come once the process has ended and all that it said was read: somebody else, whom
+        a driver started, may hold the other end of the pipe for as long as he likes.
+        """
+        assert self._process is not None
+        ended = self._process.poll() is not None  # asked first: whatever it said is there then
         try:
             said = os.read(self._answers(), 1 << 16)
         except BlockingIOError:
-            return True
+            return not ended
         *lines, self._heard = (self._heard + said).split(b"\n")
         for line in lines:
             self._take(json.loads(line))
         return bool(said)
 
+    def _reap(self) -> int:
+        """Wait for the process's end, and bring it about if it takes too long; its exit code."""
+        assert self._process is not None
+        try:
+            return self._process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            return self._process.wait()
+
     def _take(self, answer: dict[str, Any]) -> None:
-        if "ready" in answer:
-            self._info = DeviceInfo(**answer["ready"])
+        if "opened" in answer:
+            self._info = DeviceInfo(**answer["opened"])
+        self._ready = self._ready or "ready" in answer
         if answer.get("note"):
             self._notes.append(answer["note"])
         if "fault" in answer:
@@ -246,8 +328,7 @@ class Host:
 
     def _end(self) -> VbrailleError:
         """Why there is no host any more."""
-        assert self._process is not None
-        code = self._process.wait()
+        code = self._reap()
         fault, self._fault = self._fault, None  # kept, it would keep all that raises it
         if fault is not None:
             return fault

@@ -36,6 +36,7 @@ SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
 _PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
+_HELD = int(Flag.HELD)
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
@@ -228,6 +229,8 @@ class Loop:
             flags |= _SILENT
         if followed:
             flags |= _FOLLOWED
+        if not self.device.taking:
+            flags |= _HELD
         tally = self.tally
         ring.append(
             self.output,
@@ -252,7 +255,11 @@ class Loop:
             return
         x_mm = sample.x_mm
         if not -1e6 < x_mm < 1e6:
-            raise DeviceError(f"{self.device.info.name} says that its carriage is at {x_mm} mm")
+            raise DeviceError(
+                f"{self.device.info.name} says that its carriage is at {x_mm} mm, where it cannot "
+                f"be; switch it off and on, and if it says so again, look at its encoder and at "
+                f"the counts that its INFO tells, with 'vbraille device check'"
+            )
         if self.x_mm is None:
             self._moved_mm, self._moved_ns = x_mm, now_ns
         else:

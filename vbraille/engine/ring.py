@@ -49,6 +49,7 @@ class Flag(IntFlag):
     RESTING = 32  # nothing is shown, whatever the line
     CHANGED = 64  # a fade begins here, from the frame before
     RESTED = 128  # the device had gone to rest by itself: the frame before was rest
+    HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
 
 
 def tick_dtype(shape: tuple[int, int]) -> np.dtype:

@@ -51,15 +51,15 @@ class Extent:
         return self.mailbox_bytes + Ring.bytes_needed(self.shape, self.ticks)
 
 
-def create(extent: Extent) -> int:
-    """Make the memory; its descriptor."""
-    descriptor = os.memfd_create("vbraille")
-    os.ftruncate(descriptor, extent.total_bytes)
-    return descriptor
+def create() -> int:
+    """Make the memory, empty as yet; its descriptor."""
+    return os.memfd_create("vbraille")
 
 
 def attach(descriptor: int, extent: Extent) -> memoryview:
-    """The memory of a descriptor, which may be closed then."""
+    """The memory of a descriptor, which may be closed then; the first to attach makes room."""
+    if os.fstat(descriptor).st_size < extent.total_bytes:
+        os.ftruncate(descriptor, extent.total_bytes)
     return memoryview(mmap.mmap(descriptor, extent.total_bytes))
 
 

@@ -6,8 +6,11 @@ makes a figure of it. `charts` says what charts of results hold, and
 matplotlib, and so are not imported here.
 """
 
+from vbraille.caching import keep_fonts
 from vbraille.pictures.series import mapping, profile, strain, wave
 from vbraille.pictures.surface import page
 from vbraille.pictures.table import Table, write_csv
+
+keep_fonts()
 
 __all__ = ["Table", "mapping", "page", "profile", "strain", "wave", "write_csv"]

@@ -23,6 +23,11 @@ class Command:
     keys: tuple[str, ...]
     help: str
 
+    @property
+    def spoken_keys(self) -> str:
+        """Its keys as people call them."""
+        return " or ".join("space" if key == " " else key for key in self.keys)
+
 
 COMMANDS = (
     Command("LNDN", ("n", "down"), "next line"),

@@ -2,30 +2,45 @@
 
 from __future__ import annotations
 
+import errno
 import os
-import re
 import select
 import sys
 import termios
+import time
 import tty
 from contextlib import suppress
 from typing import Self
 
-_SEQUENCES = {"\x1b[A": "up", "\x1b[B": "down", "\x1bOA": "up", "\x1bOB": "down"}
-# What one key sends: an escape sequence, whole (ECMA-48, 5.4; a function key), or a character.
-_KEY = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.|[^\x1b])?|.", re.DOTALL)
+from vbraille.reading.keys import PASTE_OFF, PASTE_ON, Keys
+
+_TERMINAL = "/dev/tty"  # the one that a process was started at, wherever its input comes from
 
 
 class Keyboard:
     """The terminal on standard input; a context manager that leaves it as it was.
 
-    Its `pressed` gives what was typed since the last call. Where standard
-    input is no terminal there are no keys.
+    Keys come one at a time between `take` and `release`; `pressed` gives what was typed
+    since the last call. Where standard input is no terminal there are no keys.
+
+    Parameters
+    ----------
+    beside
+        Whether standard input is read otherwise, so that keys are those of the terminal at which
+        the program was started, if there is one.
     """
 
-    def __init__(self) -> None:
-        self._descriptor = sys.stdin.fileno() if sys.stdin and sys.stdin.isatty() else None
+    def __init__(self, *, beside: bool = False) -> None:
+        self._descriptor: int | None = None
+        self._own: int | None = None  # a descriptor that we have opened
         self._before: list | None = None
+        self._keys = Keys()
+        if sys.stdin and sys.stdin.isatty():
+            self._descriptor = sys.stdin.fileno()
+        elif beside:
+            with suppress(OSError):  # there is none
+                self._own = os.open(_TERMINAL, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)
+            self._descriptor = self._own
 
     @property
     def attached(self) -> bool:
@@ -33,31 +48,53 @@ class Keyboard:
         return self._descriptor is not None
 
     def __enter__(self) -> Self:
-        if self._descriptor is not None:
-            self._before = termios.tcgetattr(self._descriptor)
-            try:
-                tty.setcbreak(self._descriptor)
-            except BaseException:  # a signal
-                self._restore()
-                raise
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._restore()
+        self.release()
+        if self._own is not None:
+            os.close(self._own)
+            self._own = self._descriptor = None
 
-    def _restore(self) -> None:
+    def take(self) -> None:
+        """Have keys one at a time from now on, and pasted text marked as such.
+
+        In the background this stops the process until it is in the foreground.
+        """
+        if self._descriptor is None:
+            return
+        while True:
+            try:
+                if self._before is None:
+                    self._before = termios.tcgetattr(self._descriptor)
+                tty.setcbreak(self._descriptor, termios.TCSANOW)
+                break
+            except termios.error as error:
+                if error.args[0] != errno.EINTR:  # by what brought us to the foreground
+                    return  # the terminal is gone, as reading it will say
+        self._mark_pastes(PASTE_ON)
+
+    def release(self) -> None:
+        """Leave the terminal as it was before the first `take`."""
         if self._descriptor is not None and self._before is not None:
+            self._mark_pastes(PASTE_OFF)
+            # At once: output that the terminal holds back (Ctrl-S) must not hold up the end.
             with suppress(termios.error):  # the terminal is gone
-                termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._before)
+                termios.tcsetattr(self._descriptor, termios.TCSANOW, self._before)
+
+    def _mark_pastes(self, how: bytes) -> None:
+        if self._descriptor is not None and os.environ.get("TERM", "dumb") != "dumb":
+            with suppress(OSError):
+                os.write(self._descriptor, how)
 
     def pressed(self, wait_s: float = 0.0) -> list[str]:
-        """Keys typed since the last call; arrows as "up" and "down".
+        """Keys typed since the last call, as `vbraille.reading.keys` names them.
 
         If there are none, it waits so long for one.
         """
         watched = [] if self._descriptor is None else [self._descriptor]
         if not select.select(watched, [], [], wait_s)[0] or self._descriptor is None:
-            return []
+            return self._keys.wait(time.monotonic())
         try:
             typed = os.read(self._descriptor, 4096)
         except OSError:
@@ -65,6 +102,4 @@ class Keyboard:
         if not typed:  # the terminal is gone
             self._descriptor = None
             return ["q"]
-        keys: list[str] = _KEY.findall(typed.decode("utf-8", "ignore"))
-        named = (_SEQUENCES.get(key, key) for key in keys)
-        return [key for key in named if not key.startswith("\x1b")]
+        return self._keys.feed(typed, time.monotonic())

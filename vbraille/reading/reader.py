@@ -10,6 +10,8 @@ from vbraille.engine.advance import EndOfLine
 from vbraille.engine.ring import Flag
 from vbraille.page import locate
 from vbraille.reading.commands import BY_KEY, COMMANDS
+from vbraille.reading.keys import PASTE
+from vbraille.reading.waiting import Waiting
 from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
@@ -100,9 +102,15 @@ class Reader:
         self._echo = echo
         self._line: Line | None = None
         self._end: EndOfLine
+        self._waiting: Waiting
         self._finished = False  # said that there is no more, until a key brings another line
         self._prefetched = False
         self._too_fast_said = False
+
+    @property
+    def hopeless(self) -> str | None:
+        """Why the line will not come to its end unless somebody sees to it; else None."""
+        return None if self._line is None else self._waiting.hopeless
 
     @property
     def line_number(self) -> int:
@@ -123,13 +131,20 @@ class Reader:
             return
         ticks = ticks[(ticks["line"] == self._line.number) & (ticks["flags"] & Flag.PAUSED == 0)]
         if not ticks.size:
+            self._waiting.rest()
             return
-        if self._end.find(ticks["x_mm"]) is not None and self._advance and not self._finished:
+        # What the device did not take was not felt.
+        felt_mm = ticks["x_mm"][ticks["flags"] & Flag.HELD == 0]
+        if self._end.find(felt_mm) is not None and self._advance and not self._finished:
             self.go_on()
-        elif self._end.reached and not self._prefetched:
-            # On the way back to the start there is time for it.
-            self._prefetched = True
-            self.layout.line(self._line.number + 1)
+        else:
+            if self._end.reached and not self._prefetched:
+                # On the way back to the start there is time for it.
+                self._prefetched = True
+                self.layout.line(self._line.number + 1)
+            if not self._finished:
+                for sentence in self._waiting.watch(ticks, reached=self._end.reached):
+                    self._say(sentence)
         self._watch_speed(float(ticks["speed_mm_s"].max()))
 
     def go_on(self) -> None:
@@ -140,20 +155,20 @@ class Reader:
     def press(self, key: str) -> None:
         """Do what a key stands for."""
         command = BY_KEY.get(key)
-        if command is None:
+        if key == PASTE:
+            self._say("paste: text that is pasted is passed over; type the keys")
+        elif command is None:
             self._say(f"no command: {key!r}; h says the keys")
         else:
             getattr(self, command.name.lower())()
 
     def lndn(self) -> None:
         """Next line."""
-        if self._line is not None and not self._go(self._line.number + 1):
-            self._say("last line")
+        self._step_by_key(1, "last line")
 
     def lnup(self) -> None:
         """Previous line."""
-        if self._line is not None and not self._go(self._line.number - 1):
-            self._say("first line")
+        self._step_by_key(-1, "first line")
 
     def word(self) -> None:
         """Say the word under the middle of the array."""
@@ -188,12 +203,18 @@ class Reader:
     def help(self) -> None:
         """Say the keys."""
         for command in COMMANDS:
-            keys = " or ".join("space" if key == " " else key for key in command.keys)
-            self._say(f"{keys}: {command.help}")
+            self._say(f"{command.spoken_keys}: {command.help}")
 
     def quit(self) -> None:
         """Stop reading."""
         self.done = True
+
+    def _step_by_key(self, step: int, none: str) -> None:
+        """Go to another line and say its number, or that there is none."""
+        if self._line is None or not self._go(self._line.number + step):
+            self._say(none)
+        elif self._echo is Echo.NONE:
+            self._say(f"line: {self._line.number}")
 
     def _finish(self) -> None:
         if self._stay:
@@ -219,6 +240,9 @@ class Reader:
         self._prefetched = False
         end_mm = self._geometry.extent_mm(len(line))
         self._end = EndOfLine(self._model.array.span_mm, end_mm)
+        self._waiting = Waiting(
+            self._model.array.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
+        )
         self._picture(line)
         self._say_line(line)
 

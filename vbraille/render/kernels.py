@@ -19,6 +19,7 @@ import math
 
 from numba import njit
 
+from vbraille.caching import keep_compiled
 from vbraille.render.work import (
     CELL_PITCH,
     CELLS_PER_MM,
@@ -40,7 +41,7 @@ _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8, _C9, _C10 = _C
 _S = [(-1) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(10)]
 _T0, _T1, _T2, _T3, _T4, _T5, _T6, _T7, _T8, _T9 = _S
 
-_compiled = njit(cache=True, error_model="numpy", fastmath={"contract"})
+_compiled = njit(cache=keep_compiled(), error_model="numpy", fastmath={"contract"})
 _inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
 
 

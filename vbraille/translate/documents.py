@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import hashlib
 import io
+import os
 from bisect import bisect_right
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-import numpy as np
-
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.characters import Stretch, shorten_blanks, to_codes
 from vbraille.translate.encodings import (
     SAMPLE_BYTES,
     Decoder,
@@ -25,7 +26,7 @@ from vbraille.translate.encodings import (
     first_not_utf8,
     named_encoding,
 )
-from vbraille.translate.paragraphs import Paragraph, split_paragraphs, to_codes
+from vbraille.translate.paragraphs import Paragraph, split_paragraphs
 
 BLOCK_BYTES = 65_536
 
@@ -46,6 +47,8 @@ class _Mark:
         Characters between that place and the paragraph.
     continues
         Whether the paragraph is a further piece of the one before.
+    item
+        Number of the list item that it is a piece of; 0 for none.
     """
 
     paragraph: int
@@ -54,6 +57,7 @@ class _Mark:
     state: tuple[bytes, int]
     skip: int
     continues: bool
+    item: int = 0
 
     @property
     def bytes(self) -> int:
@@ -101,7 +105,7 @@ class Document:
         self.keep_lines = keep_lines
         self._stream = stream
         sample = self._read(0, SAMPLE_BYTES)
-        self.size = stream.seek(0, io.SEEK_END)
+        self.size = self._end()
         if not sample:
             raise InputError(f"{name} is empty; give a text file")
         if isinstance(encoding, Encoding):
@@ -117,7 +121,7 @@ class Document:
                 raise InputError(f"{name} is empty; give a text file")
         self._decoder = Decoder(self.encoding.name)
         self._found = encoding is None
-        self._noted = False
+        self._noted = self._grown = False
         start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
         self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
         self._complete = False
@@ -140,7 +144,7 @@ class Document:
             # A pipe cannot be read twice, and a file of /proc does not say how long it is.
             if not stream.seekable() or (path.is_file() and not path.stat().st_size):
                 with stream:
-                    stream = io.BytesIO(stream.read())
+                    stream = _kept(stream)
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
         except IsADirectoryError:
@@ -155,13 +159,47 @@ class Document:
             raise
 
     @classmethod
+    def take(
+        cls,
+        stream: BinaryIO,
+        name: str,
+        encoding: str | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> Document:
+        """Take all that a stream gives, such as standard input, which may be longer than memory.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or kept, or is empty, binary, or of an unknown encoding.
+        """
+        try:
+            kept = _kept(stream)
+        except OSError as error:
+            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        try:
+            return cls(kept, name, encoding, keep_lines=keep_lines)
+        except InputError:
+            kept.close()
+            raise
+
+    @classmethod
     def from_text(cls, text: str, *, keep_lines: bool = False) -> Document:
         """Make a document of a string."""
         stream = io.BytesIO(text.encode("utf-32-le", "surrogatepass"))
         return cls(stream, "text", Encoding("utf-32-le"), keep_lines=keep_lines)
 
     def note(self) -> str | None:
-        """Say once, after it is found, that the text is not UTF-8, and where; None otherwise."""
+        """What must be said of the file, each thing once after it is found; None if nothing is.
+
+        That the text is not UTF-8, and where; that the file has grown since it was opened.
+        """
+        if self._grown:
+            self._grown = False
+            return (
+                f"{self.name} has grown since it was opened; open it again to read what was added"
+            )
         if self._noted:
             return None
         if self._found and self.encoding.name != "utf-8":
@@ -185,7 +223,9 @@ class Document:
         Raises
         ------
         InputError
-            If the file cannot be read any more, or is no longer what it was.
+            If the file cannot be read any more.
+        VbrailleError
+            If it is no longer what it was.
         """
         while number >= self._marks[-1].paragraph and not self._complete:
             self._read_block(len(self._marks) - 1)
@@ -197,7 +237,7 @@ class Document:
             paragraphs = self._read_block(block)
         index = number - self._marks[block].paragraph
         if index >= len(paragraphs):
-            raise InputError(f"{self.name} has changed since it was opened; open it again")
+            raise VbrailleError(f"{self.name} has changed since it was opened; open it again")
         return paragraphs[index]
 
     def paragraph_at(self, character: int) -> int | None:
@@ -242,6 +282,13 @@ class Document:
         except OSError as error:
             raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
 
+    def _end(self) -> int:
+        """Bytes that the file has now."""
+        try:
+            return self._stream.seek(0, io.SEEK_END)
+        except OSError as error:
+            raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
+
     def _read_block(self, block: int) -> list[Paragraph]:
         """Read the paragraphs of a block; mark where the next begins if that is not known yet."""
         mark = self._marks[block]
@@ -249,6 +296,7 @@ class Document:
         if block == len(self._marks) - 1:
             if after is None:
                 self._complete = True
+                self._grown = self._end() > self.size
                 after = _Mark(
                     mark.paragraph + len(paragraphs),
                     paragraphs[-1].end if paragraphs else mark.character,
@@ -266,23 +314,32 @@ class Document:
     def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
         """Paragraphs from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
-        codes = np.empty(0, np.uint32)
+        parts: list[Stretch] = []
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
-        offset, first = mark.offset, mark.character - mark.skip
+        offset, place = mark.offset, mark.character - mark.skip
+        kept = wanted = blanks = 0
+        final = False
         while True:
-            state = self._decoder.state()
-            # Twice as much every time: what is not done with is gone over again.
-            read = self._read(offset, max(BLOCK_BYTES, offset - mark.offset))
-            final = offset + len(read) >= self.size or not read
-            pieces.append((codes.size, offset, state))
-            codes = np.concatenate(
-                (codes, to_codes(self._decoder.decode(read, offset, final=final)))
-            )
-            offset += len(read)
+            while not final and (kept < wanted or not parts):
+                pieces.append((place, offset, self._decoder.state()))
+                read = self._read(offset, min(BLOCK_BYTES, self.size - offset))
+                if not read and offset < self.size:
+                    raise VbrailleError(
+                        f"{self.name} has become shorter since it was opened; open it again"
+                    )
+                final = offset + len(read) >= self.size
+                codes = to_codes(self._decoder.decode(read, offset, final=final))
+                offset += len(read)
+                skipped = min(max(0, mark.character - place), codes.size)
+                part, blanks = shorten_blanks(codes[skipped:], place + skipped, blanks)
+                place += codes.size
+                parts.append(part)
+                kept += len(part)
+            parts = [Stretch.joined(parts)]
             split = split_paragraphs(
-                codes[mark.skip :],
-                mark.character,
+                parts[0],
                 continues=mark.continues,
+                item=mark.item,
                 final=final,
                 keep_lines=self.keep_lines,
             )
@@ -290,11 +347,34 @@ class Document:
                 return split.paragraphs, None
             if split.paragraphs or split.used:
                 break
-        used = mark.skip + split.used
+            # Twice as much every time: what is not done with is gone over again.
+            wanted = 2 * kept + 1
+        used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
-        number = mark.paragraph + len(split.paragraphs)
-        after = _Mark(number, first + used, offset, state, used - before, split.continues)
+        after = _Mark(
+            mark.paragraph + len(split.paragraphs),
+            used,
+            offset,
+            state,
+            used - before,
+            split.continues,
+            split.item,
+        )
         return split.paragraphs, after
+
+
+def _kept(stream: BinaryIO) -> BinaryIO:
+    """A temporary file of all that a stream gives, since a text is gone through more than once."""
+    from tempfile import TemporaryFile
+
+    with ExitStack() as opened:
+        kept = opened.enter_context(TemporaryFile())
+        # Past Python's buffer, which asks a terminal for more after its end was typed.
+        while block := os.read(stream.fileno(), BLOCK_BYTES):
+            kept.write(block)
+        kept.flush()
+        opened.pop_all()  # it is the caller's now
+    return kept
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:

@@ -8,10 +8,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.translate.characters import (
+    BLANK,
+    BREAK,
+    DROPPED,
+    NEWLINE,
+    TEXT,
+    kinds_of,
+    to_codes,
+    to_text,
+)
+from vbraille.translate.items import LONGEST_MARKER, end_before_items
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
+
+    from vbraille.translate.characters import Stretch
 
 # A longer paragraph is handed on in pieces: no text may grow with the file.
 PIECE_CHARACTERS = 8_192
@@ -19,14 +33,6 @@ PIECE_CHARACTERS = 8_192
 SPACE = 0x20
 NO_BREAK_SPACE = 0xA0
 
-_TEXT, _BLANK, _NEWLINE, _BREAK, _DROPPED = range(5)
-_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all above
-_KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = (
-    _BLANK
-)
-_KINDS[[0x0A, 0x0B, 0x0D, 0x85, 0x2028]] = _NEWLINE
-_KINDS[[0x0C, 0x2029]] = _BREAK
-_KINDS[0xAD] = _DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
 _BACKSPACE, _UNDERLINE = 0x08, 0x5F
@@ -35,7 +41,9 @@ _COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x30
 # Words before which a hyphen stands for the rest of the word before it.
 _SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
 # Characters after a line break that say whether a space belongs there: such a word and one more.
-_LOOK_AHEAD = 5
+_WORD = 5
+# Characters that must follow a place before it is known what belongs there.
+_LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,16 +93,6 @@ class Paragraph:
         return Paragraph(codes, source, self.end, True, self.alphabet)
 
 
-def to_codes(text: str) -> NDArray[np.uint32]:
-    """Code points of a string, lone surrogates included."""
-    return np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
-
-
-def to_text(codes: NDArray[np.uint32]) -> str:
-    """String of code points, lone surrogates included."""
-    return codes.astype("<u4").tobytes().decode("utf-32-le", "surrogatepass")
-
-
 @dataclass(frozen=True, slots=True)
 class Split:
     """What `split_paragraphs` made of a stretch of characters.
@@ -107,18 +105,21 @@ class Split:
         Characters up to the first that belongs to none of them, or may begin another.
     continues
         Whether that one goes on with the last paragraph.
+    item
+        Number of the list item that it is a part of then; 0 for none.
     """
 
     paragraphs: list[Paragraph]
     used: int
     continues: bool
+    item: int = 0
 
 
 def split_paragraphs(
-    codes: NDArray[np.uint32],
-    first: int,
+    stretch: Stretch,
     *,
     continues: bool = False,
+    item: int = 0,
     final: bool = True,
     keep_lines: bool = False,
 ) -> Split:
@@ -126,26 +127,27 @@ def split_paragraphs(
 
     Parameters
     ----------
-    codes : uint32[n]
-        Code points.
-    first
-        Place of the first of them in the document.
+    stretch
+        The characters.
     continues
         Whether it goes on with an earlier piece of a paragraph.
+    item
+        Number of the list item that this paragraph is; 0 for none.
     final
         Whether the text ends here; else the last paragraph is left for later.
     keep_lines
         Make a paragraph of every line instead.
     """
-    kinds = _KINDS[np.minimum(codes, _KINDS.size - 1)]
-    kinds[codes == _BYTE_ORDER_MARK] = _DROPPED
-    kinds[_overstruck(codes, kinds)] = _DROPPED
-    text = np.flatnonzero(kinds == _TEXT)
-    newline = (kinds == _NEWLINE) | (kinds == _BREAK)
+    codes = stretch.codes
+    kinds = kinds_of(codes)
+    kinds[codes == _BYTE_ORDER_MARK] = DROPPED
+    kinds[_overstruck(codes, kinds)] = DROPPED
+    text = np.flatnonzero(kinds == TEXT)
+    newline = (kinds == NEWLINE) | (kinds == BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
     if text.size == 0:
         line_ends = np.flatnonzero(newline)[-1:] + 1
-        return Split([], int(line_ends.sum()) if keep_lines else codes.size, continues)
+        return Split([], int(line_ends.sum()) if keep_lines else codes.size, continues, item)
     newlines = _between(newline, text)
     ended = final
     codes = codes.copy()
@@ -153,7 +155,7 @@ def split_paragraphs(
         codes[codes == space] = NO_BREAK_SPACE
     if keep_lines:
         keep = _keep_blanks(kinds)
-        codes[keep & (kinds == _BLANK)] = SPACE
+        codes[keep & (kinds == BLANK)] = SPACE
         ends = newlines > 0
         line_starts = np.maximum.accumulate(
             np.where(newline | (codes == 0x0A), np.arange(codes.size), -1)
@@ -161,19 +163,20 @@ def split_paragraphs(
         starts = line_starts[text] + 1
         empty = newlines > 1
     else:
-        ends = (newlines > 1) | (_between(kinds == _BREAK, text) > 0)
+        ends = (newlines > 1) | (_between(kinds == BREAK, text) > 0)
+        item = end_before_items(ends, codes, text, newlines, None if not continues else item)
         after = slice(text[-1], None)
-        ended = final or newline[after].sum() > 1 or (kinds[after] == _BREAK).any()
-        gaps = np.flatnonzero((_between((kinds != _TEXT) & (kinds != _DROPPED), text) > 0) & ~ends)
+        ended = final or newline[after].sum() > 1 or (kinds[after] == BREAK).any()
+        gaps = np.flatnonzero((_between((kinds != TEXT) & (kinds != DROPPED), text) > 0) & ~ends)
         spaces = text[gaps] + 1
         spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
         codes[spaces] = SPACE
-        keep = kinds == _TEXT
+        keep = kinds == TEXT
         keep[spaces] = True
         starts = text
         empty = np.zeros(text.size - 1, bool)
     kept = np.flatnonzero(keep)
-    own, source = codes[kept], kept + first
+    own, source = codes[kept], stretch.place(kept)
     seen = np.zeros(int(own.max()) + 1, np.bool_)
     seen[own] = True
     alphabet = frozenset(np.flatnonzero(seen).tolist())
@@ -197,14 +200,13 @@ def split_paragraphs(
             paragraphs.append(paragraph(rest, cut, continues))
             rest, continues = cut, True
         if not complete:
-            return Split(
-                paragraphs, int(begin[-1]) if rest == start else int(kept[rest]), continues
-            )
+            used = int(begin[-1]) if rest == start else int(kept[rest])
+            return Split(paragraphs, used, continues, item if continues else 0)
         paragraphs.append(paragraph(rest, end, continues))
         continues = False
         if is_empty[n]:
             nothing = np.empty(0, np.int64)
-            at = first + int(stop[n])
+            at = int(stretch.place(stop[n] - 1)) + 1
             paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
     return Split(paragraphs, codes.size, continues=False)
 
@@ -218,7 +220,7 @@ def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[
     backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
     if not backspaces.size:
         return backspaces
-    struck = (kinds[backspaces - 1] == _TEXT) & (kinds[backspaces + 1] == _TEXT)
+    struck = (kinds[backspaces - 1] == TEXT) & (kinds[backspaces + 1] == TEXT)
     backspaces = backspaces[struck & (codes[backspaces - 1] != _BACKSPACE)]
     before, after = codes[backspaces - 1], codes[backspaces + 1]
     first = (before == _UNDERLINE) | (before == after)
@@ -236,11 +238,11 @@ def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.in
 def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Text, and the blanks that have text after them on their line."""
     places = np.arange(kinds.size)
-    text = np.where(kinds == _TEXT, places, kinds.size)
-    newline = np.where((kinds == _NEWLINE) | (kinds == _BREAK), places, kinds.size)
+    text = np.where(kinds == TEXT, places, kinds.size)
+    newline = np.where((kinds == NEWLINE) | (kinds == BREAK), places, kinds.size)
     next_text = np.minimum.accumulate(text[::-1])[::-1]
     next_newline = np.minimum.accumulate(newline[::-1])[::-1]
-    return (kinds == _TEXT) | ((kinds == _BLANK) & (next_text < next_newline))
+    return (kinds == TEXT) | ((kinds == BLANK) & (next_text < next_newline))
 
 
 def _joins_words(
@@ -258,9 +260,9 @@ def _joins_words(
     hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
     for n in np.flatnonzero(hyphens):
         at, after = text[gaps[n]], text[gaps[n] + 1]
-        word = to_text(codes[after : after + _LOOK_AHEAD])
-        letters = at > 0 and chr(codes[at - 1]).isalpha() and word[0].isalpha()
-        joins[n] |= letters and word.split(maxsplit=1)[0] not in _SUSPENDED
+        word = to_text(codes[after : after + _WORD])
+        within = at > 0 and chr(codes[at - 1]).isalnum() and word[0].isalnum()
+        joins[n] |= within and word.split(maxsplit=1)[0] not in _SUSPENDED
     return joins
 
 

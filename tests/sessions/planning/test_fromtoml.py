@@ -122,7 +122,23 @@ BAD_DESIGNS = [
     ),
     (WIDTHS.replace("2]", "-1]"), "a value is -1 mm; it must be 0 to 50 mm"),
     (WIDTHS.replace("2]", "nan]"), "a value is nan mm; it must be 0 to 50 mm"),
-    (WIDTHS.replace('"a"', '"0"'), "string has no dots; give one with some"),
+    (WIDTHS.replace('"a"', '"⠀"'), "string has no dots; give one with some"),
+    (
+        WIDTHS.replace('"a"', '"1"'),
+        "string: '1' has '1', which may be meant as dots or as…",
+    ),
+    (STRINGS.replace("ab", "le chat"), "strings, number 1: 'le chat' has a blank, which may be…"),
+    (STRINGS.replace("ab", " ab"), "strings, number 1: ' ab' has a blank, which may be meant…"),
+    (STRINGS.replace("ab", "12 3"), "strings, number 1: '12 3' has '1', which may be meant as…"),
+    (STRINGS.replace("ab", "1-4"), "strings, number 1: '1-4' has '1', which may be meant as dots…"),
+    (STRINGS.replace("ab", "a-b"), "strings, number 1: 'a-b' has '-', which may be meant as dots…"),
+    (PAIRS + 'before = "c c"', "before: 'c c' has a blank, which may be meant as a cell or as…"),
+    (PAIRS + 'after = "14"', "after: '14' has '1', which may be meant as dots or as what it is; …"),
+    (
+        '[design]\nkind = "pairs"\nwords = 3\nstrings = ["ab"]',
+        "kind is 'pairs'; the nearest is …, and there is choice, combinations, list",
+    ),
+    ("[design]\nkind = 3\nwords = 3", "kind is 3; it must be a string, in quotation marks"),
     (GAPS.replace('"c"', '"a"'), "string has no cell with a gap; give one with a left and…"),
 ]
 BAD_REST = [
@@ -136,7 +152,31 @@ BAD_REST = [
     ('[[conditions]]\nname = "a"\nhue = 1', "[[conditions]] number 1 has no key 'hue'; the…"),
     ("[rules]\neach_letter = 0", "[rules] each_letter is 0; it must be 1 to 10000"),
     ("[practice]\ntrials = -1", "[practice] trials is -1; it must be 0 to 10000"),
-    ("[practice]\ntrials = 9999", "[design] makes a session of more than 10000 trials; make it…"),
+    (
+        "[practice]\ntrials = 5\n",
+        "[practice] has no items of its own, and those of the test would be given away; give "
+        "strings that the test does not have, or trials = 0",
+    ),
+    (
+        '[practice]\ntrials = 5\nstrings = ["ccc", "ca"]',
+        "[practice] has the string ⠉⠁, which the test shows; give another",
+    ),
+    (
+        '[practice]\ntrials = 5\nstrings = ["⠀"]',
+        "[practice] has a string without dots, and nothing can be felt of it",
+    ),
+    ('[practice]\nstrings = ["b"]', "[practice] has the cell ⠃ (dots 1 and 2), and the VBD's…"),
+    (
+        f'[practice]\nstrings = ["{"c" * 28}"]',
+        "[practice] has a line of 29 cells, lead_cells among them, and the VBD has room…",
+    ),
+    ('[practice]\nstrings = ["c c"]', "[practice] strings: 'c c' has a blank, which may be…"),
+    ("[practice]\nvalues = [1]", "[practice] has no key 'values'; the nearest is …"),
+    ("[rules]\nnever_twice_running = 1", "[rules] never_twice_running is 1; it must be true or…"),
+    (
+        '[practice]\ntrials = 9999\nstrings = ["ccc"]',
+        "[design] makes a session of more than 10000 trials; make it…",
+    ),
     ("[trial]\ngap_s = -1", "[trial] gap_s is -1 s; it must be 0 to 60 s"),
     ("[trial]\nwarning_s = 0", "[trial] warning_s is 0 s; it must be 1 to 3600 s"),
     ("[session]\nlimit_s = 0", "[session] limit_s is 0 s; it must be 1 to 86400 s"),
@@ -187,6 +227,6 @@ class TestErrors:
         refuse(text, f": [rules] {says}; change the strings or the rule")
 
     def test_a_cell_with_dots_that_six_dot_braille_has_not(self):
-        text = STRESS2_HEAD + STRINGS.replace("ab", "8")
+        text = STRESS2_HEAD + STRINGS.replace("ab", "⢀")
         says = "⢀ (dot 8), and the STReSS² with the mapping alternate shows dots …"
         refuse(text, f": [design] has the cell {says} only; leave the cell out")

@@ -5,13 +5,15 @@ import re
 from collections import Counter
 from dataclasses import replace
 from hashlib import sha256
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.sessions.planning.rulebook import broken_rules
 from vbraille.errors import InputError
+from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.plan import Plan, check_plan, make_plan
 from vbraille.sessions.planning.protocol import builtin_names, load_protocol, parse_protocol
 from vbraille.sessions.planning.spelling import LETTERS
@@ -73,15 +75,78 @@ class TestOrders:
 
 class TestPlans:
     def test_they_are_the_same_on_every_machine(self):
-        """If these change, sessions planned by an older version cannot be planned again."""
+        """If these change, make the version of plans another: these cannot be planned again."""
         sums = {
-            protocol.name: sha256(make_plan(protocol, "P07", 42).to_json().encode()).hexdigest()
-            for protocol in (LEGIBILITY, LETTERS_PROTOCOL)
+            name: sha256(make_plan(load_protocol(name), "P07", 42).to_json().encode()).hexdigest()
+            for name in builtin_names()
         }
         assert sums == {
-            "legibility": "b96cd68c655ac7a45f7beac4c0a426b32974eed679f91c8142ffc27bae94f456",
-            "letters": "f685d8a43443cb53e0bfa44d2a3f76534ed864135cdc534695c1cb9cd2a18570",
+            "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
+            "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
+            "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
+            "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",
+            "tuning-width": "e45e7b4e3f18bb90e58a2b716adc9e220a459dd803242bbf7268ad0ac34cab7a",
+            "words": "b16b3cc68f5161937e6c724723e728b9464f7231f63801202b098c7d237899a7",
         }
+
+    def test_protocols_of_one_design_have_orders_of_their_own(self):
+        """Else what was read on paper comes on the device in the order that was learnt."""
+        strings = [
+            [trial.presented for trial in make_plan(load_protocol(name), "P07", 42).trials[:80]]
+            for name in ("control", "legibility")
+        ]
+        assert sorted(strings[0]) == sorted(strings[1])
+        assert strings[0] != strings[1]
+        ranks = []
+        for name in ("tuning-width", "tuning-spacing"):
+            protocol = load_protocol(name)
+            trials = make_plan(protocol, "P07", 42).trials
+            ranks.append(
+                [[protocol.design.values.index(s.value) for s in t.stimuli] for t in trials]
+            )
+        assert sorted(ranks[0]) == sorted(ranks[1])
+        assert ranks[0] != ranks[1]
+
+    @pytest.mark.parametrize("name", builtin_names())
+    def test_rules_of_all_protocols_for_a_few_seeds(self, name):
+        protocol = load_protocol(name)
+        assert protocol.rules.never_twice_running
+        for seed in range(20):
+            assert broken_rules(protocol, f"P{seed:02}", seed) == []
+
+    def test_without_the_rule_the_same_string_comes_twice_running(self):
+        free = replace(LEGIBILITY, rules=Rules())
+        found = [broken_rules(free, "P07", seed) for seed in range(5)]
+        assert all(problems == ["twice running"] for problems in found)
+
+    def test_what_cannot_be_kept_apart_is_refused(self):
+        protocol = parse(
+            '[design]\nkind = "list"\nstrings = ["ab", "ab", "ab", "c"]\n'
+            "[rules]\nnever_twice_running = true"
+        )
+        says = r"^mine cannot keep never_twice_running: one thing is shown too often in a block"
+        with pytest.raises(InputError, match=says):
+            make_plan(protocol, "P07", 1)
+
+    def test_two_strings_take_turns(self):
+        protocol = parse(
+            '[design]\nkind = "list"\nstrings = ["ab", "c"]\nrepeats = 40\n'
+            "[rules]\nnever_twice_running = true"
+        )
+        shown = [trial.presented for trial in make_plan(protocol, "P07", 1).trials]
+        assert {"".join(shown[:2]), "".join(shown[78:])} in ({"⠁⠃⠉"}, {"⠉⠁⠃"})
+        assert all(one != other for one, other in pairwise(shown))
+
+    def test_values_are_practised_that_are_not_compared(self):
+        text = (
+            '[design]\nkind = "choice"\nparameter = "dot_width_mm"\nvalues = [1, 2]\n'
+            'string = "a"\n[practice]\ntrials = 4\nvalues = [1.25, 1.5]\n'
+        )
+        plan = make_plan(parse(text), "P07", 1)
+        assert len(plan.practice) == 4
+        assert {s.value for trial in plan.practice for s in trial.stimuli} == {1.25, 1.5}
+        with pytest.raises(InputError, match=r"\[practice\] has the value 2 mm, which the test"):
+            parse(text.replace("1.25", "2"))
 
     def test_seed_and_participant_make_the_order(self):
         plans = {make_plan(LEGIBILITY, p, s).trials for p in ("P01", "P03") for s in (0, 1)}
@@ -108,10 +173,12 @@ class TestPlans:
             assert len(shown) == 16
             assert set(shown.values()) == {5}
             assert set("".join(shown)) == set("⠁⠉⠈⠀")
+        assert {trial.presented for trial in plan.practice} == set("⠁⠉⠈⠀")
         for trial in (*plan.practice, *plan.trials):
             (stimulus,) = trial.stimuli
-            assert (len(stimulus.masks), trial.asked) == (4, (1, 3))
-            assert stimulus.masks[0] == stimulus.masks[3] == LETTERS["c"]
+            asked = 1 if trial.practice else 2
+            assert (len(stimulus.masks), trial.asked) == (asked + 2, (1, asked + 1))
+            assert stimulus.masks[0] == stimulus.masks[-1] == LETTERS["c"]
             assert stimulus.tuning.texture == (trial.condition == "textured")
             assert (stimulus.geometry, stimulus.value) == (LEGIBILITY.geometry, None)
 
@@ -178,7 +245,7 @@ class TestPlans:
 
     @pytest.mark.parametrize("trials", [0, 1, 7, 500])
     def test_more_practice_does_not_change_the_rest(self, trials):
-        other = replace(LEGIBILITY, practice=trials)
+        other = replace(LEGIBILITY, practice=replace(LEGIBILITY.practice, trials=trials))
         plan = make_plan(other, "P07", 42)
         assert len(plan.practice) == trials
         assert plan.trials == make_plan(LEGIBILITY, "P07", 42).trials

@@ -12,7 +12,8 @@ class TestDamage:
         ("old", "new"),
         [
             ("{", ""),
-            ('"format": 1', '"format": 2'),
+            ('"format": 2', '"format": true'),
+            ('"format": 2', '"format": "2"'),
             ('"seed": 42', '"seed": 42.0'),
             ('"seed": 42', '"seed": -1'),
             ('"seed": 42', '"seed": true'),
@@ -39,6 +40,12 @@ class TestDamage:
         assert old in text
         with pytest.raises(InputError, match=r"^the plan is damaged: .*"):
             Plan.from_json(text.replace(old, new, 1))
+
+    def test_a_plan_of_another_version(self):
+        text = make_plan(load_protocol("words"), "P07", 42).to_json()
+        says = r"^the plan is of version 3, and this vbraille knows the versions 1 and 2; use "
+        with pytest.raises(InputError, match=says):
+            Plan.from_json(text.replace('"format": 2', '"format": 3'))
 
     @pytest.mark.parametrize("text", ["", "[]", "3", "[" * 100_000, '{"format": 1}'])
     def test_what_is_no_plan(self, text):

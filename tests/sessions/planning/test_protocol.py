@@ -13,6 +13,7 @@ from vbraille.geometry import VBD
 from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
 from vbraille.sessions.planning.conduct import Field, Tone
+from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.protocol import (
     builtin_names,
     builtin_text,
@@ -98,7 +99,7 @@ class TestBuiltIns:
             ("nominal", Tuning(texture=0.0)),
             ("textured", Tuning(texture=1.0)),
         ]
-        assert (protocol.trials, protocol.practice) == (160, 8)
+        assert (protocol.trials, protocol.practice.trials) == (160, 8)
         assert (protocol.blocks, protocol.order) == (None, "balanced")
 
     def test_control_is_legibility_on_paper(self):
@@ -114,7 +115,8 @@ class TestBuiltIns:
         assert {c.tuning.cycles for c in protocol.conditions} == {7}
         assert (len(protocol.design.strings), protocol.trials) == (26, 78)
         assert all(len(set(string)) == 5 for string in protocol.design.strings)
-        assert (protocol.blocks, protocol.design.reorder, protocol.practice) == (2, True, 6)
+        assert (protocol.blocks, protocol.design.reorder) == (2, True)
+        assert (protocol.practice.trials, len(protocol.practice.items)) == (6, 6)
         assert (protocol.rules.each_letter, protocol.trial.warning_s) == (5, 30.0)
         assert '"epkgn"' in protocol.text
 
@@ -129,10 +131,23 @@ class TestBuiltIns:
 
 
 class TestParsing:
+    def test_that_of_a_session_is_read_as_it_was_when_it_was_planned(self):
+        text = (
+            f'{STRESS2_HEAD}[design]\nkind = "list"\nstrings = ["le chat", "12 3"]\n'
+            f"[practice]\ntrials = 2\n"
+        )
+        with pytest.raises(InputError, match="'le chat' has a blank"):
+            parse(text)
+        protocol = parse_protocol(text, "s/protocol.toml", planned=True)
+        assert protocol.design.strings == (spell("lechat", {}), (3, 4))
+        assert protocol.practice == Practice(2)
+
     def test_what_is_left_out(self):
         protocol = parse(VBD_HEAD + PAIRS)
         assert protocol.geometry == VBD
-        assert (protocol.medium, protocol.practice, protocol.repeat_faults) == ("device", 0, True)
+        assert (protocol.medium, protocol.repeat_faults) == ("device", True)
+        assert protocol.practice == Practice()
+        assert not protocol.rules.never_twice_running
         assert (protocol.blocks, protocol.order, protocol.design.repeats) == (None, "balanced", 1)
         assert [(c.name, c.tuning, c.own) for c in protocol.conditions] == [
             ("all", Tuning(), frozenset())
@@ -156,7 +171,7 @@ class TestParsing:
             x = "1-2"
             [design]
             kind = "list"
-            strings = ["x⠁ 4"]
+            strings = ["x⠁⠈"]
             repeats = 2
             blocks = "conditions"
             order = "listed"
@@ -169,6 +184,7 @@ class TestParsing:
             texture = 1
             [practice]
             trials = 3
+            strings = ["xx"]
             [trial]
             gap_s = 1
             warning_s = 20
@@ -191,7 +207,8 @@ class TestParsing:
             ("weak", Tuning(0.5, 0.25, 5), {"contrast"}),
             ("fine", Tuning(1.0, 0.75, 9), {"texture", "cycles"}),
         ]
-        assert (protocol.order, protocol.trials, protocol.practice) == ("listed", 4, 3)
+        assert (protocol.order, protocol.trials) == ("listed", 4)
+        assert protocol.practice == Practice(3, ((3, 3),))
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (1.0, 20.0)
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
         assert not protocol.repeat_faults

@@ -8,7 +8,7 @@ import pytest
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.plan import check_plan, make_plan
-from vbraille.sessions.planning.protocol import load_protocol, parse_protocol
+from vbraille.sessions.planning.protocol import builtin_text, load_protocol, parse_protocol
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
@@ -117,6 +117,34 @@ class TestChecking:
         stimulus = plan.trials[0].stimuli[0]
         odd = (replace(stimulus, masks=(*stimulus.masks[:4], 63)),)
         self.refuse(LETTERS_PROTOCOL, changed(plan, 1, stimuli=odd), "is not in the design")
+
+    def test_practice_of_what_the_test_shows(self):
+        plan = make_plan(LEGIBILITY, "P07", 42)
+        test = replace(plan.trials[0], number=1, block=0)
+        given = replace(plan, practice=(test, *plan.practice[1:]))
+        self.refuse(LEGIBILITY, given, "trial 1 of practice shows what is not in the design")
+
+    def test_the_same_string_twice_running(self):
+        plan = make_plan(LEGIBILITY, "P07", 42)
+        first, second = plan.trials[:2]
+        other = next(t for t in plan.trials[2:80] if t.presented == first.presented)
+        swapped = changed(plan, 2, stimuli=other.stimuli)
+        swapped = changed(swapped, other.number, stimuli=second.stimuli)
+        self.refuse(LEGIBILITY, swapped, "trials 1 and 2 show the same")
+        practised = replace(plan.practice[0], number=2)
+        twice = replace(plan, practice=(plan.practice[0], practised, *plan.practice[2:]))
+        self.refuse(LEGIBILITY, twice, "practice trials 1 and 2 show the same")
+
+    def test_a_plan_of_version_1_is_checked_by_its_own_rules(self):
+        """It was drawn from the test, and nothing kept equal strings apart."""
+        lines = builtin_text("legibility").splitlines()
+        kept = [n for n in lines if not n.startswith(("never_twice_running", "strings = "))]
+        protocol = parse_protocol("\n".join(kept), "p", planned=True)
+        plan = make_plan(LEGIBILITY, "P07", 42)
+        practised = [replace(t, number=n, block=0) for n, t in enumerate(plan.trials[76:84], 1)]
+        old = replace(plan, practice=tuple(practised), version=1)
+        check_plan(protocol, old)
+        self.refuse(protocol, replace(old, version=2), "trial 1 of practice shows what is not")
 
     def test_another_order_of_conditions(self):
         plan = make_plan(LEGIBILITY, "P07", 42)

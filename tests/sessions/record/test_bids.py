@@ -11,12 +11,12 @@ import pytest
 from bids_validator import BIDSValidator
 
 from tests.sessions.sittings import MINI, Session
-from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.record import bids
+from vbraille.sessions.record import bids, dataset
 from vbraille.sessions.record.export import rows, to_csv
 from vbraille.sessions.record.traces import read_trace
 
-STEM = "sub-P1/beh/sub-P1_task-mini"
+STEM = "sub-P1/ses-01/beh/sub-P1_ses-01_task-mini"
+EVENTS = f"{STEM}_run-01_events"
 RECORDING = f"{STEM}_run-01_recording-carriage_physio"
 ASKS = MINI + '[[fields]]\nname = "hand"\nask = "Reading hand"\n'
 
@@ -44,11 +44,18 @@ def physio(content, columns):
 
 def test_names_are_those_of_bids(record, files, tmp_path):
     assert sorted(files) == sorted(
-        [f"{STEM}_beh.tsv", f"{STEM}_beh.json", f"{RECORDING}.tsv.gz", f"{RECORDING}.json"]
-    )
-    bids.write(record, tmp_path / "set")
-    written = [p.relative_to(tmp_path / "set") for p in (tmp_path / "set").rglob("*.*")]
-    assert len(written) == 5
+        [
+            f"{STEM}_beh.tsv", f"{STEM}_beh.json", f"{EVENTS}.tsv", f"{EVENTS}.json",
+            f"{RECORDING}.tsv.gz", f"{RECORDING}.json",
+        ]
+    )  # fmt: skip
+    dataset.write(record, tmp_path / "set")
+    written = [
+        path.relative_to(tmp_path / "set")
+        for path in (tmp_path / "set").rglob("*")
+        if path.is_file()
+    ]
+    assert len(written) == 10
     for path in written:
         assert BIDSValidator().is_bids(f"/{path}"), path
     assert not BIDSValidator().is_bids(f"/{STEM}_trials.tsv")
@@ -57,7 +64,7 @@ def test_names_are_those_of_bids(record, files, tmp_path):
 def test_labels_have_letters_and_digits_only(record):
     named = replace(record, plan=replace(record.plan, participant="P-0_7", protocol="a-b"))
     for path in bids.files(named):
-        assert path.startswith("sub-P07/beh/sub-P07_task-ab_")
+        assert path.startswith("sub-P07/ses-01/beh/sub-P07_ses-01_task-ab_")
         assert BIDSValidator().is_bids(f"/{path}"), path
 
 
@@ -74,7 +81,8 @@ def test_every_column_is_described(files):
     assert sidecar["TaskName"] == "mini"
     for name in table(files[f"{STEM}_beh.tsv"])[0]:
         assert sidecar[name]["Description"]
-        assert sidecar[name].get("Units") == ("s" if name.endswith("_s") else None)
+        unit = next((unit for unit in ("s", "mm") if name.endswith(f"_{unit}")), None)
+        assert sidecar[name].get("Units") == unit
     sidecar = json.loads(files[f"{RECORDING}.json"])
     assert (sidecar["SamplingFrequency"], sidecar["StartTime"]) == (1000.0, 0.0)
     assert sidecar["Columns"] == ["x_mm", "speed_mm_s", "frame", "line", "flags"]
@@ -127,38 +135,12 @@ def test_a_trace_of_no_use_is_left_out_and_said(record, files):
                 path.write_bytes(content)
             traces = bids.Traces(record)
             made = bids.files(record, traces)
-            assert sorted(made) == [f"{STEM}_beh.json", f"{STEM}_beh.tsv"]
+            assert sorted(made) == [
+                f"{STEM}_beh.json", f"{STEM}_beh.tsv", f"{EVENTS}.json", f"{EVENTS}.tsv",
+            ]  # fmt: skip
             assert len(traces.faults) == 1
             assert [row["answered"] for row in table(made[f"{STEM}_beh.tsv"])] == [
                 row["answered"] for row in table(files[f"{STEM}_beh.tsv"])
             ]
     finally:
         path.write_bytes(whole)
-
-
-def test_a_dataset_takes_several_participants_and_nobody_twice(record, tmp_path):
-    other = replace(record, plan=replace(record.plan, participant="P2"))
-    bids.write(record, tmp_path)
-    about = (tmp_path / "dataset_description.json").read_bytes()
-    assert json.loads(about)["BIDSVersion"] == "1.9.0"
-    assert len(bids.write(other, tmp_path)) == 4
-    assert (tmp_path / "dataset_description.json").read_bytes() == about
-    before = sorted(tmp_path.rglob("*"))
-    with pytest.raises(InputError, match="is there already; give another directory with --out"):
-        bids.write(record, tmp_path)
-    assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_a_dataset_that_cannot_be_finished_is_not_begun(record, tmp_path, monkeypatch):
-    done = []
-
-    def full(_from, to):
-        done.append(to)
-        if len(done) == 4:
-            raise OSError(28, "No space left on device")
-        to.write_bytes(b"")
-
-    monkeypatch.setattr("os.link", full)
-    with pytest.raises(VbrailleError, match="could not be written: No space left on device"):
-        bids.write(record, tmp_path / "new" / "set")
-    assert list(tmp_path.iterdir()) == []

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tests.cli import program
-from tests.sessions.sittings import MINI, Session
+from tests.sessions.sittings import MINI, Session, crash
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.check import check, check_folder
@@ -35,7 +35,7 @@ def sat(tmp_path_factory):
     path = folder / journal.NAME
     lines = path.read_bytes().splitlines(keepends=True)
     answers = [n for n, line in enumerate(lines) if b'"answer"' in line]
-    path.write_bytes(b"".join(lines[: answers[1]]) + lines[answers[1]][:50])
+    crash(folder, len(b"".join(lines[: answers[1]])) + 50)
     done = program.run("session", "resume", folder)
     assert done.returncode == 0, done.stderr
     assert "torn: 50 bytes at the end of the journal are in journal.torn" in done.stdout
@@ -163,6 +163,7 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
     traces = Traces(record)
     ends = [n + 1 for n, byte in enumerate(whole) if byte == ord("\n")]
     least = max(len(whole) - 4096, ends[0])
+    kept = {trace.name: trace.read_bytes() for trace in folder.glob("trace-*.gz")}
     for cut in range(least, len(whole)):
         told = decode(whole[:cut])
         assert told.events == record.told.events[: sum(end <= cut for end in ends)], cut
@@ -172,7 +173,10 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
         assert progress.done == answers
         if cut % 48 and cut not in ends:
             continue
-        path.write_bytes(whole[:cut])
+        for name, trace in kept.items():
+            (folder / name).write_bytes(trace)
+        path.write_bytes(whole)
+        crash(folder, cut)
         text, good = said(folder)
         assert good, (cut, text)
         assert ("its last line was cut short" in text) == bool(told.torn), cut
@@ -188,7 +192,7 @@ def test_and_whatever_the_cut_it_goes_on_to_the_end(tmp_path, rng):
     path = session.folder / journal.NAME
     for cut in sorted(rng.integers(1, 4096, 8).tolist()):
         whole = path.read_bytes()
-        path.write_bytes(whole[: max(len(whole) - cut, whole.index(b"\n") + 1)])
+        crash(session.folder, max(len(whole) - cut, whole.index(b"\n") + 1))
         before = load(session.folder).told.events
         sat = session.sit()
         assert sat.events[: len(before)] == before

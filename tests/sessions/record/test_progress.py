@@ -94,16 +94,16 @@ def test_what_the_experimenter_sets_is_of_the_trials_that_follow():
     assert progress.line == 2
 
 
-def test_notes_and_faults_are_of_the_trial_that_was_open():
+def test_faults_are_of_the_trial_that_was_open():
     fault = ("fault", {"trial": 1, "what": "silent"})
-    notes = ("note", {"text": "before"}), ("note", {"trial": 1, "text": "in it"})
-    progress = told(RUN, notes[0], shown(1), fault, notes[1])
-    assert progress.notes == ["before"]
-    assert (progress.trials[1].notes, progress.trials[1].faults) == (["in it"], ["silent"])
+    progress = told(RUN, shown(1), fault)
+    assert progress.trials[1].faults == ["silent"]
 
 
 def test_practice_counts_on_its_own_and_ends_when_it_is_over():
-    plan = make_plan(parse_protocol(MINI + "[practice]\ntrials = 2\n", "test"), "P1", 1)
+    plan = make_plan(
+        parse_protocol(MINI + '[practice]\ntrials = 2\nstrings = ["aa"]\n', "test"), "P1", 1
+    )
     practised = [RUN, shown(1, practice=True), answered(1, practice=True)]
     progress = told(*practised, plan=plan)
     assert (progress.done, progress.begun) == (0, False)

@@ -5,6 +5,7 @@ import pytest
 
 from tests.sessions.sittings import MINI, Session, of
 from vbraille.errors import InputError
+from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
 from vbraille.sessions.running.answers import Script, Simulated, parse_answers
 from vbraille.sessions.simulated.skin import Exploration
@@ -45,11 +46,25 @@ def test_with_noise_it_errs_and_the_same_seed_errs_in_the_same_way(tmp_path):
     assert 0.05 < wrong < 0.9
 
 
+def test_participants_err_each_in_their_own_way_and_so_do_protocols():
+    other = MINI.replace('"mini"', '"maxi"')
+    read = []
+    for toml, who in ((MINI, "P01"), (MINI, "P02"), (MINI, "p01"), (other, "P01")):
+        protocol = parse_protocol(toml, "test")
+        plan = make_plan(protocol, who, 1)
+        reader = Simulated(protocol, plan, noise=3.0)
+        frames = np.full((500, 1, 12), 0.5, np.float32)
+        frames[:, :, ::2] = 0.0
+        felt = [Exploration(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
+        read.append(tuple(reader.next(plan.trials[0], n, felt)[0] for n in range(1, 20)))
+    assert len(set(read)) == 4
+
+
 def test_a_repeated_trial_has_noise_of_its_own(tmp_path):
     protocol = parse_protocol(MINI, "test")
     session = Session(tmp_path / "s", hand="sweep:150")
     session.sit(("cue", "stop"))
-    reader = Simulated(protocol, 1, noise=3.0)
+    reader = Simulated(protocol, session.plan, noise=3.0)
     frames = np.full((500, 1, 12), 0.5, np.float32)
     frames[:, :, ::2] = 0.0
     felt = [Exploration(frames, np.linspace(-8, 45, 500), np.arange(500) / 100)]
@@ -69,11 +84,14 @@ def test_a_file_gives_its_lines_in_order_without_comments(tmp_path):
 
 @pytest.mark.parametrize("spec", ["simulated:x", "simulated:-1", "simulated:nan", "simulated:1e9"])
 def test_a_noise_that_is_none_is_one_sentence(spec):
+    protocol = parse_protocol(MINI, "test")
+    plan = make_plan(protocol, "P1", 1)
     with pytest.raises(InputError, match="noise is"):
-        parse_answers(spec, parse_protocol(MINI, "test"), 1)
+        parse_answers(spec, protocol, plan)
 
 
 def test_paper_cannot_be_felt():
     paper = parse_protocol(builtin_text("control"), "test")
+    plan = make_plan(paper, "P1", 1)
     with pytest.raises(InputError, match="control is read on paper"):
-        parse_answers("simulated", paper, 1)
+        parse_answers("simulated", paper, plan)

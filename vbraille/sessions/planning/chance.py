@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from hashlib import sha256
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Hashable, Iterable
 
 _Item = TypeVar("_Item")
 
@@ -33,6 +34,51 @@ class Chance:
         for last in range(len(order) - 1, 0, -1):
             other = int(self._random() * (last + 1))
             order[last], order[other] = order[other], order[last]
+        return order
+
+    def apart(
+        self,
+        items: Iterable[_Item],
+        content: Callable[[_Item], Hashable],
+        before: Hashable = None,
+    ) -> list[_Item]:
+        """Items in an order in which no two neighbours have the same content.
+
+        Each is drawn from those left that differ from the one before, all as likely; but
+        what more than half of those left have comes next, since it would come twice
+        running else. So items that come equally often are equally likely at every place.
+
+        Parameters
+        ----------
+        items
+            In any order.
+        content
+            Of an item.
+        before
+            Content of what comes before them; None if nothing does.
+
+        Raises
+        ------
+        ValueError
+            If there is no such order.
+        """
+        left = [(content(item), item) for item in items]
+        counts = Counter(kind for kind, _ in left)
+        order: list[_Item] = []
+        while left:
+            must = next((kind for kind, n in counts.items() if n > len(left) // 2), None)
+            if must is not None and must == before:
+                raise ValueError("something is in more than half of them")
+            while True:
+                at = int(self._random() * len(left))
+                kind, item = left[at]
+                if kind == must if must is not None else kind != before:
+                    break
+            left[at] = left[-1]
+            left.pop()
+            counts[kind] -= 1
+            order.append(item)
+            before = kind
         return order
 
 

@@ -230,14 +230,18 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """How often each letter of the alphabet is shown in each condition.
+    """What a plan must keep beside its design.
 
     Parameters
     ----------
     each_letter
-        Exactly; None if it does not matter.
+        How often each letter of the alphabet is shown in each condition, exactly; None if it
+        does not matter.
     each_letter_at_least
-        At least.
+        The same, at least.
+    never_twice_running
+        Whether no two neighbouring trials may show the same: the same string, the same cells
+        in whatever order where they are reordered, or the same two values one after the other.
 
     Raises
     ------
@@ -247,6 +251,7 @@ class Rules:
 
     each_letter: int | None = None
     each_letter_at_least: int | None = None
+    never_twice_running: bool = False
 
     def __post_init__(self) -> None:
         check_range("each_letter", self.each_letter, 1, MOST_TRIALS)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
+from itertools import permutations
 from typing import TYPE_CHECKING
 
 from vbraille.geometry import BOUNDS_MM
@@ -17,13 +18,18 @@ from vbraille.sessions.planning.design import (
     Rules,
     StringList,
 )
+from vbraille.sessions.planning.practice import Item, Practice
 from vbraille.sessions.planning.section import quote
-from vbraille.sessions.planning.spelling import UNREAD, spell
+from vbraille.sessions.planning.spelling import UNREAD, spell, spell_string
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vbraille.geometry import Geometry
     from vbraille.render import Tuning
     from vbraille.sessions.planning.section import Section
+
+    _Spelled = Callable[[str, dict[str, int]], tuple[int, ...]]
 
 ORDERS = ("balanced", "listed", "shuffled")
 PER_CONDITION = "conditions"
@@ -31,6 +37,7 @@ ONLY_CONDITION = "all"
 
 # Keys of the file, and what `Tuning` calls them.
 _TUNING = {"texture": "texture", "contrast": "contrast", "texture_cycles": "cycles"}
+_COUNTS = ("each_letter", "each_letter_at_least")
 _KINDS = {
     "combinations": ("characters", "length", "before", "after"),
     "list": ("strings", "reorder"),
@@ -81,17 +88,23 @@ def read_keys(root: Section) -> dict[str, int]:
     return keys
 
 
-def read_design(root: Section, keys: dict[str, int]) -> tuple[Design, int | None, str]:
-    """What ``[design]`` has: the design, its blocks (None: one a condition) and their order."""
+def read_design(
+    root: Section, keys: dict[str, int], *, planned: bool
+) -> tuple[Design, int | None, str]:
+    """What ``[design]`` has: the design, its blocks (None: one a condition) and their order.
+
+    With `planned`, strings are spelled as version 0.1 took them.
+    """
     every = {key for own in _KINDS.values() for key in own}
+    # First of all: another kind may have other keys.
+    kind = root.table("design", None).one_of("kind", _KINDS)
     design = root.table("design", ("kind", "repeats", "blocks", "order", *sorted(every)))
-    kind = design.one_of("kind", _KINDS)
     for key in sorted(every - set(_KINDS[kind])):
         if key in design:
             others = " or ".join(repr(other) for other in _KINDS if key in _KINDS[other])
             design.fail(f"{key} is of kind = {others}; leave it out of kind = {kind!r}")
     with design.checking():
-        return (_READERS[kind](design, keys), *_blocks(design))
+        return (_READERS[kind](design, keys, spell if planned else spell_string), *_blocks(design))
 
 
 def read_conditions(root: Section, model: Model, tuning: Tuning) -> tuple[Condition, ...]:
@@ -107,15 +120,36 @@ def read_conditions(root: Section, model: Model, tuning: Tuning) -> tuple[Condit
 
 def read_rules(root: Section) -> Rules:
     """What ``[rules]`` has."""
-    names = [field.name for field in fields(Rules)]
-    table = root.table("rules", names)
+    table = root.table("rules", (*_COUNTS, "never_twice_running"))
     with table.checking():
-        return Rules(**{name: table.maybe_whole(name) for name in names})
+        return Rules(
+            **{name: table.maybe_whole(name) for name in _COUNTS},
+            never_twice_running=table.flag("never_twice_running", False),
+        )
 
 
-def read_practice(root: Section) -> int:
-    """How many trials of practice there are."""
-    return root.table("practice", ("trials",)).whole("trials", 0)
+def read_practice(
+    root: Section, keys: dict[str, int], design: Design, *, planned: bool
+) -> Practice:
+    """What ``[practice]`` has; with `planned` it may lack items, as in version 0.1."""
+    given = "values" if isinstance(design, Choice) else "strings"
+    table = root.table("practice", ("trials", given))
+    items: tuple[Item, ...] = ()
+    if given in table and isinstance(design, Choice):
+        items = tuple(permutations(table.numbers(given), 2))
+    elif given in table:
+        with table.checking(f"{given}: "):
+            items = tuple(spell_string(text, keys) for text in table.texts(given))
+    with table.checking():
+        practice = Practice(table.whole("trials", 0), items)
+    if problem := practice.problem(design):
+        table.fail(problem)
+    if practice.trials and not items and not planned:
+        table.fail(
+            f"has no items of its own, and those of the test would be given away; "
+            f"give {given} that the test does not have, or trials = 0"
+        )
+    return practice
 
 
 def read_paces(root: Section) -> tuple[TrialPace, SessionPace]:
@@ -179,37 +213,35 @@ def _blocks(design: Section) -> tuple[int | None, str]:
     return design.whole("blocks"), "shuffled"
 
 
-def _combinations(design: Section, keys: dict[str, int]) -> Combinations:
+def _combinations(design: Section, keys: dict[str, int], spelled: _Spelled) -> Combinations:
     characters = []
     for text in design.texts("characters"):
         masks = spell(text, keys)
         if len(masks) != 1:
             design.fail(f"characters have {quote(text)}, {len(masks)} cells; give one each")
         characters += masks
+    around: dict[str, tuple[int, ...]] = {}
+    for key in ("before", "after"):
+        with design.checking(f"{key}: "):
+            around[key] = spelled(design.text(key, ""), keys)
     return Combinations(
-        tuple(characters),
-        design.whole("length"),
-        spell(design.text("before", ""), keys),
-        spell(design.text("after", ""), keys),
-        design.whole("repeats", 1),
+        tuple(characters), design.whole("length"), repeats=design.whole("repeats", 1), **around
     )
 
 
-def _string_list(design: Section, keys: dict[str, int]) -> StringList:
+def _string_list(design: Section, keys: dict[str, int], spelled: _Spelled) -> StringList:
     strings = []
     for number, text in enumerate(design.texts("strings"), 1):
         with design.checking(f"strings, number {number}: "):
-            strings.append(spell(text, keys))
+            strings.append(spelled(text, keys))
     return StringList(tuple(strings), design.flag("reorder", False), design.whole("repeats", 1))
 
 
-def _choice(design: Section, keys: dict[str, int]) -> Choice:
-    return Choice(
-        design.one_of("parameter", PARAMETERS),
-        design.numbers("values"),
-        spell(design.text("string"), keys),
-        design.whole("repeats", 1),
-    )
+def _choice(design: Section, keys: dict[str, int], spelled: _Spelled) -> Choice:
+    parameter, values = design.one_of("parameter", PARAMETERS), design.numbers("values")
+    with design.checking("string: "):
+        string = spelled(design.text("string"), keys)
+    return Choice(parameter, values, string, design.whole("repeats", 1))
 
 
 _READERS = {"combinations": _combinations, "list": _string_list, "choice": _choice}

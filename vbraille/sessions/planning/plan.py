@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from itertools import cycle, islice
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning import planfile
 from vbraille.sessions.planning.chance import Chance, balanced_orders
 from vbraille.sessions.planning.design import Combinations, StringList
+from vbraille.sessions.planning.practice import Item, content
 from vbraille.sessions.planning.rules import check_plan, is_balanced
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
 
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
 
-_Item = tuple[float, ...]  # the cells asked for, or the values compared
-_Shown = tuple[_Item, "Condition"]
+_Shown = tuple[Item, "Condition"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +45,9 @@ class Plan:
         Which of the balanced orders of conditions, from 1; 0 if there is only one.
     practice, trials
         In the order in which they are shown.
+    version
+        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
+        name. Nothing makes such plans any more; those of sessions are kept.
 
     Raises
     ------
@@ -58,17 +61,21 @@ class Plan:
     order: int
     practice: tuple[Trial, ...]
     trials: tuple[Trial, ...]
+    version: int = planfile.VERSIONS[-1]
 
     def __post_init__(self) -> None:
         check_participant(self.participant)
         check_seed(self.seed)
         if self.order < 0:
             raise ValueError(f"order is {self.order}; it must be 0 or more")
+        if self.version not in planfile.VERSIONS:
+            raise ValueError(f"version is {self.version}; it must be 1 or 2")
 
     def to_json(self) -> str:
         """JSON, a trial a line; the same bytes on every machine."""
         return planfile.encode(
             {
+                "format": self.version,
                 "protocol": self.protocol,
                 "participant": self.participant,
                 "seed": self.seed,
@@ -95,6 +102,7 @@ class Plan:
                 head.whole("order"),
                 runs["practice"],
                 runs["trials"],
+                head.whole("format"),
             )
 
 
@@ -135,12 +143,13 @@ def make_plan(
     except ValueError as error:
         raise InputError(str(error)) from None
     order = _choose_order(protocol, participant, order)
-    chance = Chance(f"{seed} {participant}")
-    blocks = _blocks(protocol, conditions, order, chance)
+    drawn = f"{protocol.name} {seed} {participant}"
+    chance = Chance(drawn)
+    blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
     trials = [
         _trial(protocol, item, condition, block)
         for block, shown in enumerate(blocks, 1)
-        for item, condition in chance.shuffled(shown)
+        for item, condition in shown
     ]
     plan = Plan(
         protocol.name,
@@ -148,7 +157,7 @@ def make_plan(
         seed,
         order,
         # By chances of its own: another number of practice trials leaves the others as they are.
-        _numbered(_practice(protocol, conditions, Chance(f"{seed} {participant} practice"))),
+        _numbered(_practice(protocol, conditions, Chance(f"{drawn} practice"))),
         _numbered(trials),
     )
     check_plan(protocol, plan)
@@ -219,18 +228,41 @@ def _blocks(
     return blocks
 
 
-def _items(protocol: Protocol, chance: Chance) -> list[list[_Item]]:
+def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> list[list[_Shown]]:
+    """What each block shows, in the order in which it does."""
+    if not protocol.rules.never_twice_running:
+        return [chance.shuffled(block) for block in blocks]
+
+    def shows(shown: _Shown) -> Item:
+        return content(protocol.design, shown[0])
+
+    ordered: list[list[_Shown]] = []
+    before: Item | None = None
+    for block in blocks:
+        try:
+            ordered.append(chance.apart(block, shows, before))
+        except ValueError:
+            raise InputError(
+                f"{protocol.name} cannot keep never_twice_running: one thing is shown too often "
+                f"in a block or in practice; show more different ones, or leave the rule out"
+            ) from None
+        if block:
+            before = shows(ordered[-1][-1])
+    return ordered
+
+
+def _items(protocol: Protocol, chance: Chance) -> list[list[Item]]:
     """What each condition shows, with the cells of its strings in their order."""
-    items: list[_Item] = [*protocol.design.items()]
+    items: list[Item] = [*protocol.design.items()]
     if not (isinstance(protocol.design, StringList) and protocol.design.reorder):
         return [items for _ in protocol.conditions]
     showings = {cells: _reorderings(cells, chance) for cells in dict.fromkeys(items)}
     return [[next(showings[cells]) for cells in items] for _ in protocol.conditions]
 
 
-def _reorderings(cells: _Item, chance: Chance) -> Iterator[_Item]:
+def _reorderings(cells: Item, chance: Chance) -> Iterator[Item]:
     """Orders of some cells by chance, without end; none comes again before all have come."""
-    seen: set[_Item] = set()
+    seen: set[Item] = set()
     all_orders = _count_orders(cells)
     while True:
         order = tuple(chance.shuffled(cells))
@@ -241,7 +273,7 @@ def _reorderings(cells: _Item, chance: Chance) -> Iterator[_Item]:
             seen.clear()
 
 
-def _count_orders(cells: _Item) -> int:
+def _count_orders(cells: Item) -> int:
     """How many different orders some cells have: n! by the product of k! of equal ones."""
     count = 1
     for place in range(1, len(cells)):
@@ -251,18 +283,22 @@ def _count_orders(cells: _Item) -> int:
 
 
 def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -> list[Trial]:
-    """Trials drawn from all conditions alike."""
-    runs = [
-        [(item, condition) for item in chance.shuffled(items)]
-        for condition, items in zip(conditions, _items(protocol, chance), strict=True)
+    """Trials of the items of practice, and of all conditions, alike."""
+    practice, design = protocol.practice, protocol.design
+    reorders = isinstance(design, StringList) and design.reorder
+    orders = {item: _reorderings(item, chance) for item in practice.items if reorders}
+    deck: list[Item] = []
+    while practice.items and len(deck) < practice.trials:
+        deck += chance.shuffled(practice.items)
+    drawn = [
+        (next(orders[item]) if reorders else item, condition)
+        for item, condition in zip(deck[: practice.trials], cycle(conditions), strict=False)
     ]
-    drawn = islice(
-        cycle(shown for turn in zip(*runs, strict=True) for shown in turn), protocol.practice
-    )
-    return [_trial(protocol, item, condition, 0) for item, condition in chance.shuffled(drawn)]
+    (shown,) = _ordered(protocol, [drawn], chance)
+    return [_trial(protocol, item, condition, 0) for item, condition in shown]
 
 
-def _trial(protocol: Protocol, item: _Item, condition: Condition, block: int) -> Trial:
+def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> Trial:
     """Make a trial of an item of the design; it gets its number later."""
     design, tuning = protocol.design, condition.tuning
     if isinstance(design, Combinations | StringList):

@@ -16,8 +16,8 @@ from vbraille.sessions.planning.stimuli import Stimulus, Trial
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-FORMAT = 1
-_HEAD = ("protocol", "participant", "seed", "order")
+VERSIONS = (1, 2)  # of the making of plans; the file's layout is the same
+_HEAD = ("format", "protocol", "participant", "seed", "order")
 _RUNS = ("practice", "trials")
 _TUNING = tuple(field.name for field in fields(Tuning))
 _GEOMETRY = tuple(field.name for field in fields(Geometry))
@@ -83,9 +83,7 @@ def damage() -> Iterator[None]:
     except RecursionError:
         raise InputError("the plan is damaged: its brackets nest too deep") from None
     except ValueError as error:
-        raise InputError(
-            f"the plan is damaged: {error}; put it back, or make it anew from its seed"
-        ) from None
+        raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
 
 
 def encode(head: dict[str, object], runs: dict[str, tuple[Trial, ...]]) -> str:
@@ -98,7 +96,7 @@ def encode(head: dict[str, object], runs: dict[str, tuple[Trial, ...]]) -> str:
     runs
         Trials by name.
     """
-    lines = [f"{_json(name)}: {_json(value)}" for name, value in {"format": FORMAT, **head}.items()]
+    lines = [f"{_json(name)}: {_json(value)}" for name, value in head.items()]
     for name, trials in runs.items():
         written = ",\n".join(_json(_trial_entry(trial)) for trial in trials)
         lines.append(f"{_json(name)}: [\n{written}\n]" if trials else f"{_json(name)}: []")
@@ -112,11 +110,18 @@ def decode(text: str) -> tuple[Entry, dict[str, tuple[Trial, ...]]]:
     ------
     ValueError
         If it is damaged.
+    InputError
+        If it is of another version.
     """
     tree = json.loads(text)
-    written = tree.pop("format", None) if isinstance(tree, dict) else None
-    if type(written) is not int or written != FORMAT:
-        raise ValueError(f"it is not of format {FORMAT}")
+    written = tree.get("format") if isinstance(tree, dict) else None
+    if type(written) is not int:
+        raise ValueError("it does not say which format it has")
+    if written not in VERSIONS:
+        raise InputError(
+            f"the plan is of version {written}, and this vbraille knows the versions 1 and 2; use "
+            f"the vbraille that made it, or a newer one"
+        )
     head = Entry(tree, (*_HEAD, *_RUNS))
     return head, {name: tuple(map(_read_trial, head.items(name))) for name in _RUNS}
 

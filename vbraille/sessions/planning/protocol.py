@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from vbraille.render import Mapping, Model
     from vbraille.sessions.planning.conduct import Field, SessionPace, Sound, TrialPace
     from vbraille.sessions.planning.design import Condition, Design, Rules
+    from vbraille.sessions.planning.practice import Practice
 
 __all__ = ["MEDIA", "Protocol", "builtin_names", "builtin_text", "load_protocol", "parse_protocol"]
 
@@ -66,7 +67,7 @@ class Protocol:
     rules
         What the finished plan is checked for, beside its design.
     practice
-        Trials before block 1.
+        What comes before block 1.
     trial, session
         Their paces.
     repeat_faults
@@ -98,7 +99,7 @@ class Protocol:
     order: str
     conditions: tuple[Condition, ...]
     rules: Rules
-    practice: int
+    practice: Practice
     trial: TrialPace
     session: SessionPace
     repeat_faults: bool
@@ -155,9 +156,7 @@ class Protocol:
         return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
 
     def _check_trials(self) -> None:
-        if not 0 <= self.practice <= MOST_TRIALS:
-            raise ValueError(f"[practice] trials is {self.practice}; it must be 0 to {MOST_TRIALS}")
-        if self.trials + self.practice > MOST_TRIALS:
+        if self.trials + self.practice.trials > MOST_TRIALS:
             raise ValueError(
                 f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
             )
@@ -170,11 +169,13 @@ class Protocol:
     def _check_cells(self) -> None:
         shown = self.mapping.shown_dots()
         only = f"{_display(self.model, self.mapping)} shows {name_dots(shown)} only"
-        for mask in sorted(self.design.masks):
-            if mask & ~shown:
-                raise ValueError(
-                    f"[design] has the cell {name_cell(mask)}, and {only}; leave the cell out"
-                )
+        practised = {mask for line in self.practice.lines(self.design) for mask in line}
+        for table, masks in (("[design]", self.design.masks), ("[practice]", practised)):
+            for mask in sorted(masks):
+                if mask & ~shown:
+                    raise ValueError(
+                        f"{table} has the cell {name_cell(mask)}, and {only}; leave the cell out"
+                    )
         for key, mask in self.keys.items():
             if mask & ~shown:
                 raise ValueError(
@@ -187,16 +188,19 @@ class Protocol:
                 f"[display] lead_cells is {self.lead_cells}; it must be 0 to {MOST_LEAD}"
             )
         values = self.design.values if isinstance(self.design, Choice) else (None,)
-        for value in values:
+        practised = self.practice.lines(self.design)
+        longest = max((self.design.cells, *map(len, practised)))
+        whose = "[design]" if longest == self.design.cells else "[practice]"
+        for value in (*values, *sorted(self.practice.values(self.design))):
             at = "" if value is None else f" at a value of {value:g} mm"
             try:
                 room = self.geometry_at(value).cells_per_line(self.model.array.span_mm)
             except ValueError as error:
                 raise ValueError(f"[design]{at}: {error}") from None
-            cells = self.lead_cells + self.design.cells
+            cells = self.lead_cells + longest
             if cells > room:
                 raise ValueError(
-                    f"[design] has a line of {cells} cells{at}, lead_cells among them, and the "
+                    f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
                     f"{self.model.title} has room for {room}; make it shorter, or travel_mm longer"
                 )
 
@@ -228,7 +232,7 @@ def load_protocol(spec: str) -> Protocol:
     return parse_protocol(builtin_text(spec), f"{spec}.toml")
 
 
-def parse_protocol(text: str, where: str) -> Protocol:
+def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
     """Check a protocol.
 
     Parameters
@@ -237,6 +241,9 @@ def parse_protocol(text: str, where: str) -> Protocol:
         TOML.
     where
         The file, as messages name it.
+    planned
+        Whether it is that of a session: its plan has been made, and what version 0.1 took
+        is taken still (blanks and dot numbers in strings, practice of the test's items).
 
     Raises
     ------
@@ -260,7 +267,7 @@ def parse_protocol(text: str, where: str) -> Protocol:
     model = MODELS[root.one_of("model", MODELS)]
     mapping, geometry, lead_cells, tuning = fromtoml.read_display(root, model)
     keys = fromtoml.read_keys(root)
-    design, blocks, order = fromtoml.read_design(root, keys)
+    design, blocks, order = fromtoml.read_design(root, keys, planned=planned)
     trial, session = fromtoml.read_paces(root)
     with root.checking():
         return Protocol(
@@ -278,7 +285,7 @@ def parse_protocol(text: str, where: str) -> Protocol:
             order=order,
             conditions=fromtoml.read_conditions(root, model, tuning),
             rules=fromtoml.read_rules(root),
-            practice=fromtoml.read_practice(root),
+            practice=fromtoml.read_practice(root, keys, design, planned=planned),
             trial=trial,
             session=session,
             repeat_faults=root.table("faults", ("repeat",)).flag("repeat", True),

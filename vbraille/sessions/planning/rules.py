@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.design import Choice, Combinations, StringList
+from vbraille.sessions.planning.design import Choice, Combinations
+from vbraille.sessions.planning.practice import Item, content
 from vbraille.sessions.planning.spelling import to_braille
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-
-Content = tuple[float, ...]  # the cells asked for, or the values compared
 
 
 def is_balanced(protocol: Protocol) -> bool:
@@ -36,29 +37,58 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
     try:
         if plan.protocol != protocol.name:
             raise ValueError(f"it is of the protocol {plan.protocol}")
-        if len(plan.practice) != protocol.practice:
+        practised = _practised(protocol) if plan.version > 1 else set(wanted)
+        if len(plan.practice) != protocol.practice.trials:
             raise ValueError(
-                f"{len(plan.practice)} trials are practice, and {protocol.practice} must be"
+                f"{len(plan.practice)} trials are practice, and {protocol.practice.trials} must be"
             )
-        for trials in (plan.practice, plan.trials):
+        for trials, shows in ((plan.practice, practised), (plan.trials, wanted)):
             for number, trial in enumerate(trials, 1):
                 about = f"trial {number} of {'practice' if trials is plan.practice else 'all'}"
                 if trial.number != number:
                     raise ValueError(f"{about} has the number {trial.number}")
-                problem = _problem_of_trial(protocol, trial, wanted)
+                problem = _problem_of_trial(protocol, trial, shows)
                 if problem:
                     raise ValueError(f"{about} {problem}")
+        if plan.version > 1:
+            _check_practice(protocol, plan)
         _check_counts(protocol, plan, wanted)
         _check_tuning(protocol, plan)
         _check_blocks(protocol, plan)
+        if protocol.rules.never_twice_running:
+            _check_neighbours(protocol, plan)
     except ValueError as error:
         raise InputError(
             f"the plan of {plan.participant} for {protocol.name} breaks a rule: {error}; "
-            f"make it anew from its seed"
+            f"put it back as it was"
         ) from None
 
 
-def _wanted(protocol: Protocol) -> Counter[Content]:
+def _practised(protocol: Protocol) -> set[Item]:
+    """What practice may show."""
+    return {content(protocol.design, item) for item in protocol.practice.items}
+
+
+def _check_practice(protocol: Protocol, plan: Plan) -> None:
+    """Check that nothing of the test is practised."""
+    shown = {_content(protocol, trial) for trial in plan.trials}
+    for trial in plan.practice:
+        if _content(protocol, trial) in shown:
+            raise ValueError(f"practice trial {trial.number} shows what the test shows")
+
+
+def _check_neighbours(protocol: Protocol, plan: Plan) -> None:
+    """Check that no two neighbours show the same."""
+    for trials in (plan.practice, plan.trials):
+        for trial, following in pairwise(trials):
+            if _content(protocol, trial) == _content(protocol, following):
+                raise ValueError(
+                    f"{'practice ' if trial.practice else ''}trials {trial.number} and "
+                    f"{following.number} show the same"
+                )
+
+
+def _wanted(protocol: Protocol) -> Counter[Item]:
     """How often each condition must show each thing."""
     design = protocol.design
     if isinstance(design, Combinations):
@@ -70,18 +100,14 @@ def _wanted(protocol: Protocol) -> Counter[Content]:
     return Counter({thing: n * design.repeats for thing, n in Counter(things).items()})
 
 
-def _content(protocol: Protocol, trial: Trial) -> Content:
+def _content(protocol: Protocol, trial: Trial) -> Item:
     """What a trial shows, as `_wanted` has it."""
-    design = protocol.design
-    if isinstance(design, Choice):
+    if isinstance(protocol.design, Choice):
         return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
-    masks = trial.stimuli[0].masks[slice(*trial.asked)]
-    if isinstance(design, StringList) and design.reorder:
-        return tuple(sorted(masks))
-    return masks
+    return content(protocol.design, trial.stimuli[0].masks[slice(*trial.asked)])
 
 
-def _problem_of_trial(protocol: Protocol, trial: Trial, wanted: Counter[Content]) -> str:
+def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item]) -> str:
     """Say what is wrong with a trial by itself; empty if nothing is."""
     design = protocol.design
     if len(trial.stimuli) != (2 if isinstance(design, Choice) else 1):
@@ -95,7 +121,7 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, wanted: Counter[Content]
             return "asks for other cells than those between the delimiters"
         if isinstance(design, Choice) and stimulus.masks != design.string:
             return "shows another string than the design's"
-    if _content(protocol, trial) not in wanted:
+    if _content(protocol, trial) not in shows:
         return "shows what is not in the design"
     for stimulus in trial.stimuli:
         if stimulus.geometry != protocol.geometry_at(stimulus.value):
@@ -176,23 +202,23 @@ def check_balance(orders: list[tuple[int, ...]]) -> None:
         raise ValueError("a condition does not follow each other one equally often")
 
 
-def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Content]) -> None:
+def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Item]) -> None:
     """Check how often each condition shows each thing, and each letter."""
     for condition in protocol.conditions:
         trials = [trial for trial in plan.trials if trial.condition == condition.name]
         shown = Counter(_content(protocol, trial) for trial in trials)
-        for content, times in wanted.items():
-            if shown[content] != times:
+        for item, times in wanted.items():
+            if shown[item] != times:
                 raise ValueError(
-                    f"condition {condition.name} shows {_name(protocol, content)} "
-                    f"{shown[content]} times, and must {times} times"
+                    f"condition {condition.name} shows {_name(protocol, item)} "
+                    f"{shown[item]} times, and must {times} times"
                 )
         problem = protocol.rules.problem(trial.stimuli[0].masks for trial in trials)
         if problem:
             raise ValueError(f"in condition {condition.name} {problem}")
 
 
-def _name(protocol: Protocol, content: Content) -> str:
+def _name(protocol: Protocol, item: Item) -> str:
     if isinstance(protocol.design, Choice):
-        return " and ".join(f"{value:g} mm" for value in content)
-    return to_braille(tuple(map(int, content)))
+        return " and ".join(f"{value:g} mm" for value in item)
+    return to_braille(tuple(map(int, item)))

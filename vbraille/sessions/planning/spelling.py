@@ -64,6 +64,38 @@ def spell(text: str, keys: dict[str, int]) -> tuple[int, ...]:
     return tuple(mask for _, mask in _cells(text, keys))
 
 
+def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
+    """Cells of a string of a protocol, one for each character; empty for an empty one.
+
+    Nothing in it is guessed: a blank may be meant as a cell or as a space between two, and
+    a number as dots or as a number.
+
+    Parameters
+    ----------
+    text
+        Keys, letters a to z and Unicode braille.
+    keys
+        Dot mask of each key of the protocol; they win over letters.
+
+    Raises
+    ------
+    ValueError
+        If a character is something else.
+    """
+    for character in text:
+        if character.isspace():
+            raise ValueError(
+                f"{_shorten(text)} has a blank, which may be meant as a cell or as nothing; write "
+                f"a blank cell as Unicode braille (U+2800) or by a key of [keys], or leave it out"
+            )
+        if _DOT_NUMBERS.fullmatch(character):
+            raise ValueError(
+                f"{_shorten(text)} has {character!r}, which may be meant as dots or as what it "
+                f"is; write each cell as a letter, a key of [keys] or Unicode braille"
+            )
+    return tuple(_by_character(character, text, keys) for character in text)
+
+
 def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: int) -> str:
     """Answer as it is kept: a Unicode braille character a place, ``?`` for one not read.
 
@@ -201,5 +233,8 @@ def _count(number: int) -> str:
 
 def _quote(text: str) -> str:
     """What was typed, as it can be said in a sentence."""
-    text = text.strip()
+    return _shorten(text.strip())
+
+
+def _shorten(text: str) -> str:
     return repr(text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}…")

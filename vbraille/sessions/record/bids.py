@@ -9,29 +9,27 @@ from __future__ import annotations
 import gzip
 import io
 import json
-import re
-from contextlib import suppress
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.errors import InputError
-from vbraille.sessions.record.export import COLUMNS, Traces, encode, rows, to_csv, write_new
-from vbraille.sessions.record.folder import missing
-from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.anonymous import anonymous, number_of
+from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
+from vbraille.sessions.record.export import COLUMNS, Traces, encode, rows, to_csv
+from vbraille.sessions.record.participants import label_of
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
     from vbraille.sessions.record.folder import Record
 
-_BIDS = "1.9.0"
 _ROWS = 1000  # formatted at once
 _LEVEL = 3  # of gzip: higher ones take longer than all the rest
-_UNITS = {name: "s" for name in COLUMNS if name.endswith("_s")}
+_UNITS = {name: unit for name in COLUMNS for unit in ("s", "mm") if name.endswith(f"_{unit}")}
+SESSION = "SessionNumber"  # by which a session is known to be in a dataset
 # Column of a recording: where it comes from, how it is printed, and what it is.
 _RECORDED = {
     "x_mm": ("x_mm", "%.6g", "mm", "place of the array's left column"),
@@ -42,7 +40,25 @@ _RECORDED = {
 }
 
 
-def files(record: Record, traces: Traces | None = None) -> dict[str, bytes]:
+def stem_of(record: Record, session: str) -> str:
+    """Path of a session's files in a dataset, up to what tells them apart.
+
+    Parameters
+    ----------
+    session
+        Its label among the participant's, such as "01".
+    """
+    who, task = label_of(record.plan.participant), label_of(record.plan.protocol)
+    return f"sub-{who}/ses-{session}/beh/sub-{who}_ses-{session}_task-{task}"
+
+
+def files(
+    record: Record,
+    traces: Traces | None = None,
+    *,
+    session: str = "01",
+    without_times: bool = False,
+) -> dict[str, bytes]:
     """Files of a session, by their paths in the dataset.
 
     Parameters
@@ -52,20 +68,29 @@ def files(record: Record, traces: Traces | None = None) -> dict[str, bytes]:
     traces
         Its traces, for who wants to know what is wrong with them; what can be read of them
         is written.
+    session
+        Its label among the participant's.
+    without_times
+        Whether times of day, paths and notes are left out.
     """
     traces = Traces(record) if traces is None else traces
-    who, task = _label(record.plan.participant), _label(record.plan.protocol)
-    stem = f"sub-{who}/beh/sub-{who}_task-{task}"
+    stem = stem_of(record, session)
+    table = rows(record, traces)
+    if without_times:
+        table = anonymous(record, table)
     made = {
-        f"{stem}_beh.tsv": encode(to_csv(rows(record, traces), "\t", "n/a")),
-        f"{stem}_beh.json": _json(_beh(record)),
+        f"{stem}_beh.tsv": encode(to_csv(table, "\t", "n/a")),
+        f"{stem}_beh.json": _json(_beh(record, table[0])),
     }
-    started = [run for run in Progress(record.plan, record.told.events).runs if "trace" in run]
-    for number, run in enumerate(started, 1):
-        name = f"{stem}_run-{number:02}_recording-carriage_physio"
-        ticks = traces.read(run["trace"]).ticks
-        if not ticks.size:
+    for number, run in enumerate(runs_of(record), 1):
+        ticks = traces.read(run.event["trace"]).ticks if "trace" in run.event else None
+        first_ns = None if ticks is None or not ticks.size else int(ticks["time_ns"][0])
+        name = f"{stem}_run-{number:02}"
+        made[f"{name}_events.tsv"] = encode(run.table(first_ns, without_times=without_times))
+        made[f"{name}_events.json"] = _json(EVENT_COLUMNS)
+        if ticks is None or not ticks.size:
             continue
+        name += "_recording-carriage_physio"
         made[f"{name}.tsv.gz"] = _recording(ticks)
         made[f"{name}.json"] = _json(
             {
@@ -76,74 +101,26 @@ def files(record: Record, traces: Traces | None = None) -> dict[str, bytes]:
                     column: {"Units": unit, "Description": what} if unit else {"Description": what}
                     for column, (_, _, unit, what) in _RECORDED.items()
                 },
-                "Trace": run["trace"],
-                "Manufacturer": run["device"]["name"],
+                **({} if without_times else {"Trace": run.event["trace"]}),
+                "Manufacturer": run.event["device"]["name"],
             }
         )
     return made
-
-
-def write(record: Record, folder: Path, traces: Traces | None = None) -> list[Path]:
-    """Write a session into a dataset, which is begun if there is none; the files written.
-
-    Raises
-    ------
-    InputError
-        If one of the files is there already, or cannot be made; nothing is written then.
-    VbrailleError
-        If the disk does not take them; nothing is left then.
-    """
-    made = {folder / name: content for name, content in files(record, traces).items()}
-    about = folder / "dataset_description.json"
-    written: list[Path] = []
-    try:
-        for path in made:
-            if path.exists():
-                raise InputError(f"{path} is there already; give another directory with --out")
-        if not about.exists():
-            made[about] = _json(_about(record))
-        parents = {parent for path in made for parent in missing(path.parent)}
-        for parent in sorted(parents):  # each after the one that it is in
-            parent.mkdir(exist_ok=True)
-            written.append(parent)
-        for path, content in made.items():
-            write_new(path, content)
-            written.append(path)
-    except BaseException as fault:
-        for path in reversed(written):
-            with suppress(OSError):  # where somebody else has put something meanwhile
-                path.rmdir() if path.is_dir() else path.unlink()
-        if isinstance(fault, OSError):
-            raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
-        raise
-    return list(made)
-
-
-def _about(record: Record) -> dict[str, Any]:
-    """What the dataset is."""
-    return {
-        "Name": "vbraille legibility sessions",
-        "BIDSVersion": _BIDS,
-        "DatasetType": "raw",
-        "GeneratedBy": [{"Name": "vbraille", "Version": record.head["versions"]["vbraille"]}],
-    }
-
-
-def _label(name: str) -> str:
-    """Name without what BIDS does not take in a label."""
-    return re.sub(r"[^A-Za-z0-9]", "", name)
 
 
 def _json(content: dict[str, Any]) -> bytes:
     return encode(json.dumps(content, ensure_ascii=False, indent=2) + "\n")
 
 
-def _beh(record: Record) -> dict[str, Any]:
+def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
     described: dict[str, Any] = {
+        SESSION: number_of(record),
         "TaskName": record.protocol.name,  # of which the task in the files' names is made
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
     for name, what in COLUMNS.items():
+        if name not in columns:
+            continue
         described[name] = {"Description": what}
         if name in _UNITS:
             described[name]["Units"] = _UNITS[name]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime
+from hashlib import sha256
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +12,15 @@ import numpy as np
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.plan import check_plan
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import FILES, load, read_file, read_journal, read_told_trace
+from vbraille.sessions.record.folder import (
+    FILES,
+    load,
+    missed_tie,
+    read_file,
+    read_journal,
+    read_told_trace,
+    whole_lines,
+)
 from vbraille.sessions.record.progress import Progress
 
 if TYPE_CHECKING:
@@ -38,8 +48,15 @@ class Finding:
     good: bool = True
 
 
-def check_folder(folder: Path) -> Iterator[Finding]:
+def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]:
     """Look at every file of a session, also where not all can be used.
+
+    Parameters
+    ----------
+    folder
+        The session's.
+    expected
+        SHA-256 of the journal as it was said at a stop, the end or an export, or its first digits.
 
     Raises
     ------
@@ -48,7 +65,7 @@ def check_folder(folder: Path) -> Iterator[Finding]:
     VbrailleError
         If there is no journal to go by.
     """
-    told = read_journal(folder)
+    told = read_journal(folder, salvaged=True)
     faults: list[Finding] = []
     for name in FILES:
         try:
@@ -56,11 +73,13 @@ def check_folder(folder: Path) -> Iterator[Finding]:
         except VbrailleError as error:
             faults.append(Finding(str(error), good=False))
     if not faults:
-        yield from check(load(folder))
+        yield from check(load(folder, salvaged=True))
+        yield from _check_sum(folder, expected)
         return
     yield from faults
     yield from _check_journal(told)
     yield from _check_torn(folder, told)
+    yield from _check_sum(folder, expected)
     runs = [event for event in told.events if event["event"] == "run"]
     for name in _trace_names(folder, runs):
         yield _describe(name, read_told_trace(folder, name, told))
@@ -85,8 +104,16 @@ def check(record: Record) -> Iterator[Finding]:
 
 def _check_journal(told: Told) -> Iterator[Finding]:
     if told.damage is not None:
-        before = f"the {len(told.events)} events before it are whole"
-        yield Finding(f"{journal.NAME}: damaged, {told.damage}; {before}", good=False)
+        before = len(told.crcs)
+        whole = f"the {before} events before it are whole"
+        after = sum(event["event"] != "lost" for event in told.events[before:])
+        if after:
+            whole += f", and {after} after it, which session export --salvage has too"
+        yield Finding(f"{journal.NAME}: damaged, {told.damage}; {whole}", good=False)
+        for line, previous in zip(told.bad[1:], told.bad, strict=False):
+            if line != previous + 1:
+                what = f"line {line} does not match its checksum either"
+                yield Finding(f"{journal.NAME}: damaged, {what}", good=False)
     else:
         yield Finding(f"{journal.NAME}: {len(told.events)} events, whole")
     if told.torn:
@@ -94,6 +121,38 @@ def _check_journal(told: Told) -> Iterator[Finding]:
             f"{journal.NAME}: its last line was cut short, {len(told.torn)} bytes; "
             f"session resume sets them aside"
         )
+    yield from _check_clock(told)
+
+
+def _check_clock(told: Told) -> Iterator[Finding]:
+    """Say where the wall clock was set back; durations do not go by it."""
+    before: Event | None = None
+    for event in told.events:
+        if event["event"] == "lost":
+            continue
+        if before is not None and (back_s := _seconds_between(event, before)) > 0:
+            yield Finding(
+                f"clock: it was set back by {back_s:g} s or more before event {event['n']}"
+            )
+        before = event
+
+
+def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
+    """Compare the journal's checksum with one that was kept elsewhere."""
+    content = whole_lines(folder)
+    yield Finding(f"record: {journal.sum_of(content)}")
+    if expected is None:
+        return
+    lines, so_far = content.split(b"\n")[:-1], sha256()
+    for number, line in enumerate(lines, 1):
+        so_far.update(line + b"\n")
+        if so_far.hexdigest().startswith(expected):
+            after = len(lines) - number
+            more = f"; {after} events came after them" if after else ""
+            yield Finding(f"expected: the sum is that of the first {number} events{more}")
+            return
+    what = "it was changed since, or the sum is another session's"
+    yield Finding(f"expected: the sum is not that of this journal; {what}", good=False)
 
 
 def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
@@ -122,11 +181,32 @@ def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
     for name in _trace_names(record.folder, progress.runs):
         trace = read_told_trace(record.folder, name, told)
         yield _describe(name, trace)
-        if name not in expected:
+        if name not in expected and not told.bad:
             yield Finding(f"{name}: of a run that the journal does not tell of")
-        if trace.damage is None:
+        # One damage is one complaint: what is not whole is compared with nothing.
+        if trace.damage is None and not told.bad:
+            yield from _check_tie(record.folder / name, trace, told)
             lines = set(np.unique(trace.ticks["line"]).tolist())
             yield from _compare(name, lines, answered.get(name, set()), known | {0}, open_end)
+    if told.format == 1 and expected:
+        yield Finding(
+            "traces: of format 1, which does not tie them to the journal; events that were taken "
+            "off its end and replaced would not be seen"
+        )
+
+
+def _check_tie(path: Path, trace: Trace, told: Told) -> Iterator[Finding]:
+    """Look whether the journal has the lines that a trace was written after."""
+    if told.format == 1:
+        return
+    if (fault := missed_tie(trace.ties, told)) is not None:
+        yield Finding(f"{path.name}: {fault}", good=False)
+    elif trace.loose:
+        yield Finding(f"{path.name}: a part of it is not tied to the journal", good=False)
+    closed = (event for event in told.events if event["event"] == "closed")
+    sums = [e["trace_sha256"] for e in closed if e.get("trace") == path.name]
+    if sums and sums[-1] != sha256(path.read_bytes()).hexdigest():
+        yield Finding(f"{path.name}: it is not what it was when it was closed", good=False)
 
 
 def _trace_names(folder: Path, runs: list[Event]) -> list[str]:
@@ -169,6 +249,12 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
             if showing.trace is not None:
                 lines.setdefault(showing.trace, set()).add(showing.line)
     return lines
+
+
+def _seconds_between(earlier: Event, later: Event) -> float:
+    """From one event to another by the wall clock; below 0 if they are the other way about."""
+    first, last = (datetime.fromisoformat(event["wall"]) for event in (earlier, later))
+    return (last - first).total_seconds()
 
 
 def _known_lines(progress: Progress) -> set[int]:

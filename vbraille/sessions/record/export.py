@@ -15,21 +15,26 @@ import numpy as np
 
 from vbraille.engine.ring import Flag
 from vbraille.errors import InputError, VbrailleError
+from vbraille.geometry import BOUNDS_MM
 from vbraille.sessions.record.folder import read_told_trace
+from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from vbraille.geometry import Geometry
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.notes import Note
     from vbraille.sessions.record.progress import Told
     from vbraille.sessions.record.traces import Trace
 
+_TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
 NEVER_CAME = "the hand never came to the first dot"
 
 # What each column holds: the table's head, and its description in BIDS.
@@ -42,6 +47,15 @@ COLUMNS = {
     "condition": "name, as in the protocol",
     "texture": "level of texture, 0 to 1",
     "contrast": "share of the full swing, 0 to 1",
+    "texture_cycles": "half-cycles of texture a radius, where the model has that",
+    "model": "name of the display",
+    "mapping": "how dot rows are shown by actuator rows, by name",
+    "dot_width_mm": "width of a dot along the line; two values where they are compared",
+    "dot_spacing_mm": "between the two dot columns of a cell; two values where they are compared",
+    "cell_gap_mm": "from a cell's right dot column to the next cell's left one",
+    "row_spacing_mm": "between neighbouring dot rows",
+    "line_pitch_mm": "between lines",
+    "travel_mm": "of the carriage",
     "parameter": "what two stimuli were compared by, in mm; empty where strings are read",
     "presented": "Unicode braille of the cells asked for; two values, the first one first",
     "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
@@ -56,9 +70,12 @@ COLUMNS = {
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the answer, pauses left out",
     "paused_s": "length of the pauses",
+    "early": "1 if it was answered before it was read to its end: its duration does not count",
     "warned": "1 if the warning sounded",
     "faults": "what went wrong with the device in the trial, all attempts",
-    "notes": "of the experimenter",
+    "notes": "of the experimenter, typed in the trial",
+    "notes_before": "typed between the trial shown before and this one",
+    "notes_after": "typed between this trial and the one shown next, or the end",
     "cue_time": "wall clock at the start signal, UTC",
     "answer_time": "wall clock at the answer, UTC",
     "trace": "file of the trace of the last attempt",
@@ -72,6 +89,8 @@ class Traces:
     ----------
     record
         The session.
+    salvaged
+        Whether what is whole after a damage is used too.
 
     Attributes
     ----------
@@ -79,8 +98,9 @@ class Traces:
         What is wrong with those that were asked for.
     """
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: Record, *, salvaged: bool = False) -> None:
         self.faults: list[str] = []
+        self._salvaged = salvaged
         self._record = record
         self._traces: dict[str, Trace] = {}
 
@@ -96,16 +116,30 @@ class Traces:
     def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
         """Ticks of some lines of a trace, in order; None if not all of them are known."""
         trace = self.read(name)
-        # Line numbers grow along a trace, so that damage cuts the last one short.
+        if trace.damage is None:
+            return _of(trace.ticks, lines)
+        # Line numbers grow along a trace, so that damage cuts the last one short, and in what
+        # comes after it the first one, from which some may be missing.
         known = trace.ticks["line"]
-        if trace.damage is not None and not (known.size and known[-1] > max(lines)):
-            return None
-        # By steps in Python: numpy would copy the whole column, for each trial.
-        first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
-        part = trace.ticks[first:stop]
-        if max(lines) - min(lines) < len(set(lines)):  # there are none between them
-            return part
-        return part[np.isin(part["line"], lines)]
+        if known.size and known[-1] > max(lines):
+            return _of(trace.ticks, lines)
+        for stretch in trace.later if self._salvaged else ():
+            known = stretch["line"]
+            last = stretch is trace.later[-1] or known[-1] > max(lines)
+            if known[0] < min(lines) and last:
+                return _of(stretch, lines)
+        return None
+
+
+def _of(ticks: NDArray[np.void], lines: list[int]) -> NDArray[np.void]:
+    """Ticks of some lines, whose numbers grow along them."""
+    known = ticks["line"]
+    # By steps in Python: numpy would copy the whole column, for each trial.
+    first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
+    part = ticks[first:stop]
+    if max(lines) - min(lines) < len(set(lines)):  # there are none between them
+        return part
+    return part[np.isin(part["line"], lines)]
 
 
 def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
@@ -143,15 +177,22 @@ def walk(
     progress = Progress(record.plan, record.told.events)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
+    notes = read_notes(record.told.events)
     for trial in record.plan.trials:
         told = progress.trials[trial.number]
         row, seen = _row(record, trial, told), None
+        row |= _noted(notes, trial.number)
         strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
         if isinstance(seen, Trajectory):
             row["duration_s"] = round(seen.duration.seconds, 6)
             row["returned"] = int(seen.duration.returned)
+        if told.lost:
+            # A pause may be among them, or that the trial was shown again.
+            seen = f"events of the journal are lost: {spans(told.lost)}"
+            row |= dict.fromkeys(_TIMES, "")
+            row["faults"] = "; ".join([*told.faults, seen])
         yield row | fields, seen
 
 
@@ -159,6 +200,7 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
     """Row of a trial, without what its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
+    protocol, geometries = record.protocol, [stimulus.geometry for stimulus in trial.stimuli]
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
     row |= {
         "session": record.folder.resolve().name,
@@ -169,12 +211,16 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
         "condition": trial.condition,
         "texture": told.tuning.get("texture", tuning.texture),
         "contrast": told.tuning.get("contrast", tuning.contrast),
+        "texture_cycles": tuning.cycles if protocol.model.name == "stress2" else "",
+        "model": protocol.model.name,
+        "mapping": protocol.mapping.name,
+        **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
         "attempt": told.attempts,
         "paused_s": round(told.paused_s, 6),
+        "early": int(told.early),
         "warned": int("warning" in t_s),
         "faults": "; ".join(told.faults),
-        "notes": "; ".join(told.notes),
         "cue_time": told.wall.get("cue", ""),
         "answer_time": told.wall.get("answer", ""),
         "trace": told.showings[-1].trace or "" if told.showings else "",
@@ -200,6 +246,33 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
     return row
 
 
+def _noted(notes: list[Note], trial: int) -> dict[str, str]:
+    """Cells of a trial for the notes in it and around it."""
+    between = [note for note in notes if not note.trial]
+    return {
+        "notes": texts(note for note in notes if note.trial == trial),
+        "notes_before": texts(note for note in between if note.after == trial),
+        "notes_after": texts(note for note in between if note.before == trial),
+    }
+
+
+def _each(geometries: list[Geometry], name: str) -> str:
+    """A length of the stimuli of a trial, once if they agree."""
+    lengths = dict.fromkeys(f"{getattr(geometry, name):g}" for geometry in geometries)
+    return " ".join(lengths)
+
+
+def spans(numbers: Sequence[int]) -> str:
+    """Say numbers that grow, such as 3-5, 9."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and parts[-1][-1] == number - 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{p[0]}-{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in parts)
+
+
 def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
@@ -215,6 +288,8 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
     ticks = traces.of(trace, [showing.line for showing in told.last_attempt])
     if ticks is None:
         return f"{trace} is damaged before the end of it"
+    if not ticks.size:
+        return f"{trace} has no tick of it"
     if not edges:
         return "no dot of it is shown"
     felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)

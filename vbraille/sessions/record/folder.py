@@ -24,14 +24,16 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.traces import TRACE, Trace, read_trace
+from vbraille.sessions.record.salvage import salvage
+from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from vbraille.sessions.record.journal import Told
+    from vbraille.sessions.record.journal import Tie, Told
 
-FORMAT = 1
+FORMAT = 2
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -124,8 +126,8 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
         raise
 
 
-def read_journal(folder: Path) -> Told:
-    """Journal of a session, up to what is damaged or torn.
+def read_journal(folder: Path, *, salvaged: bool = False) -> Told:
+    """Journal of a session, up to what is damaged or torn; salvaged, what is whole after it too.
 
     Raises
     ------
@@ -139,10 +141,16 @@ def read_journal(folder: Path) -> Told:
         content = path.read_bytes()
     except OSError as error:
         raise _no_journal(folder, error) from None
-    told = journal.decode(content)
+    told = salvage(content) if salvaged else journal.decode(content)
     if not told.events:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     first = told.events[0]
+    if 1 in told.bad and not (
+        isinstance(first.get("sha256"), dict)
+        and first["sha256"].keys() >= set(FILES)
+        and first["format"] in range(1, FORMAT + 1)
+    ):
+        raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     if first.get("event") != "session":
         raise InputError(f"{path} is not the journal of a session")
     if first["format"] > FORMAT:
@@ -151,6 +159,21 @@ def read_journal(folder: Path) -> Told:
             f"{FORMAT}; use the vbraille that made it, or a newer one"
         )
     return told
+
+
+def whole_lines(folder: Path) -> bytes:
+    """Journal of a session without a torn end.
+
+    Raises
+    ------
+    VbrailleError
+        If it cannot be read.
+    """
+    try:
+        content = (folder / journal.NAME).read_bytes()
+    except OSError as error:
+        raise _no_journal(folder, error) from None
+    return content[: content.rfind(b"\n") + 1]
 
 
 def read_file(folder: Path, name: str, told: Told) -> bytes:
@@ -174,8 +197,8 @@ def read_file(folder: Path, name: str, told: Told) -> bytes:
     return content
 
 
-def load(folder: Path) -> Record:
-    """Read a session's directory; of a damaged journal, what comes before the damage.
+def load(folder: Path, *, salvaged: bool = False) -> Record:
+    """Read a session's directory; of a damaged journal, what `read_journal` gives.
 
     Raises
     ------
@@ -184,12 +207,12 @@ def load(folder: Path) -> Record:
     VbrailleError
         If a file other than the journal is missing or not what it was.
     """
-    told = read_journal(folder)
+    told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
     return Record(
         folder,
         json.loads(contents[HEAD]),
-        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL)),
+        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True),
         Plan.from_json(contents[PLAN]),
         told,
     )
@@ -214,6 +237,39 @@ def read_told_trace(folder: Path, name: str, told: Told) -> Trace:
     elif damage is None and trace.torn_bytes and (name in closed or _is_member(path, trace)):
         damage = "its last chunk has a wrong length"
     return replace(trace, damage=damage)
+
+
+def missed_tie(ties: Iterable[Tie], told: Told) -> str | None:
+    """Say what the journal has lost that a trace was written after; None if it has all."""
+    for number, crc in ties:
+        if number > len(told.events):
+            return (
+                f"it was written when {journal.NAME} had {number} events, and it has "
+                f"{len(told.events)}: events were lost or taken off its end"
+            )
+        if number and told.crcs[number - 1] != crc:
+            return (
+                f"it was written when event {number} of {journal.NAME} was another: events were "
+                f"taken off its end and replaced"
+            )
+    return None
+
+
+def check_end(folder: Path, told: Told) -> None:
+    """See that a journal has not lost what its traces were written after.
+
+    Raises
+    ------
+    VbrailleError
+        If it has: then nothing may be added to it.
+    """
+    for path in sorted(folder.glob("trace-*.gz")) if told.format > 1 else ():
+        tie = read_last_tie(path)
+        fault = None if tie is None else missed_tie([tie], told)
+        if fault is not None:
+            raise VbrailleError(
+                f"{folder} is not whole: of {path.name}, {fault}; nothing was changed"
+            )
 
 
 def missing(folder: Path) -> list[Path]:

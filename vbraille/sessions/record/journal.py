@@ -11,9 +11,11 @@ import fcntl
 import json
 import os
 import re
+import time
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any, Self
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 from zlib import crc32
 
 from vbraille.errors import InputError, VbrailleError
@@ -26,7 +28,22 @@ if TYPE_CHECKING:
 
 NAME = "journal.jsonl"
 TORN = "journal.torn"
-_LINE = re.compile(rb'(\{.+),"crc":"([0-9a-f]{8})"\}', re.DOTALL)
+LINE = re.compile(rb'(\{.+),"crc":"([0-9a-f]{8})"\}', re.DOTALL)
+
+
+class Tie(NamedTuple):
+    """A line of the journal, as what was written after it names it.
+
+    Parameters
+    ----------
+    number
+        Of its event, from 1; 0 before there was one that was sure to be on the disk.
+    crc
+        Its checksum.
+    """
+
+    number: int
+    crc: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,19 +56,33 @@ class Told:
         Of its lines, up to the first that is not whole.
     good_bytes
         Length of those lines.
-    crc
-        Checksum of the last of them.
+    crcs
+        Checksum of each of them.
     torn
         A last line without an end, as a crash leaves it.
     damage
-        What is wrong with a line that has an end; None if nothing is.
+        What is wrong with the first line that has an end and is not whole; None if nothing is.
+    bad
+        Numbers of all lines that are not whole, if it was salvaged; its events are then those of
+        all others, `vbraille.sessions.record.salvage`.
     """
 
     events: list[Event]
     good_bytes: int
-    crc: int
+    crcs: list[int]
     torn: bytes
     damage: str | None
+    bad: tuple[int, ...] = ()
+
+    @property
+    def crc(self) -> int:
+        """Checksum of the last line that is whole."""
+        return self.crcs[-1] if self.crcs else 0
+
+    @property
+    def format(self) -> int:
+        """Format that the session began in, which it is gone on with in."""
+        return self.events[0].get("format", 1) if self.events else 1
 
 
 def encode(event: Event, crc: int) -> tuple[bytes, int]:
@@ -65,22 +96,30 @@ def encode(event: Event, crc: int) -> tuple[bytes, int]:
 def decode(journal: bytes) -> Told:
     """Events of a journal, as far as it is whole."""
     events: list[Event] = []
+    crcs: list[int] = []
     good = crc = 0
     while (end := journal.find(b"\n", good)) >= 0:
-        found = _LINE.fullmatch(journal[good:end])
+        found = LINE.fullmatch(journal[good:end])
         if found is None or crc32(found[1], crc) != int(found[2], 16):
             damage = f"line {len(events) + 1} does not match its checksum"
-            return Told(events, good, crc, b"", damage)
+            return Told(events, good, crcs, b"", damage)
         crc = int(found[2], 16)
+        crcs.append(crc)
         events.append(json.loads(found[1] + b"}"))
         good = end + 1
     tail = journal[good:]
-    found = _LINE.match(tail)
+    found = LINE.match(tail)
     if found is not None and found.end() < len(tail) and crc32(found[1], crc) == int(found[2], 16):
         # No crash leaves that: the line is whole, and its line break is something else.
         damage = f"line {len(events) + 1} does not end where it should"
-        return Told(events, good, crc, b"", damage)
-    return Told(events, good, crc, tail, None)
+        return Told(events, good, crcs, b"", damage)
+    return Told(events, good, crcs, tail, None)
+
+
+def sum_of(journal: bytes) -> str:
+    """Say how many lines a journal has, and their SHA-256, for people to keep."""
+    lines = journal.count(b"\n")
+    return f"{lines} events, SHA-256 {sha256(journal).hexdigest()}"
 
 
 def sum_of_torn(torn: bytes) -> dict[str, Any]:
@@ -100,6 +139,8 @@ class Journal:
     ----------
     told : Told
         What was in it when it was opened.
+    durable : Tie
+        The last event of this run that is sure to be on the disk.
 
     Raises
     ------
@@ -128,6 +169,7 @@ class Journal:
         except BaseException:
             self.close()
             raise
+        self.durable = Tie(0, 0)
         self._count, self._crc = len(self.told.events), self.told.crc
         self._length = self.told.good_bytes + len(self.told.torn)
 
@@ -178,7 +220,7 @@ class Journal:
         VbrailleError
             If the disk does not take it: it is then not in.
         """
-        numbered = {"n": self._count + 1, **event, "wall": now()}
+        numbered = {"n": self._count + 1, **event, **stamp(self.told.format)}
         line, crc = encode(numbered, self._crc)
         try:
             written = os.write(self._file, line)
@@ -195,6 +237,8 @@ class Journal:
         self._count += 1
         self._crc = crc
         self._length += len(line)
+        if durable:
+            self.durable = Tie(self._count, crc)
         return numbered
 
     def close(self) -> None:
@@ -226,14 +270,25 @@ class Journal:
 
 
 def first_lines(events: Iterable[Event]) -> bytes:
-    """Write a journal that begins with these events."""
-    lines, crc = [], 0
+    """Write a journal that begins with these events; the first tells the format."""
+    lines, crc, form = [], 0, 1
     for n, event in enumerate(events, 1):
-        line, crc = encode({"n": n, **event, "wall": now()}, crc)
+        form = event.get("format", form)
+        line, crc = encode({"n": n, **event, **stamp(form)}, crc)
         lines.append(line)
     return b"".join(lines)
 
 
-def now() -> str:
+def stamp(form: int) -> Event:
+    """When an event was, by the clocks that a format has."""
+    return {"wall": _now()} if form == 1 else {"wall": _now(), "up_s": up_s()}
+
+
+def up_s() -> float:
+    """Seconds since the machine was started, asleep or not: a clock that nobody sets."""
+    return round(time.clock_gettime(time.CLOCK_BOOTTIME), 6)
+
+
+def _now() -> str:
     """Wall-clock time, UTC."""
     return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

@@ -55,8 +55,6 @@ class Told:
         All of them, in order.
     faults
         What went wrong with the device while it ran.
-    notes
-        What the experimenter wrote meanwhile.
     t_s
         When, in seconds of the session, things last happened, by the event's name: presented, cue,
         contact, read, answer, corrected, warning.
@@ -64,8 +62,12 @@ class Told:
         The same, by the wall clock.
     paused_s
         How long it was paused since the cue.
+    early
+        Whether it was answered before the hand had been at its end.
     source
         Where the answer came from: typed, simulated:0.2, a file's name.
+    lost
+        Numbers of events that are not whole in a journal that was salvaged, and may be of it.
     """
 
     attempts: int = 0
@@ -73,11 +75,12 @@ class Told:
     first_answer: str | None = None
     showings: list[Showing] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
+    early: bool = False
     source: str = ""
+    lost: list[int] = field(default_factory=list)
 
     @property
     def last_attempt(self) -> list[Showing]:
@@ -124,8 +127,6 @@ class Progress:
         Seconds that the session has run for.
     ended : bool
         Whether it is over: all trials done, or its time.
-    notes : list[str]
-        Those that belong to no trial.
     torn_bytes : int
         Length of what was set aside of the journal, in all.
     """
@@ -142,11 +143,11 @@ class Progress:
         self.line = 0
         self.script_lines: dict[str, int] = {}
         self.t_s = 0.0
-        self.wall = ""
         self.ended = False
-        self.notes: list[str] = []
         self.torn_bytes = 0
         self._answers = ""
+        self._trial = 0
+        self._lost: list[int] = []
         self._paused_s: float | None = None
         self._answered = 0
         for event in events:
@@ -180,7 +181,6 @@ class Progress:
     def take(self, event: Event) -> None:
         """Go on by an event."""
         self.t_s = max(self.t_s, event["t_s"])
-        self.wall = event["wall"]
         if "script_line" in event:
             self.script_lines[self._answers] = event["script_line"]
         handler = getattr(self, f"_take_{event['event']}", None)
@@ -191,6 +191,9 @@ class Progress:
             name = "corrected" if event.get("corrects") else event["event"]
             told.t_s[name] = event["t_s"]
             told.wall[name] = event["wall"]
+        if "trial" in event and "practice" not in event:
+            self._mark_lost(event["trial"])
+            self._trial = event["trial"]
 
     def _of(self, event: Event) -> Told | None:
         if "trial" not in event:
@@ -202,8 +205,18 @@ class Progress:
         assert told is not None, f"a {event['event']} is of a trial"
         return told
 
-    def _take_session(self, event: Event) -> None:
-        pass
+    def _mark_lost(self, trial: int) -> None:
+        """Mark the trials that events before one of this trial may be of."""
+        first, last = sorted((self._trial or trial, trial))
+        for number in range(first, last + 1) if self._lost else ():
+            told = self.trials[number]
+            told.lost = sorted({*told.lost, *self._lost})
+        self._lost = []
+
+    def _take_lost(self, event: Event) -> None:
+        self._lost.append(event["n"])
+        if self._trial:
+            self.trials[self._trial].lost.append(event["n"])
 
     def _take_run(self, event: Event) -> None:
         self.runs.append(event)
@@ -222,7 +235,7 @@ class Progress:
             event["attempt"],
             event["stimulus"],
             event.get("line", 0),
-            self.runs[-1].get("trace"),
+            self.runs[-1].get("trace") if self.runs else None,
             event.get("tuning", {}),
         )
         told.showings.append(showing)
@@ -238,7 +251,10 @@ class Progress:
         told.source = self._answers
         if self.correcting is not None:
             self.correcting = None
-        elif not event.get("practice"):
+            return
+        told.early = event.get("early", False)
+        self._end_pause(told, event)  # what is not gone on with is over all the same
+        if not event.get("practice"):
             self._answered += 1
 
     def _take_undo(self, event: Event) -> None:
@@ -253,15 +269,13 @@ class Progress:
         if told is not None:
             told.faults.append(event["what"])
 
-    def _take_note(self, event: Event) -> None:
-        told = self._of(event)
-        (self.notes if told is None else told.notes).append(event["text"])
-
     def _take_pause(self, event: Event) -> None:
         self._paused_s = event["t_s"]
 
     def _take_go(self, event: Event) -> None:
-        told = self._of(event)
+        self._end_pause(self._of(event), event)
+
+    def _end_pause(self, told: Told | None, event: Event) -> None:
         if told is not None and self._paused_s is not None:
             told.paused_s += event["t_s"] - self._paused_s
         self._paused_s = None
@@ -273,7 +287,7 @@ class Progress:
         self.tuning = event["tuning"]
         self.line = max(self.line, event.get("line", 0))
         told = self._of(event)
-        if told is not None and "line" in event:
+        if told is not None and told.showings and "line" in event:
             last = told.showings[-1]
             told.showings.append(replace(last, line=event["line"], tuning=event["tuning"]))
 

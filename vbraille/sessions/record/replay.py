@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.folder import Record
 
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
+_HELD = int(Flag.HELD)
 _FIELDS = ("tick", "line", "flags", "x_mm", "share")
 
 
@@ -84,6 +85,9 @@ class Replay:
             else:
                 np.copyto(frame, target)
             self._before = frame
+            if flags & _HELD:  # the loop goes on from what it wrote, and nothing of it was done
+                self._before = frame.copy()
+                frame.fill(0.0)
         return frames
 
 

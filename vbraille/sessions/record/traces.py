@@ -3,7 +3,9 @@
 A trace is a chain of gzip members, each with the ticks of some part of a
 second: records of `TRACE`, little endian. A member's header has an extra field
 with its length and its checksum, so that a trace can be read to the last whole
-one after a crash, and no bit of it flips unseen; gzip itself reads it too.
+one after a crash, and no bit of it flips unseen; gzip itself reads it too. A
+second field names the last line of the journal that was on the disk by then, so
+that lines cannot be taken off the journal and others put there.
 """
 
 from __future__ import annotations
@@ -12,15 +14,19 @@ import os
 import struct
 import zlib
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass
+from hashlib import sha256
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from vbraille.errors import VbrailleError
+from vbraille.sessions.record.journal import Tie
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -41,15 +47,21 @@ TRACE = np.dtype(
 CHUNK_TICKS = 1000
 _FIELDS: tuple[str, ...] = TRACE.names or ()
 _LEVEL = 1  # the fastest; higher ones gain little on counts
-# RFC 1952: no name, no time, level 1, Unix; an extra field "vb" of 8 bytes, which are the length
-# of the member and the checksum of what comes after them.
-_HEADER = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3, 12, 0, ord("v"), ord("b"), 8, 0))
+# RFC 1952: no name, no time, level 1, Unix, extra fields. The first, "vb" of 8 bytes, has the
+# length of the member and the checksum of what comes after the field; format 1 has no other. The
+# second, "vj" of 8 bytes, has the tie to the journal: the number of a line, and its checksum.
+_START = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3))
+_LENGTH_FIELD = b"vb\x08\x00"
+_TIE_FIELD = b"vj\x08\x00"
+_LOOSE = _START + b"\x0c\x00" + _LENGTH_FIELD
+_TIED = _START + b"\x18\x00" + _LENGTH_FIELD
 _EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
 _SIZE = struct.Struct("<I")  # the last of a member: of what was deflated
 _MOST_THREADS = 4
 _WORTH_A_THREAD = 16  # members
-_DEFLATED = len(_HEADER) + _EXTRA.size
+_AFTER_LENGTH = len(_LOOSE) + _EXTRA.size
+_AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + _EXTRA.size
 
 
 class TraceWriter:
@@ -59,6 +71,9 @@ class TraceWriter:
     ----------
     path
         Of the trace; it must not exist.
+    tie
+        Tells which line of the journal is on the disk; None in a session of format 1, whose
+        traces are not tied.
 
     Raises
     ------
@@ -66,8 +81,12 @@ class TraceWriter:
         If the disk does not take it.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, tie: Callable[[], Tie] | None = None) -> None:
         self._path = path
+        self._tie = tie
+        self._tied: Tie | None = None
+        self._bytes = 0
+        self._sum = sha256()
         self._waiting: list[NDArray[np.void]] = []
         self._count = 0
         try:
@@ -88,16 +107,21 @@ class TraceWriter:
 
     def flush(self) -> None:
         """Write what is waiting."""
-        if not self._count:
-            return
-        chunk = _squeeze(np.concatenate(self._waiting).tobytes())
-        self._waiting, self._count = [], 0
+        if self._count:
+            self._write(np.concatenate(self._waiting).tobytes())
+
+    def _write(self, ticks: bytes) -> None:
+        tie = None if self._tie is None else self._tie()
+        chunk = _squeeze(ticks, tie)
+        self._waiting, self._count, self._tied = [], 0, tie
         try:
             written = self._file.write(chunk)
             if written < len(chunk):
                 self._file.write(chunk[written:])  # says why not
         except OSError as error:
             raise self._fault(error) from None
+        self._bytes += len(chunk)
+        self._sum.update(chunk)
 
     def sync(self) -> None:
         """Have all of it on the disk."""
@@ -108,12 +132,19 @@ class TraceWriter:
             raise self._fault(error) from None
 
     def close(self) -> None:
-        """Write what is waiting, and close; further calls do nothing."""
+        """Write what is waiting, tied to the journal as it is now; further calls do nothing."""
         if not self._file.closed:
             try:
                 self.flush()
+                if self._tie is not None and self._tie() != self._tied:
+                    self._write(b"")
             finally:
                 self._file.close()
+
+    def closed(self) -> dict[str, Any]:
+        """What the journal tells of a trace that is closed: its name, its length, its SHA-256."""
+        told: dict[str, Any] = {"trace": self._path.name, "trace_bytes": self._bytes}
+        return told if self._tie is None else {**told, "trace_sha256": self._sum.hexdigest()}
 
     def _fault(self, error: OSError) -> VbrailleError:
         return VbrailleError(
@@ -134,15 +165,33 @@ class Trace:
         Length of a last chunk that a crash cut short.
     damage
         What is wrong with a chunk that is not the last; None if nothing is.
+    ties
+        The journal's lines that its whole chunks name, each once.
+    loose
+        Whether a whole chunk of it names none.
+    later : `TRACE`[m], …
+        Of the whole chunks after the damage, a stretch after each place that is damaged.
     """
 
     ticks: NDArray[np.void]
     torn_bytes: int
     damage: str | None
+    ties: tuple[Tie, ...] = ()
+    loose: bool = False
+    later: tuple[NDArray[np.void], ...] = ()
+
+
+class _Member(NamedTuple):
+    """A whole gzip member: its length, what was deflated, the size of that in bytes, its tie."""
+
+    length: int
+    deflated: memoryview
+    size: int
+    tie: Tie | None
 
 
 def read_trace(path: Path) -> Trace:
-    """Read a trace to its last whole chunk.
+    """Read a trace, and what is whole of it after a damage too.
 
     Raises
     ------
@@ -150,51 +199,108 @@ def read_trace(path: Path) -> Trace:
         If it cannot be read at all.
     """
     try:
-        trace = memoryview(path.read_bytes())
+        trace = path.read_bytes()
     except OSError as error:
         raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
-    members: list[tuple[memoryview, int]] = []
-    at, damage = 0, None
+    view = memoryview(trace)
+    stretches: list[list[_Member]] = [[]]
+    at, damage, torn_bytes = 0, None, 0
     while at < len(trace):
         try:
-            length = _check_member(trace[at:])
+            member = _check_member(view[at:])
+            after = at if member is None else at + member.length
         except ValueError:
-            damage = f"chunk {len(members) + 1} of {path.name} does not match its checksum"
-            break
-        if not length:
-            break
-        (size,) = _SIZE.unpack_from(trace, at + length - _SIZE.size)
-        members.append((trace[at + _DEFLATED : at + length - _TRAILER.size], size))
-        at += length
-    torn_bytes = 0 if damage is not None else len(trace) - at
-    return Trace(_inflate(members), torn_bytes, damage)
+            member, after = None, _next_start(trace, at + 1)
+        if member is not None:
+            stretches[-1].append(member)
+        elif after == at and (after := _next_start(trace, at + 1)) == len(trace):
+            torn_bytes = len(trace) - at if damage is None else 0
+        elif damage is None:
+            damage = f"chunk {len(stretches[0]) + 1} of {path.name} does not match its checksum"
+            stretches.append([])
+        elif stretches[-1]:
+            stretches.append([])
+        at = after
+    ties = [member.tie for members in stretches for member in members]
+    first, *later = (_inflate([(m.deflated, m.size) for m in members]) for members in stretches)
+    return Trace(
+        first,
+        torn_bytes,
+        damage,
+        tuple(dict.fromkeys(tie for tie in ties if tie is not None)),
+        None in ties,
+        tuple(stretch for stretch in later if stretch.size),
+    )
 
 
-def _squeeze(chunk: bytes) -> bytes:
+def read_last_tie(path: Path) -> Tie | None:
+    """Line of the journal that the last chunk of a trace names; None if none does.
+
+    It looks at the heads of the chunks alone, which takes no time.
+    """
+    last = None
+    try:
+        with path.open("rb") as file:
+            size = file.seek(0, os.SEEK_END)
+            at = 0
+            while at + _AFTER_TIE <= size:
+                file.seek(at)
+                head = file.read(_AFTER_TIE)
+                length, _ = _EXTRA.unpack_from(head, len(_TIED))
+                if not head.startswith(_TIED) or length < _AFTER_TIE or at + length > size:
+                    break
+                last = Tie(*_EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD)))
+                at += length
+    except OSError:
+        return None
+    return last
+
+
+def _squeeze(chunk: bytes, tie: Tie | None) -> bytes:
     """One gzip member."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
     body = squeeze.compress(chunk) + squeeze.flush() + _TRAILER.pack(zlib.crc32(chunk), len(chunk))
-    return _HEADER + _EXTRA.pack(_DEFLATED + len(body), zlib.crc32(body)) + body
+    if tie is not None:
+        body = _TIE_FIELD + _EXTRA.pack(*tie) + body
+    head = _LOOSE if tie is None else _TIED
+    return head + _EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def _check_member(trace: memoryview) -> int:
-    """Length of the first gzip member; 0 if it is cut short.
+def _check_member(trace: memoryview) -> _Member | None:
+    """The first gzip member; None if it is cut short.
 
     Raises
     ------
     ValueError
         If it is not what was written.
     """
-    if not _HEADER.startswith(bytes(trace[: len(_HEADER)])):
+    start = bytes(trace[: len(_LOOSE)])
+    if not (_LOOSE.startswith(start) or _TIED.startswith(start)):
         raise ValueError
-    if len(trace) < _DEFLATED:
-        return 0
-    length, crc = _EXTRA.unpack_from(trace, len(_HEADER))
+    if len(trace) < _AFTER_LENGTH:
+        return None
+    length, crc = _EXTRA.unpack_from(trace, len(_LOOSE))
     if len(trace) < length:
-        return 0
-    if length < _DEFLATED + _TRAILER.size or zlib.crc32(trace[_DEFLATED:length]) != crc:
+        return None
+    deflated = _AFTER_LENGTH if start == _LOOSE else _AFTER_TIE
+    if length < deflated + _TRAILER.size or zlib.crc32(trace[_AFTER_LENGTH:length]) != crc:
         raise ValueError
-    return length
+    (size,) = _SIZE.unpack_from(trace, length - _SIZE.size)
+    tie = None
+    if start == _TIED:
+        tie = Tie(*_EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
+    return _Member(length, trace[deflated : length - _TRAILER.size], size, tie)
+
+
+def _next_start(trace: bytes, after: int) -> int:
+    """Where the next whole member begins; the trace's length if none does."""
+    at = trace.find(_START, after)
+    while at >= 0:
+        with suppress(ValueError):
+            if _check_member(memoryview(trace)[at:]) is not None:
+                return at
+        at = trace.find(_START, at + 1)
+    return len(trace)
 
 
 def _inflate(members: list[tuple[memoryview, int]]) -> NDArray[np.void]:

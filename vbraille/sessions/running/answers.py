@@ -18,7 +18,7 @@ from vbraille.sessions.simulated.observer import Observer
 if TYPE_CHECKING:
     from vbraille.render.mappings import Mapping
     from vbraille.render.models import Model
-    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.plan import Plan, Trial
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
@@ -168,8 +168,9 @@ class Simulated:
     ----------
     protocol
         For that, and for the display's nominal distances.
-    seed
-        Of its noise, together with the trial's number and attempt.
+    plan
+        Of the session: its noise is drawn by protocol, participant and seed, together with
+        the trial's number and attempt.
     noise
         Of the observer, `vbraille.sessions.simulated.observer`.
 
@@ -182,7 +183,7 @@ class Simulated:
     typed = False
     felt = True
 
-    def __init__(self, protocol: Design, seed: int, noise: float = 0.0) -> None:
+    def __init__(self, protocol: Design, plan: Plan, noise: float = 0.0) -> None:
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
@@ -195,7 +196,7 @@ class Simulated:
         self._observer = Observer(model.array, mapping, protocol.geometry, noise=noise)
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
-        self._seed = seed
+        self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
 
     def lines(self, wait_s: float) -> list[str]:
         """Nothing, after a wait: it answers when it has read."""
@@ -204,8 +205,8 @@ class Simulated:
 
     def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
         """Answer to what was felt."""
-        drawn = sha256(f"{self._seed} {trial.practice} {trial.number} {attempt}".encode()).digest()
-        random = np.random.default_rng(int.from_bytes(drawn[:8], "big"))
+        drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
+        random = np.random.default_rng(seed_of(drawn))
         if self._compared is not None:
             first, second = felt
             return str(self._observer.compare(first, second, self._compared, random)), 0
@@ -215,7 +216,12 @@ class Simulated:
         return "".join("?" if m is None else chr(0x2800 + m) for m in masks[asked]), 0
 
 
-def parse_answers(spec: str, protocol: Design, seed: int, after: int = 0) -> Answers:
+def seed_of(text: str) -> int:
+    """Seed, 0 … 2⁶⁴ - 1, that a text comes to."""
+    return int.from_bytes(sha256(text.encode()).digest()[:8], "big")
+
+
+def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> Answers:
     """Source of a spec: ``typed``, ``simulated[:NOISE]``, or a file's name.
 
     Raises
@@ -228,7 +234,7 @@ def parse_answers(spec: str, protocol: Design, seed: int, after: int = 0) -> Ans
         return Typed()
     if kind == "simulated":
         try:
-            return Simulated(protocol, seed, float(noise or 0.0))
+            return Simulated(protocol, plan, float(noise or 0.0))
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
     return Script(Path(spec), after)

@@ -7,8 +7,9 @@ whether an answer is right, is said before it, practice excepted.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.sessions.planning.spelling import parse_answer, parse_choice, say_cells
 from vbraille.sessions.running.course import POLL_S, Phase
@@ -51,6 +52,7 @@ class Console:
         self._answers = answers
         self._say = say
         self._wait_s = POLL_S if real else 0.0
+        self._early = ()  # the trial, its attempt, and the answer to it that was asked about
 
     def run(self) -> None:
         """Go on from where the progress is."""
@@ -58,17 +60,35 @@ class Console:
         if self._progress.correcting is not None:
             self._say(f"undo: {course.name(self._progress.correcting)}; type its answer")
         course.next()
+        with Suspension() as suspension:
+            self._go_through(suspension)
+
+    def _go_through(self, suspension: Suspension) -> None:
+        course = self._course
         while course.phase is not Phase.OVER:
+            if suspension.asked:
+                self._suspend(suspension)
             lines = self._answers.lines(self._wait_s)
             if lines is None:
                 self._leave()
                 return
+            if lines:
+                course.look()  # what was felt up to them counts before they do
             for line in lines:
                 if course.phase is not Phase.OVER:
                     self.take(line)
             course.poll()
             if not self._answers.typed:
                 self._ask()
+
+    def _suspend(self, suspension: Suspension) -> None:
+        """Stop the process, in a pause; it goes on by Enter, if there is somebody to press it."""
+        paused = self._course.paused
+        if not paused:
+            self.pause()
+        suspension.stop()
+        if not paused and not self._answers.typed:
+            self.go_on()
 
     def take(self, line: str, number: int = 0) -> None:
         """Do what a line says: an order, an answer, or Enter.
@@ -155,11 +175,15 @@ class Console:
                 raise InputError(f"line {course.script_line} of the answers: {error}") from None
             self._say(f"no answer: {error}")
             return
-        if correcting is None:
-            course.withdraw()
-        told = {"attempt": self._progress.told(trial).attempts, "answer": answer}
+        told: dict[str, Any] = {"attempt": self._progress.told(trial).attempts, "answer": answer}
         if correcting is not None:
             told["corrects"] = True
+        elif not course.reached:
+            if self._asks_whether(trial, answer):
+                return
+            told["early"] = True
+        if correcting is None:
+            course.withdraw()
         course.log("answer", trial, durable=True, **told)
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
         if trial.practice:
@@ -167,6 +191,22 @@ class Console:
         if correcting is None or course.trial is None:
             course.paused = False
             course.next()
+
+    def _asks_whether(self, trial: Trial, answer: str) -> bool:
+        """Ask about an answer that comes before the trial was read, once; whoever is there to."""
+        told = self._progress.told(trial)
+        early = trial.practice, trial.number, told.attempts, answer
+        if not self._answers.typed or early == self._early:
+            return False
+        self._early = early
+        if self._course.display is None:
+            why = "Enter has not said yet that it was read"
+        elif "contact" in told.t_s:
+            why = "it was not read to its end yet"
+        else:
+            why = "nothing was read yet"
+        self._say(f"no answer: {why}; the same answer again is taken")
+        return True
 
     def undo(self, _: str = "") -> None:
         """Take back the last answer."""

@@ -132,6 +132,11 @@ class Course:
         return self.read_said if self.display is None else self.display.read
 
     @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of the open trial; on paper, whether it is read."""
+        return self.read_said if self.display is None else self.display.reached
+
+    @property
     def second_to_come(self) -> bool:
         """Whether a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial
@@ -256,6 +261,25 @@ class Course:
         self.log("tuning", trial, durable=True, tuning=tuning, line=line)
         self.display.retune(self._tuning(trial))
 
+    def look(self) -> bool:
+        """See what the display has to tell; whether its engine still is the one before.
+
+        Raises
+        ------
+        VbrailleError
+            If the device, or the disk, fails for good.
+        """
+        if self.display is None:
+            return True
+        try:
+            happened = self.display.poll()
+        except HostDiedError as fault:
+            self._start_again(fault)
+            return False
+        for each in happened:
+            self._take(each)
+        return True
+
     def poll(self) -> None:
         """See what the display has to tell, and what is due.
 
@@ -264,16 +288,9 @@ class Course:
         VbrailleError
             If the device, or the disk, fails for good.
         """
-        display = self.display
-        if display is not None:
-            try:
-                happened = display.poll()
-            except HostDiedError as fault:
-                self._start_again(fault)
-                return
-            for each in happened:
-                self._take(each)
-        trial = self.trial
+        if not self.look():
+            return
+        trial, display = self.trial, self.display
         if trial is None or self.paused:
             return
         if self.phase is Phase.OPEN:
@@ -346,7 +363,7 @@ class Course:
         elif trial is not None:
             of = {"attempt": self._attempt, "stimulus": self._stimulus, **fields}
             if what == "fault":
-                self._fault(trial, "the device is silent", of)
+                self._fault(trial, of)
             else:
                 self.log(what, trial, **of)
 
@@ -369,11 +386,12 @@ class Course:
             self.read_said = True
             self._say("read: type the answer")
 
-    def _fault(self, trial: Trial, what: str, fields: dict[str, Any]) -> None:
+    def _fault(self, trial: Trial, fields: dict[str, Any]) -> None:
         """Mark the open trial, and have it shown again if the protocol says so."""
         repeats = self.protocol.repeat_faults
-        self.log("fault", trial, durable=True, what=what, **fields)
-        self._say(f"fault: {what}; {self.name(trial)} {'is repeated' if repeats else 'goes on'}")
+        self.log("fault", trial, durable=True, **fields)
+        how = "is repeated" if repeats else "goes on"
+        self._say(f"fault: {fields['what']}; {self.name(trial)} {how}")
         if repeats:
             self.again()
 
@@ -389,6 +407,7 @@ class Course:
             raise fault
         self._say(f"fault: {fault}; it is started again")
         assert self.display is not None, "paper has no engine"
+        self.log("closed", **self.display.close_trace())
         self.display.engine.start()
         self.start(why="fault")
         if trial is not None:

@@ -16,6 +16,7 @@ from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import Exploration
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from collections.abc import Mapping as Named
     from pathlib import Path
 
@@ -24,13 +25,18 @@ if TYPE_CHECKING:
     from vbraille.render.tuning import Tuning
     from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.record.journal import Tie
 
 _PLACES = {
     Placing.DONE: "place: known",
     Placing.MARK: "place: move the carriage over its mark",
     Placing.STOP: "place: move left to the stop, then press Enter",
 }
-_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP)
+# While the device is so, nothing that is shown is felt; and when it has just come to rest.
+_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
+_UNFELT = _AWAY | int(Flag.RESTED)
+# A trial is marked by the first time; who hears of it need not hear of it more often.
+_TOLD_S = 1.0
 
 
 class RunEngine(Engine, Protocol):
@@ -62,7 +68,8 @@ class Happened(NamedTuple):
     ----------
     what
         ``contact``: the array came to the first dot. ``read``: the hand went to the end and
-        back. ``fault``, ``well``: the device went away, is back. ``note``: it has something to say.
+        back. ``fault``, ``well``: what is shown is not felt, is felt again. ``note``: the device
+        has something to say.
     fields
         Of the journal's event.
     """
@@ -84,6 +91,9 @@ class OnDevice:
         Where the trace goes.
     keeps
         Whether what is felt is kept, for a simulated reader.
+    tie
+        Tells which line of the journal is on the disk, for the traces to be tied to; None in a
+        session of format 1.
 
     Attributes
     ----------
@@ -95,13 +105,22 @@ class OnDevice:
 
     by_key = False
 
-    def __init__(self, engine: RunEngine, protocol: Design, folder: Path, *, keeps: bool) -> None:
+    def __init__(
+        self,
+        engine: RunEngine,
+        protocol: Design,
+        folder: Path,
+        *,
+        keeps: bool,
+        tie: Callable[[], Tie] | None = None,
+    ) -> None:
         self.engine = engine
         self.line = 0
         self._protocol = protocol
         self._span_mm = protocol.model.array.span_mm
         self._folder = folder
         self._keeps = keeps
+        self._tie = tie
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
@@ -109,6 +128,8 @@ class OnDevice:
         self._end: EndOfLine
         self._edge_mm: float | None = None
         self._touched = self._read = self._away = self._ready = False
+        self._trial_line = self._shown_line = 0  # the first of the trial, and of the stimulus
+        self._told_ns: int | None = None  # when the last fault of the trial was
         self._felt: list[list[NDArray[np.void]]] = []
 
     def open(self, run: int, line: int) -> str:
@@ -121,14 +142,13 @@ class OnDevice:
         line
             Number of the last line shown in those before.
         """
-        if self._trace is not None:
-            self._trace.close()
+        self.close_trace()
         self.engine.paused = True
         self.line = line
         # A run that was killed before the journal told of it has left its trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
-        self._trace = TraceWriter(self._folder / _trace_name(run))
+        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
         self._newest = self._stimulus = None
         self._away = self._ready = False
         return _trace_name(run)
@@ -149,6 +169,11 @@ class OnDevice:
         return self._read
 
     @property
+    def reached(self) -> bool:
+        """Whether the hand has been at the end of what is shown."""
+        return self._read or self._end.reached
+
+    @property
     def explorations(self) -> list[Exploration]:
         """What was felt of the trial's stimuli so far."""
         together = (np.concatenate(parts) for parts in self._felt)
@@ -163,15 +188,19 @@ class OnDevice:
             Of a trial, or the second that it is to be compared with.
         """
         self._stimulus = stimulus
+        self._shown_line = self.line + 1
         if first:
             self._felt = []
+            self._trial_line = self._shown_line
+            self._told_ns = None
+            self._away = False
         self._felt.append([])
         self._end = EndOfLine(self._span_mm, self._end_mm(stimulus))
         edge_mm = first_edge_mm(
             self._protocol.line(stimulus.masks), self._protocol.mapping, stimulus.geometry
         )
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm
-        self._touched = self._read = self._away = False
+        self._touched = self._read = False
         self.retune(tuning)
         self.engine.paused = False
 
@@ -218,6 +247,8 @@ class OnDevice:
         happened = [Happened("note", {"what": note}) for note in self.engine.take_notes()]
         if not ticks.size:
             return happened
+        before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
+        lost = np.diff(ticks["tick"], prepend=before) != 1
         self._newest = ticks[-1]
         # A carriage that a machine moves may be there for some ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm
@@ -230,7 +261,10 @@ class OnDevice:
             self._placing = placing
             happened.append(Happened("note", {"what": _PLACES[placing]}))
         if self._stimulus is not None:
-            happened += self._follow(ticks)
+            happened += sorted(
+                self._unfelt(ticks, lost) + self._follow(ticks),
+                key=lambda each: each.fields["tick"],
+            )
         return happened
 
     def sync(self) -> None:
@@ -243,21 +277,51 @@ class OnDevice:
         try:
             self.engine.close()
         finally:
-            if self._trace is not None:
-                self._trace.close()
+            self.close_trace()
+
+    def close_trace(self) -> dict[str, Any]:
+        """End the trace, if there is one; what the journal tells of it."""
+        if self._trace is None:
+            return {}
+        self._trace.close()
+        return self._trace.closed()
+
+    def _unfelt(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happened]:
+        """Whether any of these ticks was not felt as the plan has it, and when that was over.
+
+        The rule: a tick of the trial, pauses left out, at which the device was silent, did
+        not know its place, had gone to rest by itself or took no frames, or one before which
+        others were lost. That the array rests because the hand stands still is as it is
+        always read.
+        """
+        shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & Flag.PAUSED == 0)
+        ticks, lost = ticks[shown], lost[shown]
+        if not ticks.size:
+            return []
+        unfelt = (ticks["flags"] & _UNFELT != 0) | lost
+        at = np.flatnonzero(unfelt)
+        happened = []
+        if at.size and not self._away:
+            fault = ticks[int(at[0])]
+            time_ns = int(fault["time_ns"])
+            if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
+                return []
+            self._away, self._told_ns = True, time_ns
+            happened.append(Happened("fault", {"what": _why(fault), **_when(fault)}))
+        if self._away and not unfelt[-1]:
+            self._away = False
+            well = int(at[-1]) + 1 if at.size else 0
+            happened.append(Happened("well", _when(ticks[well])))
+        return happened
 
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
         """What the hand did with the stimulus in these ticks."""
-        ticks = ticks[(ticks["line"] == self.line) & (ticks["flags"] & Flag.PAUSED == 0)]
+        ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & Flag.PAUSED == 0)]
         if not ticks.size:
             return []
         happened = []
         if self._keeps:
             self._felt[-1].append(ticks)
-        away = bool(ticks["flags"][-1] & _AWAY)
-        if away != self._away:
-            self._away = away
-            happened.append(Happened("fault" if away else "well", _when(ticks[-1])))
         if not self._touched and self._edge_mm is not None:
             on = np.flatnonzero(ticks["x_mm"] >= self._edge_mm)
             if on.size:
@@ -272,6 +336,16 @@ class OnDevice:
 
 def _trace_name(run: int) -> str:
     return f"trace-{run:03}.gz"
+
+
+def _why(tick: np.void) -> str:
+    """Why a tick was not felt as the plan has it."""
+    flags = int(tick["flags"])
+    if flags & Flag.SILENT:
+        return "the device is silent"
+    if flags & (Flag.MARK | Flag.STOP):
+        return "the device does not know where its carriage is"
+    return "the array went to rest by itself" if flags & _UNFELT else "ticks of it were lost"
 
 
 def _when(tick: np.void) -> dict[str, Any]:

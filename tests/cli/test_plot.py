@@ -1,0 +1,53 @@
+"""``vbraille plot``: what is drawn where."""
+
+import pytest
+
+TITLE = "drawn: VBD: the array passes a dot 2 mm wide, T = 0 %, "
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Where pictures without a name go."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_picture_that_nobody_named_gets_a_name_of_its_own_and_says_it(call, here):
+    for name in ("vbraille-wave.png", "vbraille-wave-2.png", "vbraille-wave-3.png"):
+        said = call("plot", "wave")
+        assert (said.code, said.out, said.err) == (0, f"{TITLE}{name}\n", "")
+    drawn = sorted(here.glob("*.png"))
+    assert [path.name for path in drawn] == [
+        "vbraille-wave-2.png",
+        "vbraille-wave-3.png",
+        "vbraille-wave.png",
+    ]
+    assert len({path.read_bytes() for path in drawn}) == 1
+
+
+def test_a_picture_with_a_name_has_it(call, here):
+    assert call("plot", "wave", "--out", "mine.svg").out == f"{TITLE}mine.svg\n"
+    assert [path.name for path in here.glob("*.svg")] == ["mine.svg"]
+
+
+def test_numbers_go_nowhere_but_to_the_output(call, here):
+    assert call("plot", "wave", "--csv").out.startswith("x_mm,deflection_column_0,")
+    said = call("plot", "wave", "--csv", "--out", "mine.svg")
+    assert said.code == 2
+    assert "leave out either --csv or --out" in said.err
+    assert not list(here.glob("*.svg"))
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ((), "lines: 3 drawn, from line 1; --lines chooses others"),
+        (("--lines", "2-"), "lines: 2 drawn, from line 2; --lines chooses others"),
+        (("--lines", "2-3"), "lines: 2 drawn, from line 2"),
+        (("--lines", "3"), "lines: 1 drawn, from line 3"),
+    ],
+)
+def test_a_page_says_how_many_lines_it_has(call, text, options, said):
+    out = call("plot", "page", text, *options).out.splitlines()
+    assert out[0].startswith("drawn: STReSS²: line ")
+    assert out[1:] == [said]

@@ -1,0 +1,144 @@
+"""Damaged sessions: all that verifies is exported, what does not is named, once."""
+
+import csv
+import re
+import shutil
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.cli import program
+from tests.cli.test_session import words
+from tests.cli.test_session_bad_input import contents
+from tests.sessions.sittings import MINI
+from vbraille.sessions.record.check import check_folder
+from vbraille.sessions.record.journal import decode, first_lines
+from vbraille.sessions.record.salvage import salvage
+
+LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials
+EVENTS = [{"event": "session", "format": 2, "sha256": {}, "t_s": 0.0}] + [
+    {"event": "note", "text": "x" * n, "t_s": 1.0 + n} for n in range(12)
+]
+WHOLE = first_lines(EVENTS)
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory):
+    """A session that was run to its end."""
+    room = tmp_path_factory.mktemp("salvage")
+    done = program.run(*words(room, LONG))
+    assert done.returncode == 0, done.stderr
+    return room / "s"
+
+
+@pytest.fixture
+def folder(ended, tmp_path):
+    """A copy of it."""
+    return shutil.copytree(ended, tmp_path / "s")
+
+
+def table(path):
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+def damage(folder, pattern, by):
+    """Change something in a line of the journal; the line's number."""
+    path = folder / "journal.jsonl"
+    lines = path.read_bytes().splitlines(keepends=True)
+    at = next(n for n, line in enumerate(lines) if re.search(pattern, line))
+    lines[at] = re.sub(pattern, by, lines[at])
+    path.write_bytes(b"".join(lines))
+    return at + 1
+
+
+def test_one_damaged_line_hides_no_other(call, ended, folder, tmp_path):
+    line = damage(folder, rb'"event":"cue","trial":5,', rb'"event":"cut","trial":5,')
+    before = contents(folder)
+    said = call("session", "export", folder, "--salvage", "--out", tmp_path / "t.csv")
+    assert said.code == 1
+    assert said.err == (
+        f"vbraille: exported is what is whole; of journal.jsonl, line {line} is not whole\n"
+    )
+    whole = tmp_path / "whole.csv"
+    assert call("session", "export", ended, "--out", whole).code == 0
+    for then, now in zip(table(whole), table(tmp_path / "t.csv"), strict=True):
+        if then["trial"] == "5":
+            assert now["answered"] == then["answered"]
+            assert now["faults"] == f"events of the journal are lost: {line}"
+            assert now["response_s"] == now["duration_s"] == now["paused_s"] == ""
+        else:
+            assert now == then
+    # Without --salvage it is as it was: what comes before the damage.
+    assert call("session", "export", folder, "--out", tmp_path / "u.csv").code == 1
+    assert sum(row["answered"] != "" for row in table(tmp_path / "u.csv")) == 4
+    assert call("session", "resume", folder).code == 1
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize(
+    ("pattern", "by"),
+    [
+        (rb'"crc":"........"\}', b'"crc":"00000000"}'),
+        (rb'"event":"answer","trial":3', rb'"event":"answer","trial":4'),
+        (rb'"event":"run"', b'"event":"ran"'),
+        (rb'^\{"n":9,.+\n', b""),
+        (rb'^\{"n":9,.+\n', b"\0" * 300 + b"\n"),
+        (rb'^\{"n":1,', b'{"n":7,'),
+    ],
+)
+def test_one_damage_is_one_complaint(call, folder, tmp_path, pattern, by):
+    damage(folder, pattern, by)
+    faults = [found.text for found in check_folder(folder) if not found.good]
+    assert len(faults) == 1
+    assert faults[0].startswith("journal.jsonl: damaged, line ")
+    assert "after it, which session export --salvage has too" in faults[0]
+    said = call("session", "export", folder, "--salvage", "--out", tmp_path / "t.csv")
+    assert said.code == 1
+    assert re.search(r"of journal.jsonl, lines? [\d-]+ (is|are) not whole\n", said.err)
+    assert sum(row["answered"] != "" for row in table(tmp_path / "t.csv")) >= 31
+
+
+def test_what_comes_after_a_damaged_chunk_of_a_trace_is_used_too(call, ended, folder, tmp_path):
+    path = folder / "trace-001.gz"
+    trace = bytearray(path.read_bytes())
+    trace[len(trace) // 4] ^= 8
+    path.write_bytes(trace)
+    for name, folder_ in (("whole", ended), ("damaged", folder)):
+        call("session", "export", folder_, "--out", tmp_path / f"{name}.csv")
+    said = call("session", "export", folder, "--salvage", "--out", tmp_path / "t.csv")
+    assert said.code == 1
+    assert re.search(r"trace-001.gz is damaged, chunk \d+ of trace-001.gz does not", said.err)
+    whole, damaged, now = (table(tmp_path / f"{name}.csv") for name in ("whole", "damaged", "t"))
+    missing = [n for n, row in enumerate(now) if row["duration_s"] == ""]
+    assert 1 <= len(missing) <= 3 < sum(row["duration_s"] == "" for row in damaged)
+    for n, row in enumerate(now):
+        if n not in missing:
+            assert row == whole[n]
+    faults = [found.text for found in check_folder(folder) if not found.good]
+    assert len(faults) == 1
+
+
+@given(st.integers(0, 8 * len(WHOLE) - 1))
+def test_a_bit_costs_two_events_at_most_and_what_is_kept_is_what_was_written(bit):
+    flipped = bytearray(WHOLE)
+    flipped[bit // 8] ^= 1 << bit % 8
+    told = salvage(bytes(flipped))
+    assert told.damage is not None
+    kept = [event for event in told.events if event["event"] != "lost"]
+    written = decode(WHOLE).events
+    first = bool(told.bad) and told.bad[0] == 1
+    assert all(event in written for event in kept[first:])
+    assert len(kept) >= len(written) - 2
+    assert told.bad
+    lost = {event["n"] for event in told.events if event["event"] == "lost"}
+    assert lost | {event["n"] for event in kept} == set(range(1, len(written) + 1))
+
+
+def test_of_a_whole_journal_salvage_is_all(call, ended, tmp_path):
+    assert salvage(WHOLE) == decode(WHOLE)
+    for options in ((), ("--salvage",)):
+        said = call("session", "export", ended, *options, "--out", tmp_path / f"{options}.csv")
+        assert (said.code, said.err) == (0, "")
+    one, other = (path.read_bytes() for path in tmp_path.glob("*.csv"))
+    assert one == other

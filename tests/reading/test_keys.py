@@ -1,0 +1,118 @@
+"""Keys out of a terminal's bytes, however they are cut into reads."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vbraille.reading.keys import BURST, PASTE, Keys
+
+NAMES = {
+    "\x1b[A": "up",
+    "\x1bOA": "up",
+    "\x1b[B": "down",
+    "\x1bOB": "down",
+    "\x1b[C": "right",
+    "\x1b[D": "left",
+    "\x1b[H": "home",
+    "\x1bOF": "end",
+    "\x1b[1~": "home",
+    "\x1b[3~": "delete",
+    "\x1b[5~": "pageup",
+    "\x1b[6~": "pagedown",
+    "\x1bOP": "f1",
+    "\x1b[[A": "f1",
+    "\x1b[[E": "f5",
+    "\x1b[15~": "f5",
+    "\x1b[21~": "f10",
+    "\x1b[24~": "f12",
+    "\x1b[Z": "backtab",
+    "\x1b[1;5C": "ctrl-right",
+    "\x1b[1;2A": "shift-up",
+    "\x1b[3;4~": "shift-alt-delete",
+    "\x1bx": "alt-x",
+    "n": "n",
+    "T": "T",
+    " ": " ",
+    "é": "é",
+    "字": "字",
+    "😀": "😀",
+    "\x04": "\x04",
+    "\x1b[99~": None,
+    "\x1b[24;80R": None,
+    "\x1b[?1;2c": None,
+    "\x1b[I": None,
+    "\x1b[201~": None,
+    "\x1b[200~n\nq\x1b[31mé\x1b[201~": PASTE,
+}
+
+
+@pytest.mark.parametrize("sent", NAMES, ids=repr)
+def test_the_table(sent):
+    keys = Keys()
+    assert keys.feed(sent.encode() + b"q", 0.0) == [*filter(None, [NAMES[sent]]), "q"]
+    assert keys.wait(9.0) == []
+
+
+@given(st.lists(st.sampled_from(list(NAMES)), max_size=BURST // 2 - 1), st.data())
+def test_it_does_not_matter_where_reads_end(sent, data):
+    typed = "".join(sent).encode()
+    cuts = data.draw(st.lists(st.integers(0, len(typed)), max_size=8))
+    keys, pressed, last = Keys(), [], 0
+    for cut in [*sorted(cuts), len(typed)]:
+        pressed += keys.feed(typed[last:cut], 0.0)
+        pressed += keys.wait(0.04)
+        last = cut
+    assert pressed == [name for key in sent if (name := NAMES[key])]
+
+
+def test_an_escape_alone_is_one_after_50_ms():
+    keys = Keys()
+    assert keys.feed(b"\x1b", 1.0) == []
+    assert keys.wait(1.049) == []
+    assert keys.wait(1.051) == ["escape"]
+    assert keys.feed(b"[A", 1.06) == ["[", "A"]
+    assert keys.feed(b"\x1b\x1b[A", 2.0) == ["escape", "up"]
+    assert keys.feed(b"\x1b", 3.0) == []
+    assert keys.feed(b"[A", 3.2) == ["up"]  # nobody has looked meanwhile: it was there
+
+
+def test_a_sequence_that_does_not_go_on_is_given_up():
+    keys = Keys()
+    assert keys.feed(b"\x1b[1;", 0.0) == []
+    assert keys.wait(0.9) == []
+    assert keys.wait(1.1) == []
+    assert keys.feed(b"n", 1.2) == ["n"]
+    assert keys.feed(b"\x1b[1\x1b[B", 2.0) == ["down"]
+    assert keys.feed(b"\x1b[" + b";" * 70, 3.0) == []
+    assert keys.feed(b"n", 3.1) == ["n"]  # so long a sequence is none
+
+
+@given(st.lists(st.binary(max_size=40), max_size=20))
+def test_no_bytes_are_a_fault_and_all_are_over_after_a_second(pieces):
+    keys = Keys()
+    for n, piece in enumerate(pieces):
+        assert all(keys.feed(piece, n / 100))
+    keys.wait(9.0)
+    assert keys.feed(b" q", 9.1)[-1] == "q"
+
+
+def test_a_paste_is_one_key_however_long_and_ends():
+    keys = Keys()
+    assert keys.feed(b"t\x1b[200~nq", 0.0) == ["t", PASTE]
+    for n in range(100):
+        assert keys.feed(b"nq\n\x1b[A" * 500, 0.1 * n) == []
+    assert keys.feed(b"q\x1b[20", 10.0) == []
+    assert keys.feed(b"1~n", 10.1) == ["n"]
+    assert keys.feed(b"\x1b[200~nq", 11.0) == [PASTE]
+    assert keys.wait(12.1) == []  # its end never came
+    assert keys.feed(b"n", 12.2) == ["n"]
+
+
+def test_a_burst_of_characters_is_a_paste_that_nobody_has_marked():
+    keys = Keys()
+    assert keys.feed(b"n" * 100, 0.0) == ["n"] * 100  # a key held down
+    assert keys.feed(b"\x1b[B" * 100, 0.2) == ["down"] * 100
+    assert keys.feed(b"nnnppptttq", 0.4) == [*"nnnppptttq"]
+    assert keys.feed(b"a text that was pasted, and q", 0.6) == [PASTE]
+    assert keys.feed(b"uit", 0.65) == []  # its end
+    assert keys.feed(b"n", 0.9) == ["n"]

@@ -1,0 +1,139 @@
+"""What a terminal sends for keys, to the names of keys, however it is cut into reads.
+
+A terminal sends characters, and escape sequences for the keys that are none. Both may come in
+pieces: what is unfinished is kept until the rest comes.
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+
+PASTE = "paste"
+ESCAPE = "escape"
+PASTE_ON, PASTE_OFF = b"\x1b[?2004h", b"\x1b[?2004l"  # have pasted text marked as such, or not
+ESCAPE_S = 0.05  # an Escape that nothing follows for so long is the key of that name
+BROKEN_S = 1.0  # so long after its last byte the rest of a sequence, or of a paste, comes no more
+# So many different characters in one read are no typing: the terminal does not mark what is pasted.
+BURST = 20
+_BURST_S = 0.1  # and this is how soon after it comes what belongs to it
+_LONGEST = 64  # characters of a sequence; what is longer is none
+
+# The one table of sequences (ECMA-48 5.4, xterm, the Linux console): what ends them says the key,
+# or the number before a ~ does, and a number after a semicolon says what was held with it.
+_LETTERS = {
+    "A": "up",
+    "B": "down",
+    "C": "right",
+    "D": "left",
+    "F": "end",
+    "H": "home",
+    "P": "f1",
+    "Q": "f2",
+    "R": "f3",
+    "S": "f4",
+    "Z": "backtab",
+    **{f"[{letter}": f"f{n}" for n, letter in enumerate("ABCDE", 1)},
+}
+_NUMBERS = {
+    **dict(enumerate(("home", "insert", "delete", "end", "pageup", "pagedown", "home", "end"), 1)),
+    **{number: f"f{n}" for n, number in enumerate((*range(11, 16), *range(17, 22), 23, 24), 1)},
+}
+_PASTE_BEGINS, _PASTE_ENDS = 200, "\x1b[201~"
+_HELD = ("shift-", "alt-", "ctrl-", "meta-")  # by the bits of the number less 1
+
+_KEY = re.compile(
+    r"\x1b(?:\[(?P<first>[0-9]{0,4})(?:;(?P<held>[0-9]{1,4}))?(?P<end>\[[A-E]|[@-Z\\-~])"
+    r"|O(?P<letter>[!-~])"
+    r"|\[[0-?]*[ -/]*[@-Z\\-~]"  # other sequences, whole
+    r"|(?P<alt>[^\x1b\[O]))"
+    r"|(?P<character>[^\x1b])",
+    re.DOTALL,
+)
+_BEGUN = re.compile(r"\x1b(?:\[(?:\[|[0-?]*[ -/]*)|O)?")
+
+
+class Keys:
+    """Names of keys out of a terminal's bytes.
+
+    A character is its own name. Arrows, function keys and the like have words, what was held
+    with them before: "up", "ctrl-right", "f5", "alt-x". "escape" is the key alone. "paste"
+    stands for a whole pasted text. Sequences that are not in the table give nothing.
+    """
+
+    def __init__(self) -> None:
+        self._decoder = codecs.getincrementaldecoder("utf-8")("ignore")
+        self._tail = ""
+        self._pasting = False
+        self._fed_s = 0.0
+        self._burst_end_s = float("-inf")
+
+    def feed(self, typed: bytes, now_s: float) -> list[str]:
+        """Names of the keys that are whole with these bytes, which came now."""
+        self._fed_s = now_s
+        self._tail += self._decoder.decode(typed)
+        keys = self._take()
+        plain = [key for key in keys if len(key) == 1]
+        within = now_s < self._burst_end_s
+        if not within and (len(plain) < BURST or len(set(plain)) == 1):
+            return keys
+        self._burst_end_s = now_s + _BURST_S
+        return [] if within else [PASTE]
+
+    def wait(self, now_s: float) -> list[str]:
+        """Keys that are known by nothing having come until now."""
+        since_s = now_s - self._fed_s
+        if self._tail == "\x1b" and not self._pasting and since_s >= ESCAPE_S:
+            self._tail = ""
+            return [ESCAPE]
+        if since_s >= BROKEN_S:
+            self._tail = ""
+            self._pasting = False
+        return []
+
+    def _take(self) -> list[str]:
+        """Take whole keys off the tail."""
+        keys: list[str] = []
+        while self._tail:
+            if self._pasting:
+                _, ends, after = self._tail.partition(_PASTE_ENDS)
+                self._pasting = not ends
+                self._tail = after if ends else self._tail[1 - len(_PASTE_ENDS) :]
+                if self._pasting:
+                    break
+                continue
+            found = _KEY.match(self._tail)
+            begun = _BEGUN.match(self._tail)
+            if found is not None:
+                self._tail = self._tail[found.end() :]
+                key = self._name(found)
+            elif begun is not None and begun.end() == len(self._tail) < _LONGEST:
+                break
+            else:  # an Escape before another, or a sequence that is none
+                assert begun is not None, "whatever does not begin with Escape is a key"
+                self._tail = self._tail[begun.end() :]
+                key = ESCAPE if begun.end() == 1 else ""
+            if key:
+                keys.append(key)
+        return keys
+
+    def _name(self, found: re.Match[str]) -> str:
+        if found["character"]:
+            return found["character"]
+        if found["alt"]:
+            return f"alt-{found['alt']}"
+        if found["letter"]:
+            return _LETTERS.get(found["letter"], "")
+        if found["end"] is None:
+            return ""
+        if found["end"] == "~":
+            number = int(found["first"] or 0)
+            if number == _PASTE_BEGINS:
+                self._pasting = True
+                return PASTE
+            name = _NUMBERS.get(number, "")
+        else:
+            name = _LETTERS.get(found["end"], "") if found["first"] in ("", "1") else ""
+        held = int(found["held"] or 1) - 1
+        prefix = "".join(word for bit, word in enumerate(_HELD) if held >> bit & 1)
+        return f"{prefix}{name}" if name else ""

@@ -1,0 +1,173 @@
+"""A line that does not come to its end: what is the matter, said once for each line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.engine.advance import HOME_MM
+from vbraille.engine.ring import Flag
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+STILL_S = 10.0
+REFUSED_S = 1.0  # without a frame taken: said
+HOPELESS_S = 10.0  # the same, where nobody can do anything about it
+# A hand that moves less than this is still.
+STILL_MM = 0.5
+# A hand that turns back so often at the same place, to a millimetre, has met an obstacle there.
+TURNS = 3
+SAME_MM = 1.0
+LEAST_WAY_MM = 20.0  # less is a hand that waits at the left
+_NS_PER_S = 1_000_000_000
+_PLACING = int(Flag.MARK | Flag.STOP)
+
+
+class Waiting:
+    """Watch a hand that does not finish its line.
+
+    Parameters
+    ----------
+    span_mm
+        Of the array.
+    end_mm
+        Right edge of the line's last dot.
+    number
+        Of the line.
+    by_hand
+        Whether the next line comes when the hand returns; else a key brings it.
+    keys
+        Whether there is somebody at a keyboard.
+
+    Attributes
+    ----------
+    hopeless : str or None
+        Why the line will not come to its end unless somebody sees to the device: it takes nothing,
+        or the hand turned back at the same place again and again, before the end.
+    """
+
+    def __init__(
+        self, span_mm: float, end_mm: float, number: int, *, by_hand: bool, keys: bool
+    ) -> None:
+        self.hopeless: str | None = None
+        self._middle_mm = span_mm / 2
+        self._home_mm = HOME_MM - span_mm
+        self._end_mm = end_mm
+        self._number = number
+        self._by_hand = by_hand
+        self._otherwise = "n brings the next line" if keys else "Ctrl-C stops"
+        self._said: set[str] = set()
+        self._since_ns: int | None = None  # when it began to be still, or silent
+        self._refused_ns: int | None = None  # since when the device takes nothing
+        self._at_mm = np.nan  # where it is still
+        self._farthest_mm = -np.inf  # since it was at the left
+        self._turns_mm: list[float] = []
+
+    def rest(self) -> None:
+        """The array rests because somebody wants it: what goes before does not count."""
+        self._since_ns = self._refused_ns = None
+
+    def watch(self, ticks: NDArray[np.void], *, reached: bool) -> Iterator[str]:
+        """What there is to say after these ticks, all of the line, oldest first.
+
+        Parameters
+        ----------
+        reached
+            Whether the hand has been at the end of the line.
+        """
+        yield from self._watch_device(ticks)
+        if self._by_hand and self._refused_ns is None:
+            yield from self._watch_hand(ticks, reached)
+
+    def _watch_hand(self, ticks: NDArray[np.void], reached: bool) -> Iterator[str]:
+        """Whether the hand is on its way through the line."""
+        x_mm = ticks["x_mm"]
+        moved = (np.abs(x_mm - self._at_mm) > STILL_MM).any()
+        found = np.isnan(self._at_mm) != np.isnan(x_mm[-1])
+        if self._since_ns is None or moved or found:
+            self._since_ns, self._at_mm = int(ticks["time_ns"][-1]), float(x_mm[-1])
+        elif ticks["time_ns"][-1] - self._since_ns > STILL_S * _NS_PER_S:
+            yield from self._once("still", self._still(int(ticks["flags"][-1]), reached=reached))
+        if not reached:
+            self._count_turns(x_mm)
+            if len(self._turns_mm) >= TURNS:
+                yield from self._once("turned", self._turned())
+
+    def _watch_device(self, ticks: NDArray[np.void]) -> Iterator[str]:
+        """Whether the device takes what it is sent."""
+        if not ticks["flags"][-1] & Flag.HELD:
+            if "refused" in self._said:
+                self._said.remove("refused")
+                yield f"device: takes frames again; line {self._number} is felt from here on"
+            self._refused_ns = None
+            return
+        now_ns = int(ticks["time_ns"][-1])
+        if self._refused_ns is None:
+            self._refused_ns = now_ns
+        for_s = (now_ns - self._refused_ns) / _NS_PER_S
+        if for_s >= REFUSED_S:
+            yield from self._once(
+                "refused",
+                f"waiting: the device takes no frames, so that nothing is felt; switch it off and "
+                f"on, and line {self._number} goes on",
+            )
+        if for_s >= HOPELESS_S:
+            self.hopeless = (
+                f"the device has taken no frames for {HOPELESS_S:g} s, and line {self._number} "
+                f"was not felt to its end; switch it off and on, and read on from there"
+            )
+
+    def _once(self, what: str, sentence: str) -> Iterator[str]:
+        if sentence and what not in self._said:
+            self._said.add(what)
+            yield sentence
+
+    def _still(self, flags: int, *, reached: bool) -> str:
+        if flags & _PLACING:
+            return ""  # it has been said what to do
+        if flags & Flag.SILENT or np.isnan(self._at_mm):
+            return (
+                f"waiting: the device has not said for {STILL_S:g} s where its carriage is; "
+                f"see that it is on and plugged in, or {self._otherwise}"
+            )
+        if reached:
+            return (
+                f"waiting: line {self._number} is read; move back to the left and the next line "
+                f"comes, or {self._otherwise}"
+            )
+        return (
+            f"waiting: the finger is still at {max(self._at_mm + self._middle_mm, 0):.0f} mm, and "
+            f"line {self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to "
+            f"the left, or {self._otherwise}"
+        )
+
+    def _turned(self) -> str:
+        return (
+            f"waiting: the finger turns back at {self._turns_mm[-1]:.0f} mm, and line "
+            f"{self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to the "
+            f"left, or {self._otherwise}"
+        )
+
+    def _count_turns(self, x_mm: NDArray[np.float64]) -> None:
+        """Keep how far the hand has come, each time that it is back at the left."""
+        home = np.flatnonzero(x_mm <= self._home_mm)
+        away = x_mm[: home[0]] if home.size else x_mm
+        if away.size:
+            self._farthest_mm = max(self._farthest_mm, float(np.fmax.reduce(away)))
+        if not home.size:
+            return
+        place_mm = self._farthest_mm + self._middle_mm
+        if self._farthest_mm > self._home_mm + LEAST_WAY_MM and place_mm < self._end_mm:
+            self._turns_mm.append(place_mm)
+            last = self._turns_mm[-TURNS:]
+            if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
+                self.hopeless = (
+                    f"line {self._number} cannot be read to its end: the finger turns back at "
+                    f"{last[-1]:.0f} mm each time, and the line ends at {self._end_mm:.0f} mm; see "
+                    f"what is in the carriage's way, or give a shorter --travel"
+                )
+        self._farthest_mm = float(np.fmax.reduce(x_mm[home[-1] :]))

@@ -1,0 +1,105 @@
+"""Events of a session as BIDS has them: a table a run, at times that its recording goes by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vbraille.sessions.record.anonymous import without_paths
+from vbraille.sessions.record.export import to_csv
+from vbraille.sessions.record.notes import Note, read_notes
+
+if TYPE_CHECKING:
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.journal import Event
+
+EVENT_COLUMNS = {
+    "onset": {"Description": "from the first row of the run's recording", "Units": "s"},
+    "duration": {"Description": "no event has one that is known", "Units": "s"},
+    "trial_type": {"Description": "what happened, by the names of docs/session-format.md"},
+    "practice": {"Description": "1 in a trial of practice, else 0"},
+    "trial": {"Description": "number of the trial that it happened in"},
+    "trial_before": {"Description": "of a note: the trial that was shown last before it"},
+    "trial_after": {"Description": "of a note: the trial that was shown next"},
+    "value": {"Description": "of an answer, what was answered; of a note, its text; else what"},
+}
+# What is told of in each, and where the words are.
+_VALUES = {
+    "presented": "", "cue": "", "contact": "", "read": "", "warning": "", "answer": "answer",
+    "undo": "", "repeat": "", "fault": "what", "well": "", "device": "what", "pause": "", "go": "",
+    "break": "", "begin": "", "note": "text", "stop": "", "end": "why",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run of a session.
+
+    Parameters
+    ----------
+    event
+        The ``run`` of the journal.
+    events
+        What happened in it.
+    notes
+        Of the session, by the numbers of their events.
+    """
+
+    event: Event
+    events: list[Event]
+    notes: dict[int, Note]
+
+    def table(self, first_ns: int | None, *, without_times: bool) -> str:
+        """Events as a table, with tabs between columns.
+
+        Parameters
+        ----------
+        first_ns
+            Time of the first tick of the run's trace; None if it has none: the run begins then.
+        without_times
+            Whether notes and what may be a path are left out.
+        """
+        begun_s = self._begun_s(first_ns)
+        rows = [
+            self._row(event, begun_s, without_times)
+            for event in self.events
+            if event["event"] in _VALUES and not (without_times and event["event"] == "note")
+        ]
+        # Some are written down a little after what was felt later.
+        rows.sort(key=lambda row: row["onset"])
+        if not rows:
+            return "\t".join(EVENT_COLUMNS) + "\n"
+        return to_csv(rows, "\t", "n/a")
+
+    def _begun_s(self, first_ns: int | None) -> float:
+        """Time of the first tick, in seconds of the session."""
+        timed = next((event for event in self.events if "time_ns" in event), None)
+        if first_ns is None or timed is None:
+            return self.event["t_s"]
+        return timed["t_s"] - (timed["time_ns"] - first_ns) / 1e9
+
+    def _row(self, event: Event, begun_s: float, without_times: bool) -> dict[str, Any]:
+        note = self.notes.get(event["n"])
+        text = str(event.get(_VALUES[event["event"]], ""))
+        return {
+            "onset": round(event["t_s"] - begun_s, 6),
+            "duration": "",
+            "trial_type": event["event"],
+            "practice": int(event.get("practice", False)),
+            "trial": event.get("trial", ""),
+            "trial_before": note.before or "" if note else "",
+            "trial_after": note.after or "" if note else "",
+            "value": without_paths(text) if without_times else text,
+        }
+
+
+def runs_of(record: Record) -> list[Run]:
+    """Runs of a session, in their order."""
+    notes = {note.event: note for note in read_notes(record.told.events)}
+    runs: list[Run] = []
+    for event in record.told.events:
+        if event["event"] == "run":
+            runs.append(Run(event, [], notes))
+        elif runs:
+            runs[-1].events.append(event)
+    return runs

@@ -1,0 +1,71 @@
+"""What the experimenter wrote down, each note with the trials that it stands between."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vbraille.sessions.record.journal import Event
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A note.
+
+    Parameters
+    ----------
+    text
+        As it was typed.
+    event
+        Number of its event in the journal.
+    t_s
+        When, in seconds that the session had run for.
+    before
+        The trial that was shown last before it; 0 if none was.
+    trial
+        The trial that was open; 0 if none was.
+    after
+        The trial that was shown next; 0 if none was.
+    practice
+        Whether it was typed in a trial of practice.
+    """
+
+    text: str
+    event: int
+    t_s: float
+    before: int
+    trial: int
+    after: int
+    practice: bool = False
+
+
+def read_notes(events: Iterable[Event]) -> list[Note]:
+    """Notes of a session, in their order."""
+    notes: list[Note] = []
+    before, waiting = 0, 0  # how many of the notes have their next trial still to come
+    for event in events:
+        practice = event.get("practice", False)
+        trial = 0 if practice else event.get("trial", 0)
+        if event["event"] == "note":
+            told = (event["text"], event["n"], event["t_s"])
+            if trial:
+                notes.append(Note(*told, trial, trial, trial))
+            else:
+                notes.append(Note(*told, before, 0, 0, practice))
+                waiting += 1
+        elif event["event"] == "presented" and trial:
+            for n, note in enumerate(notes) if waiting else ():
+                if not note.after:
+                    # Of a trial that is shown again, the note is in it.
+                    again = trial if note.before == trial else 0
+                    notes[n] = replace(note, trial=again, after=trial)
+            before, waiting = trial, 0
+    return notes
+
+
+def texts(notes: Iterable[Note]) -> str:
+    """Write notes in one cell of a table."""
+    return "; ".join(note.text for note in notes)

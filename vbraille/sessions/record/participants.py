@@ -1,0 +1,42 @@
+"""Pseudonyms that may be one person's: P7, p7, P07 and P-07."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING
+
+from vbraille.sessions.record.folder import HEAD
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def label_of(pseudonym: str) -> str:
+    """Pseudonym, or another name, without what BIDS does not take in a label."""
+    return re.sub(r"[^A-Za-z0-9]", "", pseudonym)
+
+
+def alike(one: str, other: str) -> bool:
+    """Whether two pseudonyms differ in nothing but case, zeros, or what a label leaves out."""
+    return _plain(one) == _plain(other) or label_of(one).lower() == label_of(other).lower()
+
+
+def participants_in(room: Path) -> dict[str, str]:
+    """Participants whose sessions are in a directory, each with the name of one."""
+    found: dict[str, str] = {}
+    try:
+        heads = sorted(room.glob(f"*/{HEAD}"))
+    except OSError:
+        return {}
+    for head in heads:
+        try:
+            told = json.loads(head.read_text("utf-8"))
+            found.setdefault(str(told["participant"]), head.parent.name)
+        except (OSError, ValueError, KeyError, TypeError):
+            continue  # of no session that can be read; who uses it is told
+    return found
+
+
+def _plain(pseudonym: str) -> str:
+    return label_of(re.sub(r"(?<![0-9])0+(?=[0-9])", "", pseudonym)).lower()

@@ -1,0 +1,115 @@
+"""Characters as they are read: as code points, of which kind, and where in the document."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# Cells; a carriage that goes ten metres crosses fewer than this.
+LONGEST_BLANK = 4_096
+TEXT, BLANK, NEWLINE, BREAK, DROPPED = range(5)
+_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all above
+_KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = BLANK
+_KINDS[[0x0A, 0x0B, 0x0D, 0x85, 0x2028]] = NEWLINE
+_KINDS[[0x0C, 0x2029]] = BREAK
+_KINDS[0xAD] = DROPPED  # a soft hyphen is a hint to a typesetter and would split contractions
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch:
+    """A stretch of a document's characters, some of which may have been left out.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Code points.
+    begins : int64[runs]
+        Index of the first character of each run that nothing is left out of; from 0, growing.
+    places : int64[runs]
+        Where that character stands in the document, counted in characters from its first.
+    """
+
+    codes: NDArray[np.uint32]
+    begins: NDArray[np.int64]
+    places: NDArray[np.int64]
+
+    @classmethod
+    def whole(cls, codes: NDArray[np.uint32], place: int) -> Stretch:
+        """Characters from a place of the document on, nothing left out."""
+        return cls(codes, np.zeros(1, np.int64), np.full(1, place, np.int64))
+
+    @classmethod
+    def joined(cls, parts: list[Stretch]) -> Stretch:
+        """Put stretches that follow each other into one."""
+        before = np.cumsum([0, *(len(part) for part in parts[:-1])])
+        begins = [part.begins + size for part, size in zip(parts, before, strict=True)]
+        return cls(
+            np.concatenate([part.codes for part in parts]),
+            np.concatenate(begins),
+            np.concatenate([part.places for part in parts]),
+        )
+
+    def place(self, index: NDArray[np.intp] | int) -> NDArray[np.int64]:
+        """Places in the document of characters of the stretch, by their indices."""
+        run = np.searchsorted(self.begins, index, "right") - 1
+        return index + (self.places - self.begins)[run]
+
+    def __len__(self) -> int:
+        return self.codes.size
+
+
+def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tuple[Stretch, int]:
+    """Shorten runs of blanks that are longer than any line of a page.
+
+    What stands where a line breaks is not shown, so that the lines stay the same.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Code points.
+    place
+        Where the first of them stands in the document.
+    before
+        Blanks right before it.
+
+    Returns
+    -------
+    stretch : Stretch
+        The characters with runs of at most `LONGEST_BLANK`.
+    after : int
+        Blanks at the end, to be given with the characters that follow.
+    """
+    blank = kinds_of(codes) == BLANK
+    others = np.flatnonzero(~blank)
+    if not others.size:
+        room = max(0, LONGEST_BLANK - before)
+        return Stretch.whole(codes[:room].copy(), place), before + codes.size
+    after = codes.size - 1 - int(others[-1])
+    longest = max(before + int(others[0]), after, int(np.diff(others).max(initial=1)) - 1)
+    if longest <= LONGEST_BLANK:
+        return Stretch.whole(codes, place), after
+    at = np.arange(codes.size)
+    run = at - np.maximum.accumulate(np.where(blank, -1 - before, at))
+    kept = at[run <= LONGEST_BLANK]
+    begins = np.flatnonzero(np.diff(kept, prepend=-2) > 1)
+    return Stretch(codes[kept], begins, place + kept[begins]), after
+
+
+def kinds_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    """Kind of each character: text, blank, newline, break, or one that is dropped."""
+    return _KINDS[np.minimum(codes, _KINDS.size - 1)]
+
+
+def to_codes(text: str) -> NDArray[np.uint32]:
+    """Code points of a string, lone surrogates included."""
+    return np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
+
+
+def to_text(codes: NDArray[np.uint32]) -> str:
+    """String of code points, lone surrogates included."""
+    return codes.astype("<u4").tobytes().decode("utf-32-le", "surrogatepass")

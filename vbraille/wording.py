@@ -1,0 +1,44 @@
+"""How messages say counts, durations, and characters that a terminal would obey."""
+
+from __future__ import annotations
+
+_NAMES = {0: "null", 7: "bell", 8: "backspace", 9: "tab", 10: "line feed", 11: "vertical tab"}
+_NAMES |= {12: "form feed", 13: "carriage return", 27: "escape", 127: "delete"}
+_CONTROLS = {
+    code: f"<{_NAMES.get(code) or (f'control {chr(code + 64)}' if code < 32 else f'{code:02x}')}>"
+    for code in (*range(0x20), *range(0x7F, 0xA0))
+}
+
+
+def printable(text: str) -> str:
+    r"""Text in which control characters are named, as in "<escape>[2J".
+
+    A book may hold any, and so may a name; a terminal would move its cursor or change how it
+    works. A line break, too, is one.
+
+    >>> printable("no\x1b[2J\x07")
+    'no<escape>[2J<bell>'
+    """
+    return text.translate(_CONTROLS)
+
+
+def count(number: int, noun: str) -> str:
+    """A number with its noun.
+
+    >>> count(1, "line"), count(2, "line"), count(1234, "frame")
+    ('1 line', '2 lines', '1234 frames')
+    """
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def duration(seconds: float) -> str:
+    """About how long, in seconds, minutes or hours.
+
+    >>> duration(9.4), duration(754), duration(12_600)
+    ('9 s', '13 min', '3.5 h')
+    """
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    if seconds < 99.5 * 60:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.3g} h"
