@@ -52,10 +52,12 @@ CHARACTERS = Schema(
 STRINGS = Schema(
     "strings",
     "Legibility of each string",
-    _ABOUT,
+    "A string whose cells come in another order at each showing is one string, as the protocol "
+    "lists it. " + _ABOUT,
     (
         Column("name", "string", "its letters, or its cells' names"),
         Column("braille", "braille", "Unicode braille"),
+        Column("orders", "orders", "orders of its cells in which it was presented", Kind.COUNT),
         *_COUNTS,
     ),
 )
@@ -64,6 +66,19 @@ DOTS = Schema(
     "Legibility by number of dots",
     "Legibility of the characters that have so many dots (Lévesque 2009, fig. 4.8). " + _ABOUT,
     (Column("dots", "dots", "dots of the character", Kind.COUNT), *_COUNTS),
+)
+
+
+DOTS_OWN = Schema(
+    "dots_participants",
+    "Legibility by number of dots, of each participant",
+    "Shares of each participant's own places, all conditions together.",
+    (
+        Column("participant", "participant", "pseudonym"),
+        Column("dots", "dots", "dots of the character", Kind.COUNT),
+        *_COUNTS[:2],
+        Column("pooled", "legibility (%)", "correct by presented", Kind.PERCENT),
+    ),
 )
 
 
@@ -80,10 +95,12 @@ def characters(trials: Trials, places: Places) -> Table:
 
 def strings(trials: Trials) -> Table:
     """Table 3.3, a row a string."""
-    codes, names = trials.presented.codes, trials.presented.levels
+    codes, names = trials.string_set.codes, trials.string_set.levels
+    shown = np.unique(np.stack((codes, trials.presented.codes)), axis=1)[0]
+    orders = np.bincount(shown).tolist()
     found = _count(codes, trials.correct, trials.participant.codes, trials.condition.codes)
     rows = [
-        {"name": name_string(names[code]), "braille": names[code]} | counts
+        {"name": name_string(names[code]), "braille": names[code], "orders": orders[code]} | counts
         for code, counts in found
     ]
     return STRINGS.fill(sorted(rows, key=lambda row: row["name"]))
@@ -94,6 +111,28 @@ def dots(trials: Trials, places: Places) -> Table:
     many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
     rows = [{"dots": number} | counts for number, counts in _counts(trials, places, many)]
     return DOTS.fill(rows, _notes(rows, places))
+
+
+def dots_of_participants(trials: Trials, places: Places) -> Table:
+    """Legibility by number of dots, a row a participant and number."""
+    many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
+    who = trials.participant.codes[places.at]
+    codes, index = np.unique(9 * who + many, return_inverse=True)  # a cell has eight dots at most
+    shown = np.bincount(index)
+    right = np.bincount(index, places.correct).astype(np.int64)
+    rows: list[Row] = [
+        {
+            "participant": trials.participant.levels[code // 9],
+            "dots": code % 9,
+            "presented": presented,
+            "correct": correct,
+            "pooled": correct / presented,
+        }
+        for code, presented, correct in zip(
+            codes.tolist(), shown.tolist(), right.tolist(), strict=True
+        )
+    ]
+    return DOTS_OWN.fill(rows, _notes(rows, places))
 
 
 def cell_order(mask: int) -> tuple[bool, str, int]:

@@ -44,12 +44,26 @@ MEANS = Schema(
         NOTE_COLUMN,
     ),
 )
+OWN = Schema(
+    "level_scores",
+    "Participants' own means at the levels",
+    "What the means, the tests and their figures are made of: scores averaged over other factors, "
+    "and repeated ones within the participant.",
+    (
+        Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
+        Column("factor", "factor", "by what"),
+        Column("level", "level", "of the factor"),
+        Column("participant", "participant", "pseudonym"),
+        Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
+    ),
+)
 T_TESTS = Schema(
     "t_tests",
     "Paired t-tests",
     "First less second, over participants; scores are averaged over other factors, and repeated "
     "ones within the participant. d_z is the mean difference by the standard deviation of the "
-    "differences; g_z is d_z with Hedges's correction for few participants.",
+    "differences, and its interval is by noncentral t; g_z is d_z with Hedges's correction for "
+    "few participants. Corrected p takes account of all pairs of a measure and factor.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -61,9 +75,11 @@ T_TESTS = Schema(
         Column("high", "to", "upper end", Kind.NUMBER),
         Column("t", "t", "Student's", Kind.NUMBER),
         Column("df", "df", "degrees of freedom", Kind.COUNT),
-        Column("p", "p", "two-sided", Kind.P),
+        Column("p", "p", "two-sided, not corrected", Kind.P),
         Column("p_corrected", "p corrected", "for the tests of this measure and factor", Kind.P),
         Column("d_z", "d_z", "effect size", Kind.NUMBER),
+        Column("d_low", "d_z from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("d_high", "d_z to", "upper end", Kind.NUMBER),
         Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
         NOTE_COLUMN,
     ),
@@ -71,9 +87,11 @@ T_TESTS = Schema(
 ANOVA = Schema(
     "anova",
     "Repeated-measures analysis of variance",
-    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon; "
-    "Mauchly's test is of sphericity. A participant with a missing cell is left out whole; "
-    "repeated scores of a cell are averaged first.",
+    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon, which "
+    "is too careful with few participants, or by Huynh and Feldt's. Mauchly's test is of "
+    "sphericity; where its two p differ, participants are too few for the expansion, and the exact "
+    "one holds. The interval of partial eta² is by noncentral F. A participant with a missing cell "
+    "is left out whole; repeated scores of a cell are averaged first.",
     (
         Column("measure", "measure", "what is compared, with its unit"),
         Column("effect", "effect", "factors that act together"),
@@ -84,9 +102,14 @@ ANOVA = Schema(
         Column("p", "p", "if sphericity holds", Kind.P),
         Column("epsilon", "epsilon", "Greenhouse and Geisser's", Kind.NUMBER),
         Column("p_corrected", "p corrected", "with both degrees of freedom times epsilon", Kind.P),
+        Column("huynh_feldt", "Huynh-Feldt epsilon", "Huynh and Feldt's", Kind.NUMBER),
+        Column("p_huynh_feldt", "p Huynh-Feldt", "corrected by that epsilon instead", Kind.P),
         Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
-        Column("mauchly_p", "p of W", "that sphericity holds", Kind.P),
+        Column("mauchly_p", "p of W", "that sphericity holds, as R's mauchly.test", Kind.P),
+        Column("mauchly_p_exact", "exact p of W", "by the distribution of W itself", Kind.P),
         Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
+        Column("partial_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("partial_high", "to", "upper end", Kind.NUMBER),
         Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
         NOTE_COLUMN,
     ),
@@ -123,6 +146,24 @@ def level_means(measures: Sequence[Scores]) -> Table:
                     notes.append(f"no interval: {reason}")
                 rows.append(row | {"note": "; ".join(notes)})
     return MEANS.fill(rows, [] if rows else [NOTHING])
+
+
+def own_means(measures: Sequence[Scores]) -> Table:
+    """Mean of every participant at every level of every factor."""
+    rows: list[Row] = [
+        {
+            "measure": scores.measure,
+            "factor": factor,
+            "level": level,
+            "participant": who,
+            "mean": of[who],
+        }
+        for scores in measures
+        for factor in scores.factors
+        for level, of in sorted(_means(scores, factor).items(), key=lambda pair: natural(pair[0]))
+        for who in sorted(of, key=natural)
+    ]
+    return OWN.fill(rows, [] if rows else [NOTHING])
 
 
 def t_tests(measures: Sequence[Scores], correction: str) -> Table:
@@ -252,9 +293,15 @@ def _pairs(
             )
         except Unanswerable as reason:
             notes.append(str(reason))
+            if both:
+                row["mean_difference"] = float(
+                    np.mean([means[first][who] - means[second][who] for who in both])
+                )
         else:
             row |= _tested(test)
             tested.append(row)
+            if test.d_low is None:
+                notes.append("no interval of d_z: t is too large for one")
             if test.g_z is None:
                 notes.append("no g_z of two participants")
         rows.append(row | {"note": "; ".join(notes)})
@@ -273,5 +320,5 @@ def _without(participants: Iterable[str], having: Iterable[str]) -> list[str]:
 
 
 def _tested(test: PairedTest) -> Row:
-    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "g_z")
+    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "d_low", "d_high", "g_z")
     return {name: getattr(test, name) for name in names}

@@ -165,7 +165,7 @@ def correlations(trials: Trials) -> Table:
                 found = correlation(timed.duration_s[chosen], timed.correct[chosen], "trials")
                 whose = {"of": "trials", "participant": participant, "condition": condition}
                 rows.append(whose | found)
-    for of, factor in (("strings", timed.presented), ("participants", timed.participant)):
+    for of, factor in (("strings", timed.string_set), ("participants", timed.participant)):
         counts = np.bincount(factor.codes)
         duration, correct = (
             np.bincount(factor.codes, values) / counts

@@ -31,6 +31,19 @@ CHOICES = Schema(
         NOTE_COLUMN,
     ),
 )
+CHOICES_OWN = Schema(
+    "choices_participants",
+    "How often each participant chose each value",
+    "Of the comparisons that the value was part of.",
+    (
+        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
+        Column("participant", "participant", "pseudonym"),
+        Column("value", "value", "of the parameter", Kind.COUNT),
+        Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
+        Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
+        Column("share", "chosen (%)", "chosen by presented", Kind.PERCENT),
+    ),
+)
 PREFERRED = Schema(
     "preferred",
     "Preferred value",
@@ -96,6 +109,31 @@ def tuning(comparisons: Comparisons, *, seed: int) -> tuple[Table, Table]:
                 row |= {"low": ends.low, "high": ends.high, "how": found.how}
         liked.append(row | {"note": "; ".join(notes)})
     return CHOICES.fill(rows), PREFERRED.fill(liked)
+
+
+def choices_of_participants(comparisons: Comparisons) -> Table:
+    """Choices of each participant, a row a parameter, participant and value."""
+    rows: list[Row] = []
+    for code, parameter in enumerate(comparisons.parameter.levels):
+        part = comparisons[comparisons.parameter.codes == code]
+        won = np.where(part.chosen == 0, part.first, part.second)
+        for who, participant in enumerate(part.participant.levels):
+            own = part.participant.codes == who
+            for value in np.unique(np.concatenate((part.first, part.second))).tolist():
+                shown = int(((part.first == value) | (part.second == value))[own].sum())
+                chosen = int((won == value)[own].sum())
+                if shown:
+                    rows.append(
+                        {
+                            "parameter": parameter,
+                            "participant": participant,
+                            "value": value,
+                            "presented": shown,
+                            "chosen": chosen,
+                            "share": chosen / shown,
+                        }
+                    )
+    return CHOICES_OWN.fill(rows)
 
 
 def _choices(
