@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vbraille.translate.cells import Cells
-from vbraille.translate.paragraphs import NO_BREAK_SPACE, to_text
+from vbraille.translate.paragraphs import to_text
+from vbraille.wrapping import breaks_of, wrap
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
 INDENT = 2
 _REMEMBERED = 16  # paragraphs
-_SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,12 +41,16 @@ class Line:
         What it shows after them.
     paragraph : Paragraph
         The text it is part of.
+    first, after : int
+        The first of the paragraph's characters that it stands for, and one past the last.
     """
 
     number: int
     indent: int
     cells: Cells
     paragraph: Paragraph
+    first: int
+    after: int
 
     @property
     def masks(self) -> NDArray[np.uint8]:
@@ -65,10 +69,12 @@ class Line:
 
     @property
     def text(self) -> str:
-        """The text that the line stands for."""
-        if not len(self.cells):
-            return ""
-        return self._between(int(self.cells.starts[0]), self.cells.end).strip()
+        """The text that the line stands for; the lines of a paragraph together are its text.
+
+        White space at which a line ends belongs to that line. A character whose cells do not
+        find room on one line belongs to the first of its lines.
+        """
+        return to_text(self.paragraph.codes[self.first : self.after])
 
     def source(self, cell: int) -> tuple[int, int] | None:
         """Source characters of a cell as [first, one past the last); None off the text."""
@@ -98,17 +104,14 @@ class Line:
         before = text[:at].split(None)[-1:] if at and not text[at - 1].isspace() else []
         return "".join(before) + text[at:].split(None, 1)[0]
 
-    def _between(self, first: int, end: int) -> str:
-        low, high = np.searchsorted(self.paragraph.source, (first, end))
-        return to_text(self.paragraph.codes[low:high])
-
 
 class Layout:
     """A book laid out in lines of a width, only as far as somebody looks.
 
     Words wrap whole; a paragraph begins with an indent of two cells; a word
-    that is longer than a line is cut and goes on in the next. With the lines of
-    the source kept, each begins at the margin and what runs over is indented.
+    that is longer than a line is cut between two of its characters and goes on
+    in the next. With the lines of the source kept, each begins at the margin
+    and what runs over is indented.
 
     Parameters
     ----------
@@ -133,7 +136,7 @@ class Layout:
         # Number of lines before each paragraph; the last entry is of the paragraph to come.
         self._before = array("q", [0])
         # Where a long paragraph comes in pieces: its unfinished line, by the next piece.
-        self._carried: dict[int, tuple[int, Paragraph, Cells]] = {}
+        self._carried: dict[int, _Carried] = {}
         self._complete = False
         self._recent: dict[int, _Laid] = {}
 
@@ -198,7 +201,8 @@ class Layout:
         assert laid is not None, "only paragraphs already laid out are asked for"
         start, stop, indent = laid.bounds[index]
         number = self._before[paragraph] + index + 1
-        return Line(number, indent, laid.cells[start:stop], laid.paragraph)
+        first, after = laid.edges[index : index + 2]
+        return Line(number, indent, laid.cells[start:stop], laid.paragraph, first, after)
 
     def _lay_out(self, number: int) -> _Laid | None:
         """Break a paragraph, or a piece of one, into lines; None past the end."""
@@ -210,92 +214,111 @@ class Layout:
             return None
         paragraph, cells = found
         indent, runover = self._indents
+        first = 0
         if paragraph.continues:
-            indent, before, carried = self._carried[number]
-            paragraph, cells = before + paragraph, carried + cells
-        bounds = wrap(_breaks(paragraph, cells), self.width, indent, runover)
+            carried = self._carried[number]
+            indent = carried.indent
+            paragraph, cells = carried.paragraph + paragraph, carried.cells + cells
+            first = int(np.searchsorted(paragraph.source, carried.character))
+        breaks = breaks_of(paragraph, cells)
+        bounds = wrap(breaks, self.width, indent, runover, cells.starts.data)
+        laid = _Laid(paragraph, cells, bounds, first)
         following = self.book.document.paragraph(number + 1)
         if following is None or not following.continues:
             if paragraph.continues and bounds == [(0, 0, 0)]:
-                bounds = []  # nothing but blanks after the last piece
+                bounds.clear()  # nothing but blanks after the last piece
         else:
-            start, stop, first = bounds.pop()
+            start, stop, its_indent = bounds.pop()
             if start == stop:  # blank so far
-                start, first = len(cells), indent
+                start, its_indent = len(cells), indent
             elif stop < len(cells):  # the blanks after it have filled it
-                bounds.append((start, stop, first))
-                start, first = len(cells), runover
-            self._carried[number + 1] = first, *_rest(paragraph, cells, start)
+                bounds.append((start, stop, its_indent))
+                start, its_indent = len(cells), runover
+            laid.rest = start
+            self._carried[number + 1] = _carry(laid, start, its_indent)
         if len(self._recent) >= _REMEMBERED:
             del self._recent[next(iter(self._recent))]
-        laid = self._recent[number] = _Laid(paragraph, cells, bounds)
+        self._recent[number] = laid
         return laid
 
 
-class _Laid(NamedTuple):
-    """A paragraph in lines: of each its first cell, one past its last, and its indent."""
-
-    paragraph: Paragraph
-    cells: Cells
-    bounds: list[tuple[int, int, int]]
-
-
-def _rest(paragraph: Paragraph, cells: Cells, start: int) -> tuple[Paragraph, Cells]:
-    """A paragraph from one of its cells on; keeps nothing of what is before in memory."""
-    character = int(cells.starts[start]) if start < len(cells) else paragraph.end
-    rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
-    return paragraph.since(character), rest
-
-
-def _breaks(paragraph: Paragraph, cells: Cells) -> bytes:
-    """Cells as bytes: zero where a line may break, which is at blanks but for no-break spaces."""
-    if NO_BREAK_SPACE not in paragraph.alphabet:
-        return cells.masks.tobytes()
-    no_break = paragraph.source[paragraph.codes == NO_BREAK_SPACE]
-    solid = np.isin(cells.starts, no_break) & (cells.masks == 0)
-    return np.where(solid, _SOLID, cells.masks).astype(np.uint8).tobytes()
-
-
-def wrap(
-    breaks: bytes, width: int, indent: int = 0, runover: int = 0
-) -> list[tuple[int, int, int]]:
-    """Break a paragraph into lines, each as full as it can be.
+class _Laid:
+    """A paragraph, or a piece of one, in lines.
 
     Parameters
     ----------
-    breaks
-        A byte a cell, zero where a line may break; what stands at a break is dropped.
-    width
-        Cells a line.
-    indent, runover
-        Blank cells before the first line and before the others; less than the width.
+    paragraph, cells
+        What is laid out.
+    bounds
+        Of each line the first cell, one past the last, and the indent.
+    first
+        The first of the paragraph's characters that no earlier piece's lines stand for.
 
-    Returns
-    -------
-    list of (start, stop, indent)
-        Cells of each line, as [start, stop), and the blank cells before them.
+    Attributes
+    ----------
+    rest : int or None
+        Where the cells begin that are left for the next piece's lines.
     """
-    end = len(breaks)
-    leading = end - len(breaks.lstrip(b"\0"))
-    if leading == end:
-        return [(0, 0, 0)]
-    # Deep indents of the source's own must leave room for words: half a line, and the first whole.
-    word = len(breaks[leading:].split(b"\0", 1)[0])
-    start = leading - min(leading, width // 2, max(0, width - indent - word))
-    bounds = []
-    while end - start > width - indent:
-        room = width - indent
-        cut = breaks.rfind(0, start, start + room + 1)
-        if cut > start:
-            bounds.append((start, start + len(breaks[start:cut].rstrip(b"\0")), indent))
-            start = end - len(breaks[cut:].lstrip(b"\0"))
-        else:
-            bounds.append((start, start + room, indent))
-            start += room
-        indent = runover
-    if start < end:
-        bounds.append((start, end, indent))
-    return bounds
+
+    __slots__ = ("_edges", "bounds", "cells", "first", "paragraph", "rest")
+
+    def __init__(
+        self,
+        paragraph: Paragraph,
+        cells: Cells,
+        bounds: list[tuple[int, int, int]],
+        first: int,
+    ) -> None:
+        self.paragraph = paragraph
+        self.cells = cells
+        self.bounds = bounds
+        self.first = first
+        self.rest: int | None = None
+        self._edges: list[int] | None = None
+
+    @property
+    def edges(self) -> list[int]:
+        """Index of the character at which each line begins, and one past the last line's."""
+        if self._edges is None:
+            starts = [start for start, _, _ in self.bounds[1:]]
+            starts += [] if self.rest is None or not self.bounds else [self.rest]
+            after = [stop for _, stop, _ in self.bounds]
+            edges = [self._edge(start, stop) for start, stop in zip(starts, after, strict=False)]
+            self._edges = [self.first, *edges]
+            if len(edges) < max(len(self.bounds), 1):
+                self._edges.append(self.paragraph.codes.size)
+        return self._edges
+
+    def _edge(self, start: int, stop: int) -> int:
+        """Where a line's text begins: the line has its cells from `start`, the last to `stop`."""
+        codes, starts = self.paragraph.codes, self.cells.starts
+        if start == starts.size:
+            return codes.size
+        character = int(starts[start])
+        if stop and starts[stop - 1] == character:  # its text is on the line before
+            character = self.cells.source(start)[1]
+        at = int(np.searchsorted(self.paragraph.source, character))
+        while at < codes.size and chr(codes[at]).isspace():
+            at += 1
+        return at
+
+
+class _Carried(NamedTuple):
+    """A paragraph's unfinished line, for its next piece, and the first character of its text."""
+
+    indent: int
+    paragraph: Paragraph
+    cells: Cells
+    character: int
+
+
+def _carry(laid: _Laid, start: int, indent: int) -> _Carried:
+    """A paragraph from one of its cells on; keeps nothing of what is before in memory."""
+    paragraph, cells = laid.paragraph, laid.cells
+    first, text = int(cells.starts[start]) if start < len(cells) else paragraph.end, laid.edges[-1]
+    character = int(paragraph.source[text]) if text < paragraph.source.size else paragraph.end
+    rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
+    return _Carried(indent, paragraph.since(first), rest, character)
 
 
 def locate(line: Line, geometry: Geometry, x_mm: float) -> int | None:

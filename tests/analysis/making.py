@@ -48,19 +48,19 @@ def all_tables(trials, places):
     matrices = [confusion.of_characters(places), confusion.of_pairs(trials)]
     return [
         by_participant,
-        legibility.averages(by_participant, seed=1),
+        legibility.averages(by_participant),
         characters.characters(trials, places),
         characters.strings(trials),
         characters.dots(trials, places),
         *(confusion.to_table(matrix, places) for matrix in matrices if matrix is not None),
-        confusion.transmitted(trials, places),
+        confusion.transmitted(trials, places, seed=1),
         errors.errors(places),
         overtime.over_time(trials),
         overtime.slopes(trials),
         seen,
         motion.patterns(seen),
         motion.correlations(trials),
-        levels.level_means(measures, seed=1),
+        levels.level_means(measures),
         levels.t_tests(measures, "holm"),
         levels.analyses(measures)[0],
     ]

@@ -122,7 +122,7 @@ def test_other_columns_are_kept_and_compared_by(table):
     (content,) = trials_file(study).values()
     lines = content.decode().splitlines()
     assert lines[0].endswith("duration_s,finger")
-    assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,⠁⠃,1,3.0,left"
+    assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,,⠁⠃,1,3.0,left"
     assert len(lines) == 1 + 8
     found = tables(analyse(study, Options(factors=("finger",))))
     assert {row["level"] for row in found["level_means"].records()} == {"left", "right"}
@@ -243,7 +243,8 @@ def test_scores(tmp_path):
     scores, about = load_scores(path)
     results = analyse_scores(scores, about, Options(correction="holm"))
     (section,) = results.sections
-    assert [table.name for table in section.tables] == ["level_means", "t_tests", "anova"]
+    names = [table.name for table in section.tables]
+    assert names == ["level_means", "level_scores", "t_tests", "anova"]
     told = dict(results.about)
     assert told["Excluded"] == "participant C, of the analysis of score: no 1"
     assert told["Correction of t-tests"] == "Holm's step-down"
@@ -277,7 +278,8 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
         for out in (here, there)
     ]
     assert written[0] == written[1]
-    assert {path.suffix for path in written[0]} == {".html", ".md", ".json", ".csv", ".svg", ".png"}
+    kinds = {".html", ".md", ".json", ".csv", ".svg", ".png", ".pdf"}
+    assert {path.suffix for path in written[0]} == kinds
     assert Path("trials.csv") in written[0]
 
 

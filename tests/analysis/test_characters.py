@@ -12,6 +12,7 @@ from tests.analysis.making import answers, record
 from vbraille.analysis.averages import mean_or_none, over_participants
 from vbraille.analysis.characters import cell_order, characters, dots, strings
 from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.trials import UNREAD_MASK
 
 # P1 has a right in 3 of 4 trials of T0 and in none of one of T25, P2 in one of one.
@@ -26,12 +27,27 @@ def test_conditions_are_averaged_within_a_participant_first_then_participants(ta
         "strings": strings(trials),
         "dots": dots(trials, places),
     }[table]
-    interval = wilson(4, 6)
     (row,) = found.records()
     assert row["legibility"] == fmean([fmean([3 / 4, 0]), 1])
     assert row["pooled"] == 4 / 6
-    assert (row["low"], row["high"]) == pytest.approx((interval.low, interval.high))
+    assert (row["low"], row["note"]) == (
+        None,
+        "no interval: two participants; how people differ is seen of three or more",
+    )
     assert (row["presented"], row["correct"], row["participants"]) == (6, 4, 2)
+
+
+@pytest.mark.parametrize("of", [characters, dots])
+def test_the_interval_is_of_the_participants_means(of):
+    # Pooled it would be Wilson's, as if all were one person's.
+    lines = ["P1 T0 a a"] * 4 + ["P2 T0 a a", "P2 T0 a c", "P3 T0 a ?", "P3 T25 a a"]
+    (row,) = of(*answers(*lines)).records()
+    interval = mean_share([1, 0.5, 0.5], [4, 2, 2])
+    assert row["legibility"] == fmean([1, 0.5, 0.5])
+    assert (row["low"], row["high"]) == pytest.approx((interval.low, interval.high))
+    assert row["note"] == ""
+    pooled = wilson(6, 8)
+    assert row["high"] - row["low"] > pooled.high - pooled.low
 
 
 OBSERVED = st.lists(
@@ -49,10 +65,12 @@ def test_means_are_those_taken_one_by_one(observed):
         what: fmean(fmean(map(fmean, whens.values())) for whens in whos.values())
         for what, whos in of.items()
     }
-    levels, participants, found = over_participants(level, value, participant, condition)
+    levels, own, numbers = over_participants(level, value, participant, condition)
     assert levels.tolist() == sorted(means)
-    assert participants.tolist() == [len(of[what]) for what in sorted(means)]
-    assert found.tolist() == pytest.approx([means[what] for what in sorted(means)])
+    assert [len(whos) for whos in own] == [len(of[what]) for what in sorted(means)]
+    assert sum(int(number.sum()) for number in numbers) == len(observed)
+    found = [whos.mean() for whos in own]
+    assert found == pytest.approx([means[what] for what in sorted(means)])
 
 
 def test_equal_numbers_of_trials_make_means_and_pooled_the_same():

@@ -6,7 +6,8 @@ import pytest
 
 from tests.analysis.making import answers, made, record
 from vbraille.analysis.legibility import averages, legibility
-from vbraille.analysis.statistics.intervals import bootstrap_mean, wilson
+from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.shares import mean_share
 
 
 def found(*lines):
@@ -94,33 +95,36 @@ def test_answers_of_another_length_are_wrong_and_no_part_of_characters():
 def test_averages_are_over_the_participants_own_means():
     table = found(
         "P1 T0 ac ac 2", "P1 T0 ac ac 4", "P1 T0 ac ac 6", "P1 T0 ac aa 8", "P2 T0 ac aa 10",
-        "P3 T25 ac ac 1",
+        "P3 T0 ac ca 3", "P3 T25 ac ac 1",
     )  # fmt: skip
-    row = record(averages(table, seed=5), condition="T0")
-    interval = bootstrap_mean([0.75, 0.0], seed=5)
+    row = record(averages(table), condition="T0")
+    interval = mean_share([0.75, 0.0, 0.0], [4, 1, 1])
     assert row == {
         "condition": "T0",
-        "participants": 2,
-        "trials": pytest.approx(5 / 3),
-        "legibility": 0.375,
+        "participants": 3,
+        "trials": 2,
+        "legibility": 0.25,
         "low": interval.low,
         "high": interval.high,
-        "character_legibility": fmean([7 / 8, 0.5]),
-        "duration_mean_s": fmean([5.0, 10.0]),
+        "character_legibility": fmean([7 / 8, 0.5, 0]),
+        "duration_mean_s": fmean([5.0, 10.0, 3.0]),
         "note": "",
     }
-    alone = record(averages(table, seed=5), condition="T25")
+    alone = record(averages(table), condition="T25")
     assert (alone["participants"], alone["legibility"], alone["low"]) == (1, 1.0, None)
-    assert alone["note"] == "no interval: one participant; a bootstrap needs two"
+    assert alone["note"] == (
+        "no interval: one participant; how people differ is seen of three or more"
+    )
 
 
 def test_an_average_says_whom_it_lacks():
     table = found("P1 T0 ac ac 2", "P2 T0 ac ac -", "P1 T25 ac a -", "P2 T25 ac a -")
-    some, none = averages(table, seed=1).records()
-    assert (some["duration_mean_s"], some["note"]) == (2.0, "durations of 1 participant")
-    assert (some["low"], some["high"]) == (1.0, 1.0)
+    some, none = averages(table).records()
+    few = "no interval: two participants; how people differ is seen of three or more"
+    assert (some["duration_mean_s"], some["note"]) == (2.0, f"{few}; durations of 1 participant")
+    assert some["low"] is some["high"] is None
     assert none["character_legibility"] is none["duration_mean_s"] is None
     assert none["note"] == (
-        "no legibility of characters: no answer has as many places as its string; "
+        f"{few}; no legibility of characters: no answer has as many places as its string; "
         "no duration: none is known"
     )

@@ -12,8 +12,9 @@ from vbraille.analysis.scores import Scores, of_sheet, of_trials
 from vbraille.analysis.sheets import Sheet, read_csv
 from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.correction import METHODS, adjust
-from vbraille.analysis.statistics.intervals import bootstrap_mean
+from vbraille.analysis.statistics.intervals import mean_interval
 from vbraille.analysis.statistics.paired import paired_t
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.trials import LeftOut
 from vbraille.errors import InputError
 
@@ -124,12 +125,29 @@ def test_what_is_no_table_of_scores(columns, says):
 
 
 def test_means_of_the_levels():
-    table = level_means([THREE], seed=3)
+    table = level_means([THREE])
     assert table.column("level") == ["T0", "T25", "T100"]
     row = record(table, level="T25")
-    interval = bootstrap_mean(T25, seed=3)
+    interval = mean_interval(T25)
     assert (row["measure"], row["factor"], row["participants"]) == ("score", "texture", 4)
     assert (row["mean"], row["low"], row["high"]) == (np.mean(T25), interval.low, interval.high)
+
+
+def test_means_of_shares_are_of_their_numbers_of_trials():
+    lines = [f"P{n} T0 ab {answer}" for n in (1, 2, 3) for answer in ("ab", "ab", "aa")]
+    lines += [f"P{n} T25 ab ab" for n in (1, 2, 3)]
+    table = level_means(of_trials(*answers(*lines), ["condition"]))
+    for measure, trials in (("legibility of strings", 3), ("legibility of characters", 6)):
+        row = record(table, measure=measure, level="T0")
+        right = (2 if trials == 3 else 5) / trials
+        interval = mean_share([right] * 3, [trials] * 3)
+        assert (row["mean"], row["low"], row["high"]) == (
+            pytest.approx(right),
+            pytest.approx(interval.low),
+            pytest.approx(interval.high),
+        )
+        # All right, and an interval all the same.
+        assert record(table, measure=measure, level="T25")["low"] < 0.9
 
 
 def test_every_pair_of_levels_is_tested():
@@ -189,7 +207,7 @@ def test_repeated_scores_are_averaged_within_the_participant_first():
         ("P2", "T0", "left", 10), ("P2", "T0", "right", math.nan), ("P2", "T25", "left", 15),
     ]  # fmt: skip
     who, texture, hand, value = zip(*told, strict=True)
-    table = level_means([Scores("score", who, {"texture": texture, "hand": hand}, value)], seed=1)
+    table = level_means([Scores("score", who, {"texture": texture, "hand": hand}, value)])
     left = record(table, level="left")
     assert (left["participants"], left["mean"]) == (2, np.mean([np.mean([20, 50]), 12.5]))
     # P2, who read nothing with the right hand, has not all of a texture.
@@ -203,7 +221,7 @@ def test_repeated_scores_are_averaged_within_the_participant_first():
 
 def test_a_level_without_scores_is_a_level_all_the_same():
     lone = long_form(T0=[1.0, 2, 4], T25=[math.nan] * 3)
-    row = record(level_means([lone], seed=1), level="T25")
+    row = record(level_means([lone]), level="T25")
     assert (row["participants"], row["mean"]) == (0, None)
     assert row["note"].startswith("without P1, P2, P3: a score is missing; no interval: no part")
     (row,) = t_tests([lone], "holm").records()
@@ -280,5 +298,5 @@ def test_one_level_or_too_many_are_not_tested():
 
 
 def test_without_scores_all_three_say_so():
-    for table in (level_means([], seed=1), t_tests([], "holm"), analyses([])[0]):
+    for table in (level_means([]), t_tests([], "holm"), analyses([])[0]):
         assert (table.rows, table.notes) == ((), ("there are no scores to compare",))

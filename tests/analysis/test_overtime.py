@@ -89,11 +89,11 @@ def test_a_tenth_more_right_in_each_ten_trials_is_ten_per_cent():
     [
         ([1], None, "1 trial: a slope needs three"),
         ([1, 0], None, "2 trials: a slope needs three"),
-        ([1, 1, 1], 0.0, "no p: every trial is right"),
-        ([0, 0, 0], 0.0, "no p: every trial is wrong"),
+        ([1, 1, 1], 0.0, "no interval and no p: every trial is right"),
+        ([0, 0, 0], 0.0, "no interval and no p: every trial is wrong"),
     ],
 )
 def test_what_has_no_slope_or_no_p(correct, slope, note):
     row = record(slopes(trials_of(*read(correct))), participant="P1")
-    assert (row["slope"], row["low"], row["high"]) == (slope,) * 3
+    assert (row["slope"], row["low"], row["high"]) == (slope, None, None)
     assert (row["p"], row["note"], row["trials"]) == (None, note, len(correct))

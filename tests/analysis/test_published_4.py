@@ -78,7 +78,7 @@ def test_4_scores_with_the_printed_means_and_t(told):
     row = record(t_tests([scores], "none"), first=told[0], second=told[1])
     assert (row["df"], f"{row['t']:.3f}") == (5, f"{test['t']:.3f}")
     assert to_print(row["p"], Kind.P) == f"{test['p']:.3f}"
-    means = level_means([scores], seed=1)
+    means = level_means([scores])
     for level in told:
         printed_mean = LETTERS["mean_legibility_pct"][level]
         assert record(means, level=level)["mean"] == pytest.approx(printed_mean)
@@ -114,9 +114,7 @@ def test_4_overall_legibility(told):
 @each((EXACT, "words", LETTERS["words"]))
 def test_4_words(told):
     (words,) = told
-    (row,) = level_means(
-        [table_of_scores(words=words["per_subject_pct_ascending"])], seed=1
-    ).records()
+    (row,) = level_means([table_of_scores(words=words["per_subject_pct_ascending"])]).records()
     assert row["participants"] == LETTERS["design"]["subjects"]
     assert round_half_up(row["mean"], 0) == f"{words['mean_pct']}"
 

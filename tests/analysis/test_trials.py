@@ -108,13 +108,13 @@ def test_a_row_a_trial():
     assert trials.rows() == [
         {
             "participant": "P1", "session": "made", "protocol": "", "condition": "T0", "block": 3,
-            "trial": 1, "presented": "⠁⠉", "answered": "⠁?", "correct": 0, "duration_s": "",
-            "hand": "left",
+            "trial": 1, "presented": "⠁⠉", "string_set": "", "answered": "⠁?", "correct": 0,
+            "duration_s": "", "hand": "left",
         },
         {
             "participant": "P2", "session": "made", "protocol": "", "condition": "T25", "block": "",
-            "trial": 2, "presented": "⠁", "answered": "⠁", "correct": 1, "duration_s": 1.5,
-            "hand": "right",
+            "trial": 2, "presented": "⠁", "string_set": "", "answered": "⠁", "correct": 1,
+            "duration_s": 1.5, "hand": "right",
         },
     ]  # fmt: skip
 

@@ -87,14 +87,14 @@ def test_each_parameter_has_its_own():
     ]
     width, gap = liked.records()
     assert (width["participants"], width["comparisons"], width["preferred"]) == (5, 90, 3)
-    assert width["how"] == "bootstrap over 5 participants"
+    assert width["how"] is None
     assert (gap["participants"], gap["comparisons"], gap["preferred"]) == (1, 6, 10)
 
 
 def test_the_side_that_was_favoured():
     told = [("P1", 1, 2, 1)] * 6 + [("P1", 2, 1, 2)] * 3 + [("P1", 2, 1, 1)]
     (row,) = tuning(comparisons(*told), seed=1)[1].records()
-    bias = position_bias([0] * 9 + [1])
+    bias = position_bias([0] * 9 + [1], [0] * 10)
     assert (row["first_share"], row["first_p"]) == (0.9, bias.p)
     assert (row["first_low"], row["first_high"]) == (bias.interval.low, bias.interval.high)
 
@@ -138,5 +138,6 @@ def test_of_any_comparisons_both_tables_are_made(told):
     assert sum(choices.column("chosen")) == len(told) == liked.column("comparisons")[0]
     assert sum(choices.column("presented")) == 2 * len(told)
     for row in liked.records():
-        assert row["preferred"] is None or 1 <= row["low"] <= row["high"] <= 4.5
+        assert row["preferred"] is None or 1 <= row["preferred"] <= 4.5
+        assert row["low"] is None or 1 <= row["low"] < row["high"] <= 4.5
     assert np.isfinite([row["share"] for row in choices.records()]).all()

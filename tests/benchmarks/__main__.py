@@ -3,7 +3,19 @@
 import sys
 from importlib import import_module
 
-PARTS = ("render", "text", "wire", "engine", "faults", "jumps", "sessions", "analysis", "reader")
+PARTS = (
+    "render",
+    "text",
+    "lines",
+    "wire",
+    "engine",
+    "faults",
+    "jumps",
+    "sessions",
+    "analysis",
+    "coverage",
+    "reader",
+)
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
     sys.exit(f"there is no benchmark {', '.join(sorted(unknown))}; there is {', '.join(PARTS)}")

@@ -58,7 +58,7 @@ def test_a_report_is_written(call, room):
     said = call("analyse", "good.csv", "--out", "new/report", "--marks", "0,1", "--seed", "7")
     assert (said.code, said.out, said.err) == (0, "written: new/report/report.html\n", "")
     page = (room / "new" / "report" / "report.html").read_text()
-    assert "bootstraps with seed 7" in page
+    assert "random draws with seed 7" in page
     assert "above 0" in page
 
 
@@ -68,6 +68,27 @@ def test_scores(call):
     assert (said.code, said.err) == (0, "")
     assert "Correction of t-tests: Bonferroni's correction" in said.out
     assert "effect t; participants 2; df1 1; df2 1; F 9.000" in said.out
+
+
+@pytest.mark.usefixtures("room")
+@pytest.mark.parametrize(
+    ("correction", "title"), [((), "Holm's step-down"), (("none",), "no correction")]
+)
+def test_t_tests_are_corrected_unless_none_is_asked_for(call, room, correction, title):
+    rows = [
+        f"{who},{t},{len(who) + n * n + t * n}" for n, who in enumerate("ABCDE") for t in range(3)
+    ]
+    (room / "three.csv").write_text("participant,t,score\n" + "\n".join(rows) + "\n")
+    chosen = ("--correction", *correction) if correction else ()
+    said = call("analyse", "--scores", "three.csv", "--json", *chosen)
+    found = json.loads(said.out)
+    assert found["about"]["Correction of t-tests"] == title
+    tests = found["tables"]["t_tests"]["rows"]
+    assert len(tests) == 3
+    for row in tests:
+        assert row["low"] < row["mean_difference"] < row["high"]
+        assert row["d_low"] < row["d_z"] < row["d_high"]
+        assert (row["p_corrected"] > row["p"]) == (not correction)
 
 
 def test_a_damaged_session_is_a_fault_that_is_told(call, tmp_path):

@@ -80,7 +80,7 @@ def test_options_of_text_and_page_reach_it(call, tmp_path, text):
     assert first("--geometry", "standard", "--cell-gap", "10")[1] == "line width: 24 cells\n"
     text.write_bytes("Größe\n  kurz".encode("latin-1"))
     verse = call("page", text, "--format", "text", "--encoding", "latin-1", "--keep-lines")
-    assert verse.out == "Größe\nkurz\n"
+    assert verse.out == "Größe\n  kurz\n"
 
 
 def test_a_text_that_is_not_utf_8_is_told_once(call, text):
@@ -97,15 +97,73 @@ def test_nothing_in_a_text_moves_the_cursor(call, text):
     assert said.out == "red <escape>[31m ring <bell> rub <delete> csi <9b>2J\n"
 
 
-def test_a_table_of_eight_dots_has_no_brf(call, text):
-    said = call("page", text, "--table", "fr-bfu-comp8.utb", "--format", "brf")
+@pytest.mark.parametrize(
+    ("choice", "instead"),
+    [
+        (("--table", "fr-bfu-comp8.utb"), "--table fr-bfu-comp6.utb, which has six, or --format"),
+        (("--language", "ja"), "give --format unicode"),
+    ],
+)
+def test_a_table_of_eight_dots_has_no_brf(call, text, choice, instead):
+    said = call("page", text, *choice, "--format", "brf")
+    assert (said.code, said.out) == (2, "")
+    assert said.err.count("\n") == 1
+    assert "has eight dots and BRF has six" in said.err
+    assert instead in said.err
+    assert call("page", text, *choice).code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "line", "said_of_it"),
+    [
+        ((), '  HI .<;8.> "!', "marked [?]"),
+        (("--undefined", "name"), '  HI .<GR9N+ FACE.> "!', "names in brackets"),
+        (("--undefined", "code"), '  HI .<,U"6#A,F#FJJ.> "!', "numbers in brackets"),
+        (("--undefined", "drop"), '  HI  "!', "left out"),
+    ],
+)
+def test_what_the_table_does_not_know_is_written_in_six_dots(call, text, options, line, said_of_it):
+    text.write_text("hi \U0001f600 there")
+    said = call("page", text, "--format", "brf", *options)
+    assert (said.code, said.out) == (0, f"{line}\n")
+    width, counted = said.err.splitlines()
+    assert width == "line width: 26 cells"
+    assert "does not know 1 character (1 of U+1F600 grinning face)" in counted
+    assert said_of_it in counted
+
+
+def test_only_what_was_printed_is_counted(call, text):
+    text.write_text("one \U0001f600\n\ntwo\n\nthree \U0001f600\u0434\u4e2d\ue000 \U0001f600\n")
+    assert "1 character (" in call("page", text, "--lines", "1").err
+    assert call("page", text, "--lines", "2").err == "line width: 26 cells\n"
+    said = call("page", text).err
+    assert "6 characters (3 of U+1F600 grinning face, 1 of " in said
+    assert "1 of others" in said
+
+
+def test_a_text_in_another_script_names_its_languages(call, text):
+    text.write_text("Все люди рождаются свободными.\n\nИ равными.\n")
+    said = call("page", text)
     assert said.code == 0
-    text.write_text("small\n\nLARGE\n")
-    said = call("page", text, "--table", "fr-bfu-comp8.utb", "--format", "brf")
-    assert said.code == 2
-    assert said.out == "  SMALL\n"
-    assert "line 2" in said.err
-    assert "--format unicode" in said.err
+    notes = [note for note in said.err.splitlines() if "Cyrillic letters" in note]
+    assert len(notes) == 1
+    assert "--language ru (Russian, ru-" in notes[0]
+    assert "uk (Ukrainian, uk.utb)" in notes[0]
+    assert call("page", text, "--language", "ru").err == "line width: 26 cells\n"
+
+
+def test_the_lines_of_text_together_are_the_text(call, text):
+    for width in ("40", "60", "300"):
+        text.write_text("Look at https://example.org/a/b -- it is well-known.")
+        said = call("page", text, "--format", "text", "--travel", width)
+        assert said.out.replace("\n", "") == text.read_text()
+
+
+def test_overstrikes_are_no_text(call, text):
+    text.write_text("A _\bw_\bo_\br_\bd and b\bbo\bol\bld\bd\n" * 3)
+    said = call("page", text, "--format", "text", "--travel", "1000")
+    assert said.out == "A word and bold A word and bold A word and bold\n"
+    assert said.err.count("\n") == 1
 
 
 def test_help_and_version_end_well(call):

@@ -11,6 +11,7 @@ import pytest
 from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
+from vbraille import __version__
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 
@@ -251,19 +252,47 @@ def test_device_info_and_check(tmp_path):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
         told = program.run("device", "info", spec)
         assert told.returncode == 0
-        assert told.stdout.splitlines()[:2] == ["name: simulated VBD", "actuators: 1 row of 12"]
+        assert told.stdout.splitlines() == [
+            "name: simulated VBD",
+            "actuators: 1 row of 12",
+            "pitch: 0.7 mm along the line, 0.7 mm across",
+            "levels: 1024",
+            "rest side: left",
+            "travel: 300 mm",
+            "encoder: 200 counts a mm, absolute",
+            "rate: 1000 Hz",
+            f"firmware: {__version__}",
+            "slew: without a limit",
+            "disabled actuators: none",
+            "inverted actuators: none",
+        ]
         other = program.run("device", "info", spec, "--model", "stress2")
         assert other.returncode == 2
         checked = program.run("device", "check", spec)
     said = checked.stdout.splitlines()
     swung = [line for line in said if line.startswith("actuator: ")]
     assert swung == [f"actuator: row 1, column {n}" for n in range(1, 13)]
-    assert re.search(r"^rate: 1000 Hz, \d+ of \d+ ticks late$", checked.stdout, re.MULTILINE)
-    assert re.search(r"^round trip: median \d+\.\d\d ms, ", checked.stdout, re.MULTILINE)
-    assert "corrupt" in checked.stdout or "bad CRC: 0" in checked.stdout
+    for measured in (
+        r"rate: 1000 Hz, \d+ of \d+ ticks late",
+        r"clock: \d\.\d{3} s pass on it in a second, 0.98 to 1.02 s are allowed",
+        r"place: [\d.]+ to [\d.]+ mm from the left stop, of 300 mm; 2 mm beyond .*",
+        r"round trip: median \d+\.\d\d ms, .*",
+        r"bad CRC: 0",
+        r"watchdog: tripped \d of 3 times, median [\d.]+ ms after the last frame, .* 71 ms are .*",
+    ):
+        assert re.search(f"^{measured}$", checked.stdout, re.MULTILINE), checked.stdout
     # The machine at hand may stall: what the verdict is, is not tested; that there is one, is.
-    assert said[-1].startswith("verdict: ")
+    assert said[-1].startswith(("verdict: fit to be read on", "verdict: not fit to be read on: "))
     assert checked.returncode == (0 if said[-1] == "verdict: fit to be read on" else 1)
+
+
+def test_a_device_without_a_watchdog_is_not_fit_to_be_read_on(tmp_path):
+    with simulated(tmp_path, "--model", "vbd", "--defect", "no-watchdog") as (spec, _):
+        checked = program.run("device", "check", spec)
+    verdict = checked.stdout.splitlines()[-1]
+    assert verdict.startswith("verdict: not fit to be read on: ")
+    assert "its watchdog does not trip when no frame comes" in verdict
+    assert (checked.returncode, checked.stderr) == (1, "")
 
 
 def test_device_list_and_a_simulated_device_without_a_model():

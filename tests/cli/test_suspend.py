@@ -35,7 +35,8 @@ def job(shell):
 
 
 def frames(log):
-    return np.fromfile(log).reshape(-1, 6, 10)
+    numbers = np.fromfile(log)
+    return numbers[: numbers.size // 60 * 60].reshape(-1, 6, 10)  # the last may be in the writing
 
 
 def until_frames(log, number, shown):

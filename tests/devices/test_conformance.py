@@ -12,6 +12,7 @@ from vbraille.devices.conformance import (
     check_bad_frames,
     check_close,
     check_frames,
+    check_members,
     check_samples,
 )
 from vbraille.devices.simulated import SimulatedDevice
@@ -51,9 +52,48 @@ class Backwards(SimulatedDevice):
         return Sample(self.time_ns, 0.0)
 
 
+class CountsInAProperty(SimulatedDevice):
+    counts = property(lambda self: {"frames": self.frames})
+
+
+class FollowedByAMethod(SimulatedDevice):
+    def followed(self):
+        return False
+
+
+class FollowsNoEnd(SimulatedDevice):
+    def follow(self):
+        pass
+
+
+class OneNote(SimulatedDevice):
+    def take_notes(self):
+        return "too hot"
+
+
+class CountsInHalves(SimulatedDevice):
+    def counts(self):
+        return {"frames": 0.5}
+
+
+class PlacedByANumber(SimulatedDevice):
+    placing = 0
+
+
+class RestedOrNot(SimulatedDevice):
+    rested = False
+
+
 @pytest.mark.parametrize(
     ("broken", "check"),
     [
+        (CountsInAProperty, check_members),
+        (FollowedByAMethod, check_members),
+        (FollowsNoEnd, check_members),
+        (OneNote, check_members),
+        (CountsInHalves, check_members),
+        (PlacedByANumber, check_members),
+        (RestedOrNot, check_members),
         (Unchecked, check_bad_frames),
         (Unchecked, check_close),
         (Scribbling, check_frames),

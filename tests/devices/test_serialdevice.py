@@ -3,6 +3,7 @@
 import array
 import fcntl
 import os
+import re
 import termios
 import threading
 import tty
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cobs import cobs
 
 from tests.controllers import ControllerOf20261121
 from tests.engine.test_loop import info
@@ -521,7 +523,8 @@ def test_a_host_that_was_stopped_lets_the_ramp_end_and_begins_from_rest(bench, m
         assert not made.controller.levels.any()
         assert np.abs(np.diff(np.array(levels, int))).max() <= 512 / 20 + 1
         assert device.rested == time
-        assert device.take_notes() == [NO_FRAME]
+        # The second comes within a second of the first, and is said later with its count.
+        assert device.take_notes() == ([NO_FRAME] if time == 1 or stall_ms > 1000 else [])
     assert device.counts()["watchdog trips"] == (2 if stall_ms >= 50 else 0)
     device.close()
 
@@ -793,6 +796,7 @@ def test_unplugged_and_plugged_in_a_hundred_times(bench):
         assert device.take_notes() == [AWAY]
         made.run(device, 3)
         assert device.take_notes() == []
+        made.us += 1_000_000  # so that each notice is said at once
         made.controller = Controller(shown())
         made.plug()
         made.way_mm = time
@@ -876,7 +880,8 @@ def test_another_device_in_its_place_is_left_alone(bench):
     made.run(device, 1000)
     assert device.take_notes() == [
         AWAY,
-        "device: another device, Other, came back; plug in test again and reading goes on",
+        "device: Other came back in its place (pitch across the line 2 mm, not 1.8 mm); "
+        "plug in test again and reading goes on",
     ]
     assert made.controller.frames == 0
     assert made.controller.greetings == 1
@@ -886,6 +891,167 @@ def test_another_device_in_its_place_is_left_alone(bench):
     made.plug()
     assert made.back(device)
     assert device.take_notes() == ["device: back"]
+    device.close()
+
+
+def come_back(made, device, **changes):
+    """Have it unplugged and another plugged in in its place; what is said of it."""
+    made.unplug()
+    made.run(device, 1)
+    made.us += 1_000_000  # so that each notice is said at once
+    made.controller = Controller(shown(**changes))
+    made.plug()
+    made.find()
+    made.run(device, 300)
+    notes = device.take_notes()
+    assert notes[0] == AWAY
+    return notes[1:]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"name": "Other"}, "its name is Other, not test"),
+        ({"counts_per_m": 100_000}, "a count is 10 µm, not 5 µm"),
+        ({"count_sign": CountSign.LEFTWARD}, "its counts grow leftward"),
+        ({"left_stop_count": 700}, "its left stop is at count 700, not 16757216"),
+        ({"encoder": Encoder.INCREMENTAL}, "its encoder is incremental, not absolute"),
+        ({"largest_slew_per_s": 300}, "its actuators may move 300 swings a second, not without"),
+        ({"gain": b"\x80" * 2 + b"\xff" * 58}, "2 of its actuators have another gain"),
+        ({"inverted": b"\1" * 60}, "60 of its actuators have another rest level"),
+        ({"enabled": b"\0" + b"\1" * 59}, "1 of its actuators have another fitness for use"),
+        ({"firmware": "9.9"}, None),
+    ],
+)
+def test_what_is_otherwise_with_a_device_that_came_back_is_said_and_minded(bench, changes, said):
+    made = bench()
+    device = made.open()
+    made.run(device, 5)
+    notes = come_back(made, device, **changes)
+    if said is None:
+        assert notes == ["device: back"]
+    else:
+        assert notes[0].startswith(f"device: changed, for {said}")
+        assert notes[1:] == ["device: back"]
+    # What hung on it is as the device is now.
+    if "encoder" in changes:
+        assert "its left stop must be shown again" in notes[0]
+        assert device.placing is Placing.STOP
+        made.way_mm = 0.0
+        made.run(device, 3)
+        device.set_zero()
+    for way_mm in (0.0, 7.0, 30.0):
+        made.way_mm = way_mm
+        assert made.run(device, 3).x_mm == pytest.approx(way_mm - SPAN_MM)
+    made.run(device, 300)
+    levels = made.controller.levels.tolist()
+    assert levels[0] == {"gain": 257, "enabled": 0, "inverted": 511}.get(next(iter(changes)), 512)
+    # The next time it is the same again.
+    assert come_back(made, device, **changes) == ["device: back"]
+    device.close()
+
+
+def test_a_stranger_of_the_same_name_is_told_by_what_is_otherwise(bench):
+    made = bench()
+    device = made.open()
+    made.run(device, 5)
+    assert come_back(made, device, travel_um=200_000, rate_hz=500) == [
+        "device: another test came back (travel 200 mm, not 300 mm, rate 500 Hz, not 1000 Hz); "
+        "plug in the one that reading began on, or set this one as that was, and reading goes on"
+    ]
+    assert made.controller.frames == 0
+    device.close()
+
+
+@pytest.mark.parametrize(
+    ("offset", "value", "said"),
+    [
+        (2, 0, "rows is 0; it must be 1 to 16"),
+        (2, 200, "rows is 200; it must be 1 to 16"),
+        (3, 65, "columns is 65; it must be 1 to 64"),
+        (12, 7, r"rest_side is 7; it must be one of 0 \(LEFT\), 1 \(RIGHT\)"),
+        (16, 0xFF, "rate_hz is 65512; it must be 50 to 10000 Hz"),
+        (23, 3, "encoder is 3; it must be one of 0"),
+        (28, 0, "count_sign is 0; it must be one of 1"),
+        (29, 33, "count_bits is 33; it must be 8 to 32 bits"),
+        (29, 16, "travel_um is 300000, which takes 60000 counts .* less than 32768, .*_bits 16"),
+        (34, 0xFF, "it ends before its last field"),
+        (35, 0, None),  # of a text, which is mended
+        (-1, 2, "enabled are up to 2; they must be 0 to 1"),
+    ],
+)
+def test_an_info_that_cannot_be_is_named_with_its_field_and_value(bench, offset, value, said):
+    made = bench()
+    body = bytearray(cobs.decode(encode(shown())[:-1])[:-4])
+    body[offset] = value
+    receive = made.controller.receive
+
+    def answer(chunk, us):
+        return receive(chunk, us).replace(encode(made.controller.info), enframe(bytes(body)))
+
+    made.controller.receive = answer
+    if said is None:
+        made.open().close()
+        return
+    with pytest.raises(DeviceError, match=rf"vb0 says in its INFO what cannot be: {said}"):
+        made.open()
+    assert made.us < 100_000  # at once, and not when the time to answer is over
+    made.controller.receive = receive
+    device = made.open()
+    made.run(device, 5)
+    made.unplug()
+    made.run(device, 1)
+    made.controller = Controller(shown())
+    receive = made.controller.receive
+    made.controller.receive = answer
+    made.plug()
+    made.find()
+    made.run(device, 1000)
+    notes = device.take_notes()
+    assert len(notes) == 2
+    assert re.match(rf"device: what came back says in its INFO what cannot be: {said}", notes[1])
+    device.close()
+
+
+def test_each_kind_of_notice_is_said_once_a_second_with_a_count(bench):
+    made = bench()
+    device = made.open()
+    said = []
+    for number in range(3000):
+        made.say(encode(Error(200, f"Warm: {number}.")) + encode(Error(201, "Dusty.")))
+        made.run(device, 1)
+        said += device.take_notes()
+    assert len(said) == 6
+    assert said[:2] == ["device: Warm: 0.", "device: Dusty."]
+    assert re.fullmatch(
+        r"device: Warm: (99\d|100\d)\. \(1?\d{3,4} times in the last second\)", said[2]
+    )
+    device.close()
+
+
+def test_a_watchdog_count_that_there_was_no_time_for_is_not_believed(bench, rng):
+    made = bench()
+    device = made.open()
+    made.run(device, 20)
+    for count in rng.integers(0, 2**32, 1000).tolist():
+        made.say(encode(Watchdog(count, 0)))
+        made.run(device, 1)
+    assert device.counts()["watchdog trips"] == 0
+    assert device.counts()["watchdog reports not believed"] >= 999
+    assert device.rested == 0
+    assert device.take_notes() == []
+    assert device.watchdog_trips == 0
+    device.close()
+
+
+def test_a_watchdog_count_is_believed_over_its_wrap(bench):
+    made = bench()
+    device = made.open()
+    made.say(encode(Watchdog(2**32 - 1, 0)))
+    made.run(device, 100)
+    made.say(encode(Watchdog(0, 0)))
+    made.run(device, 2)
+    assert device.counts()["watchdog trips"] == 1
     device.close()
 
 

@@ -23,7 +23,7 @@ from vbraille.devices.ports import (
 )
 from vbraille.devices.seriallines import DescriptorLine, ThreadedLine, open_line
 from vbraille.devices.serialport import SerialPort
-from vbraille.errors import DeviceError, InputError
+from vbraille.errors import DeviceError, InputError, VbrailleError
 
 FRAME = b"\x07" + b"frame" * 16 + b"\0"
 
@@ -89,11 +89,75 @@ def test_what_is_no_port(tmp_path, name, sentence):
 
 
 @pytest.mark.parametrize(
-    "url", ["foo://bar", "socket://localhost", "socket://localhost:1", "loop://?logging=loud"]
+    ("url", "sentence"),
+    [
+        ("foo://bar", "for there is no kind of port foo://; give a path such as /dev/ttyACM0, or"),
+        ("../x://y", "for there is no kind of port ../x://; give a path"),
+        ("socket://127.0.0.1", "for it needs the number of a port from 1 to 65535; an example is"),
+        (
+            "socket://[::1]:99999",
+            "for it needs a host and the number of a port from 1 to 65535; an",
+        ),
+        ("socket://[::1", "for it needs a host and the number of a port"),
+        ("socket://localhost:abc", "for it needs a host and the number of a port"),
+        ("socket://localhost:-1", "for it needs a host and the number of a port"),
+        ("socket://localhost:0", "for it needs the number of a port from 1"),
+        ("socket://:7000", "for it names no host; an example is socket://192.168.1.5:7000"),
+        ("socket://h:1/x", "for nothing can follow the number of the port, as '/x' does"),
+        ("socket://h:1?x=1", "for socket:// has no option 'x' (there is logging)"),
+        ("socket://h:1?logging=loud", "for logging is 'loud' and must be one of debug, info"),
+        ("rfc2217://127.0.0.1", "for it needs the number of a port from 1 to 65535"),
+        ("rfc2217://[::1]:99999", "for it needs a host and the number of a port"),
+        ("rfc2217://h:1?timeout=x", "for timeout is 'x' and must be a number of seconds"),
+        ("loop://?logging=loud", "for logging is 'loud' and must be one of"),
+        ("spy://", "for it names no port; an example is spy:///dev/ttyACM0?file=bytes.txt"),
+        ("spy:///dev/x?foo=1", "for spy:// has no option 'foo' (there is file, color, raw, all)"),
+        ("spy:///dev/x?file=/none/x", "for there is no folder for the file '/none/x'"),
+        ("alt:///dev/x?class=time", "for class is 'time' and must be one of Serial, PosixPoll"),
+        ("hwgrep://", "for it has nothing to look for; an example is hwgrep://Arduino"),
+        ("hwgrep://[", "for '[' is no regular expression"),
+        ("hwgrep://x&n=0", "for n is '0' and must be 1 for the first port found, 2 for the next"),
+        ("hwgrep://x&foo=1", "for hwgrep:// has no option 'foo' (there is n, skip_busy)"),
+        ("cp2110://x", "for the Python package hidapi is not installed, which it needs"),
+    ],
 )
-def test_bad_urls(url):
-    with pytest.raises(InputError, match=r"cannot be opened \(.*\); check the address"):
+def test_a_url_that_cannot_be_one_says_what_is_wrong_in_it(url, sentence):
+    with pytest.raises(InputError) as raised:
         open_serial(url, info())
+    assert str(raised.value).startswith(f"{url} cannot be opened, {sentence}")
+
+
+@pytest.mark.parametrize(
+    ("url", "sentence"),
+    [
+        ("socket://127.0.0.1:1", "127.0.0.1 is there, but nothing answers at its port 1; start"),
+        ("rfc2217://127.0.0.1:1", "127.0.0.1 is there, but nothing answers at its port 1; start"),
+        ("socket://no.such.invalid:1", "there is no computer no.such.invalid; see that"),
+        ("spy:///dev/none", "there is no port spy:///dev/none; "),
+        ("alt:///dev/none", "there is no port alt:///dev/none; "),
+        ("spy:///dev/null", "spy:///dev/null is no serial port; choose another"),
+        ("hwgrep://nothing_fits_this", "no port fits hwgrep://nothing_fits_this; 'vbraille device"),
+    ],
+)
+def test_a_url_that_was_not_opened_says_why_in_our_own_words(url, sentence):
+    with pytest.raises(VbrailleError) as raised:
+        open_serial(url, info())
+    assert str(raised.value).startswith(sentence)
+    assert "rrno" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("number", "sentence"),
+    [
+        (errno.ETIMEDOUT, "host does not answer; see that it is on and in this network"),
+        (errno.EHOSTUNREACH, "there is no way to host; see that it is on and in this network"),
+        (errno.EPROTO, "socket://host:1 cannot be opened, for what answers there does not do what"),
+    ],
+)
+def test_what_pyserial_put_its_own_words_around_is_still_told(number, sentence):
+    fault = serial.SerialException("Could not open port socket://host:1: [Errno 110]")
+    fault.__context__ = OSError(number, "whatever")
+    assert str(explain(fault, "socket://host:1")).startswith(sentence)
 
 
 def test_a_busy_port(ends):

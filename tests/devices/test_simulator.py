@@ -12,7 +12,7 @@ from tests.devices.test_firmware import INFO, REST, SWING, packed
 from vbraille.devices.hand import Sweep
 from vbraille.devices.messages import Encoder, Frame, Hello, Info, State, Watchdog
 from vbraille.devices.pty import Link, Port
-from vbraille.devices.simulator import Faults, Simulator, Spoiler
+from vbraille.devices.simulator import Defect, Faults, Simulator, Spoiler
 from vbraille.devices.wire import DELIMITER, Decoder, encode
 from vbraille.errors import InputError
 
@@ -374,3 +374,24 @@ def test_no_descriptor_is_left_when_there_can_be_no_link(tmp_path):
         with pytest.raises(InputError, match="choose another"):
             Port(Link(str(path)))
     assert len(list(Path("/proc/self/fd").iterdir())) == before
+
+
+@pytest.mark.parametrize("defect", Defect)
+def test_it_is_built_wrong_in_what_it_is_told_to_be(make, defect):
+    bench = make(faults=Faults(defect=defect))
+    bench.greet()
+    begun_ns, begun = time.monotonic_ns(), bench.host.states[-1]
+    bench.host.frame()
+    bench.run(ticks(75))  # of 2 ms: the watchdog has tripped, unless it is late or not there
+    state = bench.host.states[-1]
+    passed_us = (time.monotonic_ns() - begun_ns) / 1000
+    (info,) = [message for message in bench.host.heard if isinstance(message, Info)]
+    found = {
+        Defect.NO_ACKNOWLEDGEMENT: bench.controller.frames > 0 and state.frame_sequence == 0,
+        Defect.NO_ACTUATORS: not any(info.enabled),
+        Defect.OFF_PLACE: bench.way_mm() > info.travel_um / 1000,
+        Defect.SLOW_CLOCK: (state.time_us - begun.time_us) / passed_us < 0.7,
+        Defect.NO_WATCHDOG: bench.controller.watchdog_us is None and not bench.controller.trips,
+        Defect.LATE_WATCHDOG: bench.controller.watchdog_us == 200_000,
+    }
+    assert [kind for kind, is_so in found.items() if is_so] == [defect]

@@ -296,3 +296,10 @@ def test_a_place_that_is_no_number_is_a_fault(clock, device):
 def test_rate_has_bounds(clock, device, rate):
     with pytest.raises(ValueError, match="1 to 10000"):
         Loop(device, clock, rate_hz=rate)
+
+
+@pytest.mark.parametrize("x_mm", [-64654392.32, float("nan"), float("inf")])
+def test_a_carriage_that_cannot_be_there_is_told_with_what_to_do(clock, device, x_mm):
+    device.shift_mm = x_mm
+    with pytest.raises(DeviceError, match=r"where it cannot be; switch it off .* look at its enc"):
+        run(Loop(device, clock), 0.01)

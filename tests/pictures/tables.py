@@ -10,7 +10,7 @@ NO_TEXT = Paragraph(np.zeros(0, np.uint32), np.zeros(0, np.int64), 0, False, fro
 
 
 def make_line(braille, number=1, indent=0):
-    return Line(number, indent, Cells.from_unicode(braille), NO_TEXT)
+    return Line(number, indent, Cells.from_unicode(braille), NO_TEXT, 0, 0)
 
 
 def make_page(lines, model=STRESS2, **changes):

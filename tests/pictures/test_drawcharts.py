@@ -152,7 +152,7 @@ def test_many_runs_share_their_axes_and_stay_apart():
     assert len([axes for axes in figure.axes if axes.axison]) == 20
     assert len({axes.get_ylim() for axes in figure.axes}) == 1
     assert not list(overlaps(figure))
-    assert sum(bool(axes.get_xlabel()) for axes in figure.axes) == 5
+    assert sum(bool(axes.get_xlabel()) for axes in figure.axes) == 4
     assert len(to_bytes(figure, "svg")) < 200_000  # small enough to be within a page
 
 
@@ -222,8 +222,82 @@ def test_a_matrix_of_letters_is_legible():
     assert not list(overlaps(figure))
     cell = axes.get_window_extent().width / 27
     assert max(text.get_window_extent().width for text in axes.texts) < 0.9 * cell
-    assert min(text.get_fontsize() for text in axes.texts) >= 9
+    assert min(text.get_fontsize() for text in axes.texts) >= 6.5
+    width, height = figure.get_size_inches()
+    assert width <= 6.7  # A4 within margins of 20 mm
+    assert height <= 10.1
     assert len(to_bytes(figure, "svg")) < 200_000
+
+
+def test_large_counts_have_room_in_their_cells():
+    counts = tuple((15_387,) * 26 for _ in range(26))
+    (axes,) = draw_chart(matrix(counts, tuple(range(26)))).axes
+    cell = axes.get_window_extent().width / 26
+    assert max(text.get_window_extent().width for text in axes.texts) < cell
+
+
+LONG = "a participant whose pseudonym is as long as anybody would ever have it"
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(
+    "chart",
+    [
+        bars(groups=[LONG, "b", "c"], names=[LONG, "two"]),
+        bars(groups=[f"{LONG} {n}" for n in range(12)], names=["one"]),
+        Runs("Over time", (replace(runs().runs[0], name=LONG),) * 12),
+        Paths("Patterns", (replace(path(), name=LONG),) * 3),
+        replace(matrix(), rows=(LONG, "b"), columns=(LONG, "b", "c")),
+    ],
+    ids=["bars", "many bars", "runs", "paths", "matrix"],
+)
+def test_no_label_is_cut_short(chart):
+    figure = draw_chart(chart)
+    told = [word for word in words(figure) if " ".join(word.split()).startswith(LONG)]
+    assert told
+    assert not any("…" in word for word in words(figure))
+    assert not list(overlaps(figure))
+    figure.draw_without_rendering()  # places the legend's words
+    box = figure.bbox
+    for text in figure.findobj(Text):
+        if text.get_visible() and " ".join(text.get_text().split()).startswith(LONG):
+            extent = text.get_window_extent()
+            assert (extent.p0 >= box.p0 - 1).all()
+            assert (extent.p1 <= box.p1 + 1).all()
+
+
+def test_each_participant_is_a_point_upon_the_bar():
+    own = ((30.0, 40.0, None), (50.0, 60.0, 70.0))
+    chart = Bars(
+        "Means", "level", ("x", "y", "z"),
+        (("legibility (%)", (Series("mean", (40.0, 50.0, 70.0), points=own),)),),
+    )  # fmt: skip
+    (axes,) = draw_chart(chart).axes
+    first, second = axes.get_lines()
+    assert second.get_ydata().tolist() == [50, 60, 70]
+    assert first.get_ydata()[:2].tolist() == [30, 40]
+    assert np.isnan(first.get_ydata()[2])
+    assert first.get_marker() == "o"
+    assert first.get_linewidth() > 0  # joined, as one bar stands in a group
+    assert first.get_xdata()[0] < second.get_xdata()[0]  # beside each other
+    assert abs(second.get_xdata()[0]) < 0.4  # upon the bar
+
+
+@pytest.mark.parametrize("chart", CHARTS, ids=lambda chart: type(chart).__name__)
+def test_a_pdf_has_no_date_and_is_the_same_again(chart):
+    first, again = (to_bytes(draw_chart(chart), "pdf") for _ in range(2))
+    assert first == again
+    assert first.startswith(b"%PDF")
+    assert b"CreationDate" not in first
+    assert b"/Type3" not in first.replace(b" ", b"")  # letters stay letters
+
+
+@pytest.mark.no_cover
+@KINDS
+def test_figures_fit_upon_a4(chart):
+    width, height = draw_chart(chart).get_size_inches()
+    assert min(width, height) <= 7.2
+    assert max(width, height) <= 10.1
 
 
 NASTY = "$x$ <&> \udc80\0\n_y"

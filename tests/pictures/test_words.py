@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.pictures.words import plain, short
+from vbraille.pictures.words import plain
 
 ANY = st.text(st.characters(), max_size=20) | st.text("\0\t\r\n\x85\u2028\u202e\udc80\ufffe a<&")
 
@@ -30,8 +30,3 @@ def test_plain_text_is_one_line_that_pages_can_have(text):
 )
 def test_what_is_not_plain_is_spelled(text, made):
     assert plain(text) == made
-
-
-def test_a_short_text_tells_that_there_is_more():
-    assert short("legibility", 10) == "legibility"
-    assert short("legibility", 6) == "legib…"

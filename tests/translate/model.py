@@ -1,6 +1,7 @@
 """The rules for paragraphs once more, a character at a time and in plain Python."""
 
 import unicodedata
+from functools import cache
 from typing import NamedTuple
 
 BLANKS = "\t \u1680\u205f\u3000" + "".join(chr(c) for c in range(0x2000, 0x200B) if c != 0x2007)
@@ -25,8 +26,25 @@ class Piece(NamedTuple):
 
 def pieces_of(text: str, *, keep_lines: bool = False) -> list[Piece]:
     """All paragraphs of a text, the long ones cut."""
+    text = "".join("\ufeff" if n in _struck(text) else c for n, c in enumerate(text))
     whole = _lines(text) if keep_lines else _paragraphs(text)
     return [piece for characters in whole for piece in _cut(characters)]
+
+
+@cache
+def _struck(text):
+    """Places of backspaces, underlines and doubled letters that only told a printer of emphasis."""
+    no_letters = BLANKS + NEWLINES + BREAKS + DROPPED
+    struck = set()
+    for at in range(1, len(text) - 1):
+        before, after = text[at - 1], text[at + 1]
+        if text[at] != "\b" or before == "\b" or before in no_letters or after in no_letters:
+            continue
+        if before in ("_", after):
+            struck |= {at - 1, at}
+        elif after == "_":
+            struck |= {at, at + 1}
+    return struck
 
 
 def _paragraphs(text):

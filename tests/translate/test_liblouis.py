@@ -228,9 +228,9 @@ class TestNothingLost:
         text = "Wort " * 1_600
         cells = translate(table, text)
         assert cells.masks.tobytes() == (word + b"\0") * 1_599 + word
-        unknown = translate(table, "\U0001f600" * 2_000)
-        assert len(unknown) % 2_000 == 0
-        assert unknown.masks.all()
+        unknown = translate(table, "\U0001f600 " * 2_000)
+        marked = set(unknown.starts[unknown.masks > 0].tolist())
+        assert len(marked) >= 2_000
 
 
 class TestThreads:

@@ -21,6 +21,7 @@ from vbraille.translate.paragraphs import PIECE_CHARACTERS, Paragraph, split_par
 
 # What the rules speak of, and a few letters.
 AWKWARD = list("aaé- \n\r\t\f\v\x85\xa0\xad\u2010\u2028\u2029\u202f\u0301\ufeff\0\ud800😀.")
+AWKWARD += ["\b", "_", "_\b", "a\ba", "\b_"]
 AWKWARD += ["\n\n", "\r\n", " and", "-\n", "-\nor ", "\xad\n", "  "]
 AWKWARD += ["\n- ", "\n– ", "\n•\t", "\n1. ", "\n(2) ", "\n3)", ":\n", "\na) ", "\nb) ", "\n7. "]
 awkward_texts = st.lists(st.sampled_from(AWKWARD), max_size=40).map("".join)
@@ -86,6 +87,22 @@ class TestProse:
     )
     def test_hyphens_at_the_end_of_a_line(self, text, paragraph):
         assert split(text) == [paragraph]
+
+    @pytest.mark.parametrize(
+        ("text", "paragraph"),
+        [
+            ("_\bb_\bo", "bo"),
+            ("b\b_o\b_", "bo"),
+            ("b\bbo\bo\bo", "bo"),
+            ("_\bb\bb", "b"),
+            ("a _\bb\n_\bc", "a b c"),
+            ("e\b'", "e\b'"),
+            ("\ba\b", "\ba\b"),
+        ],
+    )
+    def test_overstrikes_are_no_text(self, text, paragraph):
+        assert split(text) == [paragraph]
+        assert split(text, keep_lines=True) == paragraph.replace("b c", "b\nc").split("\n")
 
     @pytest.mark.parametrize(
         ("text", "paragraphs"),

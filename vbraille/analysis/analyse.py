@@ -12,11 +12,13 @@ from vbraille.analysis import (
     figures,
     legibility,
     levels,
+    matrices,
     motion,
     overtime,
     remarks,
     tuning,
 )
+from vbraille.analysis.findings import findings
 from vbraille.analysis.results import Results, Section
 from vbraille.analysis.scores import of_trials
 from vbraille.analysis.statistics.correction import METHODS
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.trials import Comparisons, LeftOut, Trials
 
 SEED = 20090618
+_MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that there is
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +50,7 @@ class Options:
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Of bootstraps.
+        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
 
     Raises
     ------
@@ -56,7 +59,7 @@ class Options:
     """
 
     factors: tuple[str, ...] = ("condition",)
-    correction: str = "none"
+    correction: str = "holm"
     marks: tuple[int, ...] = confusion.MARKS
     seed: int = SEED
 
@@ -69,7 +72,7 @@ class Options:
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),
-            ("Intervals", f"95 %; bootstraps with seed {self.seed}"),
+            ("Intervals", f"95 %; random draws with seed {self.seed}"),
         ]
 
 
@@ -91,7 +94,7 @@ def analyse(study: Study, options: Options) -> Results:
         table = remarks.notes(study.sittings)
         sections.append(Section("Notes", "What the experimenter wrote down.", (table,)))
     about = (*study.about, *_excluded(left_out), *options.told())
-    return Results("Legibility sessions", about, study.warnings, tuple(sections))
+    return _told("Legibility sessions", about, study.warnings, sections)
 
 
 def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
@@ -107,7 +110,23 @@ def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Op
     told = [pair for pair in options.told() if pair[0] != "Compared by"]
     compared = ("Compared by", ", ".join(scores.factors))
     head = (*about, *_excluded(left_out), compared, *told)
-    return Results("Scores", head, (), (section,))
+    return _told("Scores", head, (), [section])
+
+
+def _told(
+    title: str,
+    about: Sequence[tuple[str, str]],
+    warnings: Sequence[str],
+    sections: Sequence[Section],
+) -> Results:
+    """Results with what was found in them, and the figure that shows it."""
+    told = findings(table for section in sections for table in section.tables)
+    names = [picture.name for section in sections for picture in section.pictures]
+    main = next(
+        (name for start in _MAIN for name in names if name.startswith(start)),
+        names[0] if names else "",
+    )
+    return Results(title, tuple(about), tuple(warnings), tuple(sections), told, main)
 
 
 def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
@@ -121,19 +140,19 @@ def _of_trials(
     places = Places.of(trials)
     scores = of_trials(trials, places, options.factors)
     return [
-        _legibility(trials, places, options),
+        _legibility(trials, places),
         _characters(trials, places),
         _confusions(trials, places, options),
-        _errors(places),
+        _errors(trials, places),
         _over_time(trials),
         _motion(study, trials),
         _compared(scores, options, left_out),
     ]
 
 
-def _legibility(trials: Trials, places: Places, options: Options) -> Section:
+def _legibility(trials: Trials, places: Places) -> Section:
     table = legibility.legibility(trials, places)
-    averages = legibility.averages(table, seed=options.seed)
+    averages = legibility.averages(table)
     return Section(
         "Legibility",
         "Who read how much of it right, and how long it took.",
@@ -144,15 +163,16 @@ def _legibility(trials: Trials, places: Places, options: Options) -> Section:
 
 def _characters(trials: Trials, places: Places) -> Section:
     by_dots = characters.dots(trials, places)
-    tables = (characters.characters(trials, places), by_dots, characters.strings(trials))
-    pictures = (figures.dots(by_dots),) if by_dots.rows else ()
+    own = characters.dots_of_participants(trials, places)
+    tables = (characters.characters(trials, places), by_dots, own, characters.strings(trials))
+    pictures = (figures.dots(by_dots, own),) if by_dots.rows else ()
     return Section(
         "Characters and strings", "What is easy to read, and what is not.", tables, pictures
     )
 
 
 def _confusions(trials: Trials, places: Places, options: Options) -> Section:
-    tables: list[Table] = [confusion.transmitted(trials, places)]
+    tables: list[Table] = [confusion.transmitted(trials, places, seed=options.seed)]
     pictures: list[Picture] = []
     for counts, schema, reason in (
         (
@@ -170,14 +190,14 @@ def _confusions(trials: Trials, places: Places, options: Options) -> Section:
             tables.append(schema.fill([], [reason]))
         else:
             tables.append(confusion.to_table(counts, places, options.marks))
-            pictures.append(figures.confusion(counts, tables[-1]))
+            pictures.append(matrices.confusion(tables[-1]))
     return Section("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
 
 
-def _errors(places: Places) -> Section:
-    table = errors.errors(places)
-    pictures = (figures.errors(table),) if table.rows else ()
-    return Section("Errors", "What is wrong with wrong answers.", (table,), pictures)
+def _errors(trials: Trials, places: Places) -> Section:
+    table, own = errors.errors(places), errors.of_participants(trials, places)
+    pictures = (figures.errors(table, own),) if table.rows else ()
+    return Section("Errors", "What is wrong with wrong answers.", (table, own), pictures)
 
 
 def _over_time(trials: Trials) -> Section:
@@ -186,7 +206,7 @@ def _over_time(trials: Trials) -> Section:
         "Over time",
         "Whether reading became harder or easier.",
         (slopes, table),
-        (figures.over_time(table, slopes),),
+        tuple(figures.over_time(table, slopes)),
     )
 
 
@@ -205,22 +225,24 @@ def _motion(study: Study, trials: Trials) -> Section:
 
 
 def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Section:
-    means = levels.level_means(scores, seed=options.seed)
+    means = levels.level_means(scores)
+    own = levels.own_means(scores)
     table, dropped = levels.analyses(scores)
     left_out += dropped
     return Section(
         "Levels compared",
         "Differences within participants.",
-        (means, levels.t_tests(scores, options.correction), table),
-        tuple(figures.level_means(means)) if means.rows else (),
+        (means, own, levels.t_tests(scores, options.correction), table),
+        tuple(figures.level_means(means, own)) if means.rows else (),
     )
 
 
 def _of_comparisons(comparisons: Comparisons, options: Options) -> Section:
     table, preferred = tuning.tuning(comparisons, seed=options.seed)
+    own = tuning.choices_of_participants(comparisons)
     return Section(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
-        (table, preferred),
-        tuple(figures.choices(table, preferred)),
+        (table, own, preferred),
+        tuple(figures.choices(table, preferred, own)),
     )

@@ -22,8 +22,8 @@ def over_participants(
     value: NDArray,
     participant: NDArray[np.int64],
     condition: NDArray[np.int64],
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Mean of each level over conditions within a participant, then over participants.
+) -> tuple[NDArray[np.int64], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
+    """Mean of each level over conditions within each participant.
 
     As tables 3.2 and 3.3 of Lévesque 2009 were most likely found: "computed across all
     subjects using individual subject means to compensate for the unequal number of trials
@@ -38,14 +38,18 @@ def over_participants(
     -------
     levels : int64[k]
         Codes of the levels that there are, ascending.
-    participants : int64[k]
-        How many participants have each.
-    means : float64[k]
+    own : list of float64[participants]
+        At each level, the mean of each participant who has it.
+    numbers : list of int64[participants]
+        How many observations each is of.
     """
+    shape = (int(level.max()) + 1, int(participant.max()) + 1)
+    cell = np.ravel_multi_index((level, participant), shape)
+    numbers = np.unique(cell, return_counts=True)[1]
     (level, participant, _), means = _means((level, participant, condition), value)
     (level, _), means = _means((level, participant), means)
-    levels, participants = np.unique(level, return_counts=True)
-    return levels, participants, _means((level,), means)[1]
+    levels, starts = np.unique(level, return_index=True)
+    return levels, np.split(means, starts[1:]), np.split(numbers, starts[1:])
 
 
 def _means(

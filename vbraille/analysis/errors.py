@@ -12,7 +12,7 @@ from vbraille.analysis.trials import UNREAD_MASK, count
 
 if TYPE_CHECKING:
     from vbraille.analysis.tables import Row, Table
-    from vbraille.analysis.trials import Places
+    from vbraille.analysis.trials import Places, Trials
 
 ERRORS = Schema(
     "errors",
@@ -26,6 +26,17 @@ ERRORS = Schema(
         Column("moved", "moved", "dots answered in another place", Kind.COUNT),
         Column("count", "places", "how many places", Kind.COUNT),
         Column("share", "of all errors (%)", "their share of the wrong places", Kind.PERCENT),
+    ),
+)
+ERRORS_OWN = Schema(
+    "errors_participants",
+    "Errors of each participant",
+    "Of the places that the participant answered wrongly.",
+    (
+        Column("participant", "participant", "pseudonym"),
+        Column("error", "error", "what is wrong with the answer, in words"),
+        Column("count", "places", "how many places", Kind.COUNT),
+        Column("share", "of own errors (%)", "their share of the wrong places", Kind.PERCENT),
     ),
 )
 _BITS = np.array([mask.bit_count() for mask in range(256)])
@@ -66,6 +77,28 @@ def errors(places: Places) -> Table:
     if not rows:
         notes.append("no place was answered wrongly")
     return ERRORS.fill(rows, notes)
+
+
+def of_participants(trials: Trials, places: Places) -> Table:
+    """Kinds of errors of each participant, in the order of `errors`."""
+    kinds = [row["error"] for row in errors(places).records()]
+    who = trials.participant.codes[places.at]
+    rows: list[Row] = []
+    for code, participant in enumerate(trials.participant.levels):
+        own = places.where(who == code)
+        counts = {row["error"]: row["count"] for row in errors(own).records()}
+        total = sum(counts.values())
+        rows += [
+            {
+                "participant": participant,
+                "error": kind,
+                "count": counts.get(kind, 0),
+                "share": counts.get(kind, 0) / total,
+            }
+            for kind in kinds
+            if total
+        ]
+    return ERRORS_OWN.fill(rows, [] if rows else ["no place was answered wrongly"])
 
 
 def _name(added: int, removed: int, moved: int) -> str:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.analysis.findings import interval_words
 from vbraille.analysis.results import Picture
 from vbraille.analysis.tables import Column, Kind, Schema, to_print
-from vbraille.analysis.trials import UNREAD, name_string
-from vbraille.pictures.charts import Bars, Matrix, Path, Paths, Run, Runs, Series
+from vbraille.analysis.trials import name_string, times
+from vbraille.pictures.charts import Bars, Path, Paths, Run, Runs, Series
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from vbraille.analysis.confusion import Confusion
     from vbraille.analysis.sittings import Example, Sitting
     from vbraille.analysis.tables import Row, Table
+    from vbraille.pictures.charts import Numbers
 
+MOST_RUNS = 24  # panels of a figure that does
+MOST_PAGES = 10  # of such figures
+MOST_ERRORS = 12  # kinds that are drawn
 PATHS = Schema(
     "examples",
     "Trajectories of the trials that are drawn",
@@ -44,21 +48,19 @@ def legibility(table: Table, averages: Table) -> Picture:
         panels.append(("characters read right (%)", "character_legibility", 100.0))
     if any(table.column("timed")):
         panels.append(("mean duration (s)", "duration_mean_s", 1.0))
-    drawn = tuple(
-        (
-            label,
-            tuple(
-                Series(
-                    condition,
-                    tuple(_scaled(at[who, condition][name], scale) for who in people),
-                    *(
-                        tuple(_scaled(at[who, condition][end], scale) for who in people)
-                        for end in (("low", "high") if name == "legibility" else ())
-                    ),
-                )
-                for condition in conditions
-            ),
+
+    def bars(condition: str, name: str, scale: float) -> Series:
+        lows, highs = (
+            tuple(_scaled(at[who, condition][end], scale) for who in people)
+            if name == "legibility"
+            else ()
+            for end in ("low", "high")
         )
+        values = tuple(_scaled(at[who, condition][name], scale) for who in people)
+        return Series(condition, values, lows, highs)
+
+    drawn = tuple(
+        (label, tuple(bars(condition, name, scale) for condition in conditions))
         for label, name, scale in panels
     )
     known = [row for row in table.records() if row["trials"]]
@@ -82,17 +84,25 @@ def legibility(table: Table, averages: Table) -> Picture:
     )
 
 
-def dots(table: Table) -> Picture:
+def dots(table: Table, own: Table) -> Picture:
     """Legibility by number of dots: Lévesque 2009, fig. 4.8."""
     rows = table.records()
     series = Series(
-        "all", *(tuple(100 * row[n] for row in rows) for n in ("pooled", "low", "high"))
+        "all",
+        *(
+            tuple(_scaled(row[name], 100.0) for row in rows)
+            for name in ("legibility", "low", "high")
+        ),
+        points=_points(own.records(), "dots", [row["dots"] for row in rows], "legibility", 100.0),
     )
-    shares = ", ".join(f"{row['dots']}: {to_print(row['pooled'], Kind.PERCENT)} %" for row in rows)
+    shares = ", ".join(
+        f"{row['dots']}: {to_print(row['legibility'], Kind.PERCENT)} %" for row in rows
+    )
     return Picture(
         "dots",
         "Legibility of characters by their number of dots",
-        f"One bar a number of dots, all trials pooled, with 95 % intervals. {shares}.",
+        f"One bar a number of dots, the mean over participants, with 95 % intervals; a circle is "
+        f"a participant (table {own.title}). {shares}.",
         table.name,
         Bars(
             "Legibility by number of dots",
@@ -103,62 +113,30 @@ def dots(table: Table) -> Picture:
     )
 
 
-def errors(table: Table) -> Picture:
+def errors(table: Table, own: Table) -> Picture:
     """Kinds of errors: Lévesque 2009, fig. 4.8."""
-    rows = table.records()
-    series = Series("all", tuple(row["count"] for row in rows))
+    rows = table.records()[:MOST_ERRORS]
+    kinds = [row["error"] for row in rows]
+    series = Series(
+        "all",
+        tuple(100 * row["share"] for row in rows),
+        points=_points(own.records(), "error", kinds, "share", 100.0),
+    )
     first = rows[0]
+    part = "" if len(rows) == len(table.rows) else f", of the {len(rows)} most frequent"
     return Picture(
         "errors",
         "Errors by dots added, removed and moved",
-        f"One bar a kind of error. The most frequent is {first['error']}: {first['count']} places, "
-        f"{to_print(first['share'], Kind.PERCENT)} % of all errors.",
+        f"One bar a kind of error{part}: its share of all errors; a circle is a participant's "
+        f"share (table {own.title}). The most frequent is {first['error']}: {first['count']} "
+        f"places, {to_print(first['share'], Kind.PERCENT)} % of all errors.",
         table.name,
-        Bars(
-            "Errors by dots",
-            "error",
-            tuple(row["error"] for row in rows),
-            (("places", (series,)),),
-        ),
+        Bars("Errors by dots", "error", tuple(kinds), (("of all errors (%)", (series,)),)),
     )
 
 
-def confusion(counts: Confusion, table: Table) -> Picture:
-    """Matrix of counts: Lévesque 2009, tables 3.4, 3.5 and 4.1."""
-    errors = [
-        (counts.counts[r, c], row, column)
-        for r, row in enumerate(counts.rows)
-        for c, column in enumerate(counts.columns)
-        if row != column and counts.counts[r, c]
-    ]
-    text = "No answer was wrong."
-    if errors:
-        worst = sorted(errors, key=lambda error: -error[0])[:3]
-        said = "; ".join(
-            f"{row} for which {column} was answered, {n} times" for n, row, column in worst
-        )
-        text = f"{len(errors)} kinds of confusion. Most frequent: {said}."
-    known = {name: at for at, name in enumerate(counts.columns)}
-    return Picture(
-        table.name,
-        table.title,
-        f"Rows are what was presented, columns what was answered; {UNREAD} is not read. {text}",
-        table.name,
-        Matrix(
-            table.title,
-            "presented",
-            "answered",
-            counts.rows,
-            counts.columns,
-            tuple(tuple(row) for row in counts.counts.tolist()),
-            table.marks,
-            tuple(known.get(name) for name in counts.rows),
-        ),
-    )
-
-
-def over_time(table: Table, slopes: Table) -> Picture:
-    """Single trials and their moving average: Lévesque 2009, fig. 3.14."""
+def over_time(table: Table, slopes: Table) -> Iterator[Picture]:
+    """Single trials and their moving average: Lévesque 2009, fig. 3.14; pages of `MOST_RUNS`."""
     of: dict[tuple, list[Row]] = {}
     for row in table.records():
         of.setdefault((row["participant"], row["session"], row["condition"]), []).append(row)
@@ -178,14 +156,25 @@ def over_time(table: Table, slopes: Table) -> Picture:
         f"10 trials"
         for row in sure
     )
-    return Picture(
-        "over_time",
-        "Legibility over time",
-        "A panel a participant and condition; dots are single trials, the curve is the average of "
-        f"the past 10. Legibility changed with p below 0.05: {said or 'nowhere'}.",
-        table.name,
-        Runs("Legibility over time", tuple(runs)),
-    )
+    pages = -(-len(runs) // MOST_RUNS)
+    left = f" Of {pages} pages {MOST_PAGES} are drawn; the table has all." * (pages > MOST_PAGES)
+    for page in range(min(pages, MOST_PAGES)):
+        part = f", {page + 1} of {pages}" if pages > 1 else ""
+        text = (
+            f"A panel a participant and condition; dots are single trials, the curve is the "
+            f"average of the past 10. Legibility changed with p below 0.05: {said or 'nowhere'}."
+            f"{left}"
+        )
+        yield Picture(
+            "over_time" if not page else f"over_time_{page + 1}",
+            f"Legibility over time{part}",
+            text if not page else "As the figure before, of the participants that follow.",
+            table.name,
+            Runs(
+                f"Legibility over time{part}",
+                tuple(runs[page * MOST_RUNS : (page + 1) * MOST_RUNS]),
+            ),
+        )
 
 
 def examples(sittings: Sequence[Sitting]) -> tuple[Table, Picture] | None:
@@ -237,67 +226,103 @@ def examples(sittings: Sequence[Sitting]) -> tuple[Table, Picture] | None:
     )
 
 
-def choices(table: Table, preferred: Table) -> Iterator[Picture]:
+def choices(table: Table, preferred: Table, own: Table) -> Iterator[Picture]:
     """How often each value was chosen, a figure a parameter: Lévesque 2009, fig. 3.12."""
     for liked in preferred.records():
         name = liked["parameter"]
         rows = [row for row in table.records() if row["parameter"] == name]
         most = max(rows, key=lambda row: row["chosen"])
-        said = (
-            f"The preferred value is {to_print(liked['preferred'], Kind.NUMBER)}, 95 % interval "
-            f"{to_print(liked['low'], Kind.NUMBER)} to {to_print(liked['high'], Kind.NUMBER)}."
-            if liked["preferred"] is not None
-            else liked["note"]
+        said = liked["note"]
+        if liked["preferred"] is not None:
+            said = (
+                f"The preferred value is {to_print(liked['preferred'], Kind.NUMBER)}, "
+                f"{interval_words(liked, Kind.NUMBER)}."
+            )
+        values = [row["value"] for row in rows]
+        whose = [row for row in own.records() if row["parameter"] == name]
+        series = Series(
+            "chosen",
+            tuple(100 * row["share"] for row in rows),
+            points=_points(whose, "value", values, "share", 100.0),
         )
         yield Picture(
             f"choices_{_file_name(name)}",
             f"How often each {_in_words(name)} was chosen",
-            f"One bar a value. Most often chosen was {most['value']:g}, {most['chosen']} times of "
-            f"{most['presented']}. {said}",
+            f"One bar a value: in which share of its comparisons it was chosen; a circle is a "
+            f"participant (table {own.title}). Most often chosen was {most['value']:g}, "
+            f"{times(most['chosen'])} of {most['presented']}. {said}",
             table.name,
             Bars(
                 f"Choices of {_in_words(name)}",
                 _in_words(name),
-                tuple(f"{row['value']:g}" for row in rows),
-                (("times chosen", (Series("chosen", tuple(row["chosen"] for row in rows)),)),),
+                tuple(f"{value:g}" for value in values),
+                (("chosen (%)", (series,)),),
             ),
         )
 
 
-def level_means(table: Table) -> Iterator[Picture]:
-    """Means of the levels with their intervals, a figure a factor."""
+def level_means(table: Table, own: Table) -> Iterator[Picture]:
+    """Means of the levels with intervals and each participant's own, a figure a factor."""
     for factor in _distinct(table, "factor"):
         rows = [row for row in table.records() if row["factor"] == factor]
+        whose = [row for row in own.records() if row["factor"] == factor]
         levels = list(dict.fromkeys(row["level"] for row in rows))
         panels = []
         for measure in dict.fromkeys(row["measure"] for row in rows):
             of = {row["level"]: row for row in rows if row["measure"] == measure}
+            share = measure.startswith("legibility")
+            scale = 100.0 if share else 1.0
             ends = (
-                tuple(of[level][end] if level in of else None for level in levels)
+                tuple(_scaled(of[level][end], scale) if level in of else None for level in levels)
                 for end in ("mean", "low", "high")
             )
-            panels.append((measure, (Series("mean", *ends),)))
+            points = _points(
+                [row for row in whose if row["measure"] == measure], "level", levels, "mean", scale
+            )
+            label = f"{measure} (%)" if share else measure
+            panels.append((label, (Series("mean", *ends, points=points),)))
         said = "; ".join(
-            f"{row['measure']}, {row['level']}: {to_print(row['mean'], Kind.NUMBER)}"
+            f"{row['measure']}, {row['level']}: {_printed(row)} ({_interval(row)})"
             for row in rows
             if row["mean"] is not None
         )
         yield Picture(
             f"means_{_file_name(factor)}",
             f"Means by {factor}",
-            f"Means over participants, with bootstrap intervals. {said}.",
+            f"Bars are means over participants with 95 % intervals, circles the participants' own "
+            f"means (table {own.title}), joined within each. {said}.",
             table.name,
             Bars(f"Means by {factor}", factor, tuple(levels), tuple(panels)),
         )
 
 
+def _printed(row: Row) -> str:
+    if row["measure"].startswith("legibility"):
+        return f"{to_print(row['mean'], Kind.PERCENT)} %"
+    return to_print(row["mean"], Kind.NUMBER)
+
+
+def _interval(row: Row) -> str:
+    if row["measure"].startswith("legibility"):
+        return interval_words(row, Kind.PERCENT, " %")
+    return interval_words(row, Kind.NUMBER)
+
+
+def _points(
+    records: Sequence[Row], group: str, groups: Sequence[object], value: str, scale: float
+) -> tuple[Numbers, ...]:
+    """Each participant's values, a value a group; none of one participant alone."""
+    of: dict[str, dict[object, float]] = {}
+    for row in records:
+        of.setdefault(row["participant"], {})[row[group]] = scale * row[value]
+    if len(of) < 2:
+        return ()
+    return tuple(tuple(own.get(each) for each in groups) for own in of.values())
+
+
 def _chosen(sittings: Sequence[Sitting]) -> Iterator[tuple[str, Example]]:
     """Of the sessions' examples one of each pattern: that in the middle by duration."""
-    found = [
-        (sitting.folder.resolve().name, example)
-        for sitting in sittings
-        for example in sitting.examples
-    ]
+    found = [(sitting.name, example) for sitting in sittings for example in sitting.examples]
     for pattern in dict.fromkeys(sorted(example.pattern for _, example in found)):
         of = [pair for pair in found if pair[1].pattern == pattern]
         of.sort(key=lambda pair: (pair[1].end_s - pair[1].start_s, pair[0], pair[1].trial))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.analysis.averages import mean_or_none
-from vbraille.analysis.statistics.intervals import bootstrap_mean, wilson
+from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import Places, count
@@ -22,7 +23,8 @@ LEGIBILITY = Schema(
     "legibility",
     "Legibility and duration, by participant and condition",
     "Legibility is the share of strings of which every place is right (Lévesque 2009, 3.4), that "
-    "of characters the share of places. The interval is Wilson's. SD is that of a sample.",
+    "of characters the share of places. The interval is Wilson's: of this participant alone. SD is "
+    "that of a sample.",
     (
         Column("participant", "participant", "pseudonym"),
         Column("condition", "condition", "name, as in the protocol"),
@@ -50,7 +52,8 @@ AVERAGES = Schema(
     "Averages over participants, by condition",
     "Means of the participants' own means, so that unequal numbers of trials weigh the same; over "
     "those who have the condition. Trials are averaged over all participants, with 0 for those who "
-    "have not (Lévesque 2009, table 3.1). The interval is a bootstrap over participants.",
+    "have not (Lévesque 2009, table 3.1). The interval is of the mean share of "
+    "the population that participants come from, by a logit-normal model of how people differ.",
     (
         Column("condition", "condition", "name, as in the protocol"),
         Column("participants", "participants", "participants who have the condition", Kind.COUNT),
@@ -72,15 +75,13 @@ def legibility(trials: Trials, places: Places) -> Table:
     return LEGIBILITY.fill(list(_rows(trials, places)), unequal_notes(places))
 
 
-def averages(table: Table, *, seed: int) -> Table:
+def averages(table: Table) -> Table:
     """The last row of table 3.1, a row a condition.
 
     Parameters
     ----------
     table
         Of `legibility`.
-    seed
-        Of the bootstrap.
     """
     records = table.records()
     rows: list[Row] = []
@@ -99,7 +100,7 @@ def averages(table: Table, *, seed: int) -> Table:
             **{name: mean_or_none(values) for name, values in own.items()},
         }
         try:
-            interval = bootstrap_mean(own["legibility"], seed=seed)
+            interval = mean_share(own["legibility"], [int(of["trials"]) for of in having])
             row |= {"low": interval.low, "high": interval.high}
         except Unanswerable as reason:
             notes.append(f"no interval: {reason}")

@@ -11,8 +11,9 @@ import numpy as np
 from vbraille.analysis.averages import mean_or_none
 from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.intervals import bootstrap_mean
+from vbraille.analysis.statistics.intervals import Interval, mean_interval
 from vbraille.analysis.statistics.paired import PairedTest, paired_t
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import LeftOut, natural
@@ -29,8 +30,9 @@ MEANS = Schema(
     "level_means",
     "Means of the levels",
     "Over participants' own means; scores are averaged over other factors, and repeated ones "
-    "within the participant; who misses a cell of a level is left out of it. The interval is a "
-    "percentile bootstrap over participants.",
+    "within the participant; who misses a cell of a level is left out of it. The interval is of "
+    "the population's mean: for shares by a logit-normal model of how people differ, for others "
+    "Student's.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -42,12 +44,26 @@ MEANS = Schema(
         NOTE_COLUMN,
     ),
 )
+OWN = Schema(
+    "level_scores",
+    "Participants' own means at the levels",
+    "What the means, the tests and their figures are made of: scores averaged over other factors, "
+    "and repeated ones within the participant.",
+    (
+        Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
+        Column("factor", "factor", "by what"),
+        Column("level", "level", "of the factor"),
+        Column("participant", "participant", "pseudonym"),
+        Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
+    ),
+)
 T_TESTS = Schema(
     "t_tests",
     "Paired t-tests",
     "First less second, over participants; scores are averaged over other factors, and repeated "
     "ones within the participant. d_z is the mean difference by the standard deviation of the "
-    "differences; g_z is d_z with Hedges's correction for few participants.",
+    "differences, and its interval is by noncentral t; g_z is d_z with Hedges's correction for "
+    "few participants. Corrected p takes account of all pairs of a measure and factor.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -59,9 +75,11 @@ T_TESTS = Schema(
         Column("high", "to", "upper end", Kind.NUMBER),
         Column("t", "t", "Student's", Kind.NUMBER),
         Column("df", "df", "degrees of freedom", Kind.COUNT),
-        Column("p", "p", "two-sided", Kind.P),
+        Column("p", "p", "two-sided, not corrected", Kind.P),
         Column("p_corrected", "p corrected", "for the tests of this measure and factor", Kind.P),
         Column("d_z", "d_z", "effect size", Kind.NUMBER),
+        Column("d_low", "d_z from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("d_high", "d_z to", "upper end", Kind.NUMBER),
         Column("g_z", "g_z", "effect size, corrected", Kind.NUMBER),
         NOTE_COLUMN,
     ),
@@ -69,9 +87,11 @@ T_TESTS = Schema(
 ANOVA = Schema(
     "anova",
     "Repeated-measures analysis of variance",
-    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon; "
-    "Mauchly's test is of sphericity. A participant with a missing cell is left out whole; "
-    "repeated scores of a cell are averaged first.",
+    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon, which "
+    "is too careful with few participants, or by Huynh and Feldt's. Mauchly's test is of "
+    "sphericity; where its two p differ, participants are too few for the expansion, and the exact "
+    "one holds. The interval of partial eta² is by noncentral F. A participant with a missing cell "
+    "is left out whole; repeated scores of a cell are averaged first.",
     (
         Column("measure", "measure", "what is compared, with its unit"),
         Column("effect", "effect", "factors that act together"),
@@ -82,24 +102,27 @@ ANOVA = Schema(
         Column("p", "p", "if sphericity holds", Kind.P),
         Column("epsilon", "epsilon", "Greenhouse and Geisser's", Kind.NUMBER),
         Column("p_corrected", "p corrected", "with both degrees of freedom times epsilon", Kind.P),
+        Column("huynh_feldt", "Huynh-Feldt epsilon", "Huynh and Feldt's", Kind.NUMBER),
+        Column("p_huynh_feldt", "p Huynh-Feldt", "corrected by that epsilon instead", Kind.P),
         Column("mauchly_w", "W", "Mauchly's", Kind.NUMBER),
-        Column("mauchly_p", "p of W", "that sphericity holds", Kind.P),
+        Column("mauchly_p", "p of W", "that sphericity holds, as R's mauchly.test", Kind.P),
+        Column("mauchly_p_exact", "exact p of W", "by the distribution of W itself", Kind.P),
         Column("partial_eta2", "partial eta²", "effect size", Kind.NUMBER),
+        Column("partial_low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("partial_high", "to", "upper end", Kind.NUMBER),
         Column("generalised_eta2", "generalised eta²", "effect size", Kind.NUMBER),
         NOTE_COLUMN,
     ),
 )
 
 
-def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
+def level_means(measures: Sequence[Scores]) -> Table:
     """Mean of every level of every factor.
 
     Parameters
     ----------
     measures
         What is compared.
-    seed
-        Of the bootstrap.
     """
     rows: list[Row] = []
     for scores in measures:
@@ -107,6 +130,7 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
             means = _means(scores, factor)
             for level in sorted(means, key=natural):
                 own = list(means[level].values())
+                trials = _trials(scores, factor, level)
                 row: Row = {
                     "measure": scores.measure,
                     "factor": factor,
@@ -116,12 +140,30 @@ def level_means(measures: Sequence[Scores], *, seed: int) -> Table:
                 }
                 notes = _without(scores.participants, means[level])
                 try:
-                    interval = bootstrap_mean(own, seed=seed)
+                    interval = _interval(means[level], trials)
                     row |= {"low": interval.low, "high": interval.high}
                 except Unanswerable as reason:
                     notes.append(f"no interval: {reason}")
                 rows.append(row | {"note": "; ".join(notes)})
     return MEANS.fill(rows, [] if rows else [NOTHING])
+
+
+def own_means(measures: Sequence[Scores]) -> Table:
+    """Mean of every participant at every level of every factor."""
+    rows: list[Row] = [
+        {
+            "measure": scores.measure,
+            "factor": factor,
+            "level": level,
+            "participant": who,
+            "mean": of[who],
+        }
+        for scores in measures
+        for factor in scores.factors
+        for level, of in sorted(_means(scores, factor).items(), key=lambda pair: natural(pair[0]))
+        for who in sorted(of, key=natural)
+    ]
+    return OWN.fill(rows, [] if rows else [NOTHING])
 
 
 def t_tests(measures: Sequence[Scores], correction: str) -> Table:
@@ -206,6 +248,24 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
     }
 
 
+def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
+    """How many answers each participant gave at a level; None if scores are no shares."""
+    if scores.trials is None:
+        return None
+    columns = (scores.participants, scores.factors[factor], scores.trials)
+    answers: dict[str, int] = {}
+    for who, at, number in zip(*columns, strict=True):
+        if at == level:
+            answers[who] = answers.get(who, 0) + number
+    return answers
+
+
+def _interval(means: dict[str, float], trials: dict[str, int] | None) -> Interval:
+    """Interval of the population's mean, of a share or of anything else."""
+    own = list(means.values())
+    return mean_interval(own) if trials is None else mean_share(own, [trials[who] for who in means])
+
+
 def _pairs(
     scores: Scores,
     factor: str,
@@ -233,9 +293,15 @@ def _pairs(
             )
         except Unanswerable as reason:
             notes.append(str(reason))
+            if both:
+                row["mean_difference"] = float(
+                    np.mean([means[first][who] - means[second][who] for who in both])
+                )
         else:
             row |= _tested(test)
             tested.append(row)
+            if test.d_low is None:
+                notes.append("no interval of d_z: t is too large for one")
             if test.g_z is None:
                 notes.append("no g_z of two participants")
         rows.append(row | {"note": "; ".join(notes)})
@@ -254,5 +320,5 @@ def _without(participants: Iterable[str], having: Iterable[str]) -> list[str]:
 
 
 def _tested(test: PairedTest) -> Row:
-    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "g_z")
+    names = ("mean_difference", "low", "high", "t", "df", "p", "d_z", "d_low", "d_high", "g_z")
     return {name: getattr(test, name) for name in names}

@@ -9,7 +9,8 @@ from scipy import stats
 
 from vbraille.analysis.averages import mean_or_none
 from vbraille.analysis.reading import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
-from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.correlation import correlation_interval
+from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema, to_print
 from vbraille.analysis.trials import count, name_string, natural
 
@@ -67,16 +68,16 @@ READING_PATTERNS = Schema(
 CORRELATIONS = Schema(
     "duration_legibility",
     "Correlation of duration with legibility",
-    "Pearson's r. Of a participant's trials in a condition: duration and whether the string was "
-    "right. Of strings: mean duration and share of right answers, all trials pooled. Of "
-    "participants: their means.",
+    "Pearson's r, with its interval on Fisher's scale, for values of any distribution. Of a "
+    "participant's trials in a condition: duration and whether the string was right. Of strings: "
+    "mean duration and share of right answers, all trials pooled. Of participants: their means.",
     (
         Column("of", "of", "trials, strings or participants"),
         Column("participant", "participant", "whose trials; else all"),
         Column("condition", "condition", "in which; else all"),
         Column("n", "n", "pairs of values", Kind.COUNT),
         Column("r", "r", "Pearson's", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % interval (Fisher)", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
         Column("high", "to", "upper end", Kind.NUMBER),
         Column("p", "p", "that there is no correlation", Kind.P),
         NOTE_COLUMN,
@@ -161,17 +162,17 @@ def correlations(trials: Trials) -> Table:
         for c, condition in enumerate(timed.condition.levels):
             chosen = (timed.participant.codes == p) & (timed.condition.codes == c)
             if chosen.any():
-                found = _correlation(timed.duration_s[chosen], timed.correct[chosen], "trials")
+                found = correlation(timed.duration_s[chosen], timed.correct[chosen], "trials")
                 whose = {"of": "trials", "participant": participant, "condition": condition}
                 rows.append(whose | found)
-    for of, factor in (("strings", timed.presented), ("participants", timed.participant)):
+    for of, factor in (("strings", timed.string_set), ("participants", timed.participant)):
         counts = np.bincount(factor.codes)
         duration, correct = (
             np.bincount(factor.codes, values) / counts
             for values in (timed.duration_s, timed.correct)
         )
         whose = {"of": of, "participant": "all", "condition": "all"}
-        rows.append(whose | _correlation(duration, correct, of))
+        rows.append(whose | correlation(duration, correct, of))
     return CORRELATIONS.fill(rows)
 
 
@@ -194,7 +195,8 @@ def _known(records: Sequence[Row], name: str) -> list[float]:
     return [float(record[name]) for record in records if record[name] is not None]
 
 
-def _correlation(duration: NDArray, correct: NDArray, what: str) -> Row:
+def correlation(duration: NDArray, correct: NDArray, what: str) -> Row:
+    """Pearson's r of durations with shares, or with right and wrong, of so many of something."""
     row: Row = {"n": duration.size}
     if duration.size < 3:
         return row | {"note": f"{count(duration.size, what[:-1])}: a correlation needs three"}
@@ -205,7 +207,10 @@ def _correlation(duration: NDArray, correct: NDArray, what: str) -> Row:
         return row | {"note": f"duration is the same in all {what}"}
     found: Any = stats.pearsonr(duration, correct)
     row |= {"r": float(found.statistic), "p": float(found.pvalue)}
-    if duration.size == 3 or abs(found.statistic) > 1 - 1e-12:
+    if what == "strings":
+        return row | {"note": "no interval: the same people read all strings"}
+    try:
+        ends = correlation_interval(duration, correct)
+    except Unanswerable:
         return row | {"note": f"no interval of {duration.size} {what}"}
-    ends = found.confidence_interval(LEVEL)
-    return row | {"low": float(ends.low), "high": float(ends.high)}
+    return row | {"low": ends.low, "high": ends.high}

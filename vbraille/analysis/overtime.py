@@ -78,7 +78,7 @@ def over_time(trials: Trials) -> Table:
 
 def slopes(trials: Trials) -> Table:
     """Slope of every session and condition."""
-    return SLOPES.fill([whose | _slope(trials.correct[chosen]) for whose, chosen in series(trials)])
+    return SLOPES.fill([whose | slope(trials.correct[chosen]) for whose, chosen in series(trials)])
 
 
 def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
@@ -95,15 +95,14 @@ def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
         yield dict(zip(("participant", "session", "condition"), names, strict=True)), part
 
 
-def _slope(correct: NDArray[np.bool_]) -> Row:
+def slope(correct: NDArray[np.bool_]) -> Row:
     """Least squares of right and wrong on the number of the trial, for 10 trials."""
     row: Row = {"trials": correct.size}
     if correct.size < 3:
         return row | {"note": f"{count(correct.size, 'trial')}: a slope needs three"}
     if correct.all() or not correct.any():
-        flat = {"slope": 0.0, "low": 0.0, "high": 0.0}
         what = "right" if correct[0] else "wrong"
-        return row | flat | {"note": f"no p: every trial is {what}"}
+        return row | {"slope": 0.0, "note": f"no interval and no p: every trial is {what}"}
     fit: Any = stats.linregress(np.arange(correct.size), correct.astype(np.float64))
     half = stats.t.ppf((1 + LEVEL) / 2, correct.size - 2) * fit.stderr
     scaled = (10 * value for value in (fit.slope, fit.slope - half, fit.slope + half))

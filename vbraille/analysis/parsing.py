@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.analysis.trials import Comparisons, Factor, LeftOut, Trials, count, natural
+from vbraille.analysis.sets import string_sets, tell_sessions_apart
+from vbraille.analysis.trials import (
+    Comparisons,
+    Factor,
+    LeftOut,
+    Trials,
+    count,
+    name_string,
+    natural,
+)
 from vbraille.analysis.values import (
     is_pair,
     parse_cells,
@@ -28,7 +37,10 @@ if TYPE_CHECKING:
 
 NEEDED = ("participant", "condition", "presented", "answered")
 # What is understood beside these, all optional.
-_KNOWN = {*NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct"}
+_KNOWN = {
+    *NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct",
+    "string_set",
+}  # fmt: skip
 _OPEN = {"", "n/a"}  # of a trial that was not answered
 # Columns that say, if they are above 0, why a duration does not count.
 _UNTIMED = {
@@ -80,8 +92,9 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
             untimed = _forget_durations(strings, before, name)
             if untimed:
                 left_out.append(LeftOut(f"{count(untimed, 'duration')} of {sheet.name}", why))
-    _check_once(strings)
-    _check_once(pairs)
+    for columns in (strings, pairs):
+        warnings += tell_sessions_apart(columns.values)
+        _check_once(columns)
     return Parsed(_trials(strings), _comparisons(pairs), tuple(left_out), tuple(warnings))
 
 
@@ -118,10 +131,12 @@ def _take(sheet: Sheet, strings: _Columns, pairs: _Columns) -> int:
         places = {
             "presented": _each(sheet, "presented", rows, parse_presented),
             "answered": _each(sheet, "answered", rows, parse_cells),
+            "string_set": _each(sheet, "string_set", rows, parse_cells, ""),
             "duration_s": _seconds(sheet, "duration_s", rows, np.nan),
             "paused_s": _seconds(sheet, "paused_s", rows, 0.0),
             "early": _each(sheet, "early", rows, parse_whole, 0),
         }
+        _check_sets(sheet, rows, places)
         strings.add(sheet, rows, _who(sheet, rows) | places)
     rows = sorted(paired)
     if rows:
@@ -134,6 +149,17 @@ def _take(sheet: Sheet, strings: _Columns, pairs: _Columns) -> int:
         }
         pairs.add(sheet, rows, _who(sheet, rows) | compared)
     return size - len(answered)
+
+
+def _check_sets(sheet: Sheet, rows: list[int], places: dict[str, list]) -> None:
+    """Raise InputError if a string is no order of the set that it is said to be of."""
+    for row, cells, given in zip(rows, places["string_set"], places["presented"], strict=True):
+        if cells and sorted(cells) != sorted(given):
+            raise InputError(
+                f"{sheet.place(row)}: string_set is {name_string(cells)!r}, and presented, "
+                f"{name_string(given)!r}, is no order of its cells; leave string_set empty where "
+                f"strings keep their order"
+            )
 
 
 def _who(sheet: Sheet, rows: list[int]) -> dict[str, list]:
@@ -286,6 +312,7 @@ def _trials(columns: _Columns) -> Trials | None:
         protocol=Factor.of(values["protocol"]),
         presented=Factor.of_strings(values["presented"]),
         answered=Factor.of_strings(values["answered"]),
+        string_set=Factor.of_strings(string_sets(values)),
         correct=np.fromiter((p == a for p, a in pairs), bool, columns.size),
         block=np.array(values["block"], np.int64),
         trial=np.array(values["trial"], np.int64),

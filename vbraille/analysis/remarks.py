@@ -33,7 +33,7 @@ def notes(sittings: Iterable[Sitting]) -> Table:
     rows: list[Row] = [
         {
             "participant": sitting.head["participant"],
-            "session": sitting.folder.resolve().name,
+            "session": sitting.name,
             "text": note.text,
             "trial_before": _number(note.before),
             "trial": _number(note.trial),

@@ -71,12 +71,31 @@ class Results:
         What the reader must know before all numbers: damage, what is simulated.
     sections
         In their order.
+    findings
+        What was found, in sentences.
+    main
+        Name of the picture that is shown beside these; empty for none.
+
+    Raises
+    ------
+    ValueError
+        If there is no such picture.
     """
 
     title: str
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     sections: tuple[Section, ...]
+    findings: tuple[str, ...] = ()
+    main: str = ""
+
+    def __post_init__(self) -> None:
+        if self.main and self.main not in {picture.name for picture in self.pictures()}:
+            raise ValueError(f"there is no picture {self.main} to stand first")
+
+    def main_picture(self) -> Picture | None:
+        """The picture that stands first; None if none does."""
+        return next((picture for picture in self.pictures() if picture.name == self.main), None)
 
     def tables(self) -> Iterator[Table]:
         """All tables, in the order of the report."""

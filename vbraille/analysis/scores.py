@@ -13,8 +13,6 @@ from vbraille.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from vbraille.analysis.sheets import Sheet
     from vbraille.analysis.trials import Places, Trials
 
@@ -37,12 +35,15 @@ class Scores:
         Level of each score, [n], by the factor's name.
     scores : [n]
         NaN where one is missing.
+    trials : [n]
+        How many answers each share is of; None if scores are no shares of answers.
     """
 
     measure: str
     participants: Sequence[str]
     factors: Mapping[str, Sequence[str]]
     scores: Sequence[float]
+    trials: Sequence[int] | None = None
 
 
 def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Scores]:
@@ -70,23 +71,26 @@ def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Sc
         raise InputError(f"{', '.join(factors)} have too many levels together; give fewer factors")
     timed = ~np.isnan(trials.duration_s)
     measures = [
-        ("legibility of strings", np.arange(len(trials)), trials.correct),
-        ("legibility of characters", places.at, places.correct),
-        ("duration (s)", np.flatnonzero(timed), trials.duration_s[timed]),
+        ("legibility of strings", np.arange(len(trials)), trials.correct, True),
+        ("legibility of characters", places.at, places.correct, True),
+        ("duration (s)", np.flatnonzero(timed), trials.duration_s[timed], False),
     ]
     scores = []
-    for measure, at, value in measures:
+    for measure, at, value, share in measures:
         if not at.size:
             continue
         shape = tuple(len(factor) for factor in found)
         cell = np.ravel_multi_index(tuple(factor.codes[at] for factor in found), shape)
-        means = _means(cell, value, math.prod(shape))
+        counts = np.bincount(cell, minlength=math.prod(shape))
+        sums = np.bincount(cell, value, counts.size)
+        means = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
         names = [
             [factor.levels[code] for code in codes.tolist()]
             for factor, codes in zip(found, np.indices(shape).reshape(len(shape), -1), strict=True)
         ]
         columns = dict(zip(factors, names[1:], strict=True))
-        scores.append(Scores(measure, names[0], columns, means.tolist()))
+        of = counts.tolist() if share else None
+        scores.append(Scores(measure, names[0], columns, means.tolist(), of))
     return scores
 
 
@@ -132,10 +136,3 @@ def _score(sheet: Sheet, row: int, text: str) -> float:
             f"{sheet.place(row)}: score is {text!r}; give a number, or nothing if it is missing"
         )
     return score
-
-
-def _means(cell: NDArray[np.int64], value: NDArray, size: int) -> NDArray[np.float64]:
-    """Mean of each cell; NaN where it has none."""
-    counts = np.bincount(cell, minlength=size)
-    sums = np.bincount(cell, value, size)
-    return np.divide(sums, counts, out=np.full(size, np.nan), where=counts > 0)

@@ -78,6 +78,8 @@ class Sitting:
     ----------
     folder
         Its directory.
+    name
+        What it is called: its directory's name, with more of the path if another has that too.
     head
         Of its ``session.json``.
     protocol
@@ -100,6 +102,7 @@ class Sitting:
     """
 
     folder: Path
+    name: str
     head: dict[str, Any]
     protocol: Protocol
     rows: list[dict[str, Any]]
@@ -141,6 +144,7 @@ def read_sitting(folder: Path) -> Sitting:
         faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
     return Sitting(
         folder,
+        folder.resolve().name,
         record.head,
         record.protocol,
         rows,

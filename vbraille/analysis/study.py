@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from vbraille.analysis.parsing import parse
 from vbraille.analysis.scores import of_sheet
 from vbraille.analysis.sheets import from_rows, read_csv
 from vbraille.analysis.sittings import read_sitting
+from vbraille.analysis.sources import check_copies, distinct_names, named, of_site, told_apart
 from vbraille.analysis.trials import LeftOut, count, natural
 from vbraille.errors import InputError
 from vbraille.sessions.record.export import encode, to_csv
@@ -61,7 +62,11 @@ class Study:
 
 
 def load_study(
-    paths: Sequence[Path], *, exclude: Mapping[str, str] | None = None, protocol: str | None = None
+    paths: Sequence[Path],
+    *,
+    exclude: Mapping[str, str] | None = None,
+    protocol: str | None = None,
+    sites: bool = False,
 ) -> Study:
     """Read sessions' directories and CSV files.
 
@@ -73,6 +78,8 @@ def load_study(
         Participants who are left out, each with the reason.
     protocol
         Only its trials.
+    sites
+        Whether each folder that something stands in has participants of its own.
 
     Raises
     ------
@@ -82,13 +89,10 @@ def load_study(
         If a session has lost what it began with.
     """
     _check_paths(paths)
-    sittings = sorted(
-        (read_sitting(path) for path in paths if path.is_dir()),
-        key=lambda sitting: (natural(sitting.head["participant"]), natural(_name(sitting))),
-    )
-    files = sorted((path for path in paths if not path.is_dir()), key=lambda path: path.name)
-    sheets = [read_csv(path) for path in files]
-    sources = [*(from_rows(_name(sitting), sitting.rows) for sitting in sittings), *sheets]
+    sittings, files = _read(paths, sites=sites)
+    sheets = list(files.values())
+    sources = [*(from_rows(sitting.name, sitting.rows) for sitting in sittings), *sheets]
+    apart = told_apart(sittings)
     parsed = parse(sources)
     left_out = [*parsed.left_out]
     trials, comparisons = parsed.trials, parsed.comparisons
@@ -101,14 +105,15 @@ def load_study(
         raise InputError(f"{names}: no answered trial, and so nothing to analyse{what}")
     about = [("Data", _describe(trials, comparisons))]
     about += [
-        (f"File {path.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
-        for path, sheet in zip(files, sheets, strict=True)
+        (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
+        for path, sheet in files.items()
     ]
-    about += [(f"Session {_name(sitting)}", _describe_sitting(sitting)) for sitting in sittings]
+    about += [(f"Session {sitting.name}", _describe_sitting(sitting)) for sitting in sittings]
     about += _versions(sittings)
-    faults = tuple(f"{_name(sitting)}: {what}" for sitting in sittings for what in sitting.faults)
+    faults = tuple(f"{sitting.name}: {what}" for sitting in sittings for what in sitting.faults)
     warnings = (
         *parsed.warnings,
+        *apart,
         *_sources(sources),
         *_warnings(trials, sittings),
         *(f"Damaged, and analysed as far as it is whole: {fault}." for fault in faults),
@@ -207,8 +212,25 @@ def _check_paths(paths: Sequence[Path]) -> None:
         seen.add(path.resolve())
 
 
-def _name(sitting: Sitting) -> str:
-    return sitting.folder.resolve().name
+def _read(paths: Sequence[Path], *, sites: bool) -> tuple[list[Sitting], dict[Path, Sheet]]:
+    """Sessions and tables, each under a name that no other has."""
+    resolved = [path.resolve() for path in paths]
+    names = dict(zip(paths, distinct_names(resolved), strict=True))
+    homes = list(dict.fromkeys(path.parent for path in resolved)) if sites else []
+    site_of = dict(zip(homes, distinct_names(homes), strict=True))
+    site = {path: site_of.get(at.parent, "") for path, at in zip(paths, resolved, strict=True)}
+    sittings = [
+        named(read_sitting(path), names[path], site[path]) for path in paths if path.is_dir()
+    ]
+    sittings.sort(key=lambda sitting: (natural(sitting.head["participant"]), natural(sitting.name)))
+    check_copies(sittings)
+    files: dict[Path, Sheet] = {}
+    for path in sorted(names, key=lambda path: names[path]):
+        if path.is_dir():
+            continue
+        sheet = replace(read_csv(path), name=names[path])
+        files[path] = of_site(sheet, site[path]) if sites else sheet
+    return sittings, files
 
 
 def _describe(trials: Trials | None, comparisons: Comparisons | None) -> str:
@@ -242,7 +264,7 @@ def _versions(sittings: Sequence[Sitting]) -> list[tuple[str, str]]:
     ours |= {name: version(name) for name in _TOLD_VERSIONS}
     of: dict[str, list[str]] = {}
     for sitting in sittings:
-        of.setdefault(_listed(sitting.versions), []).append(_name(sitting))
+        of.setdefault(_listed(sitting.versions), []).append(sitting.name)
     run = [(f"Versions of {', '.join(names)}", versions) for versions, names in of.items()]
     return [("Versions of this analysis", _listed(ours)), *run]
 
@@ -272,7 +294,7 @@ def _sources(sheets: Sequence[Sheet]) -> list[str]:
 
 def _warnings(trials: Trials | None, sittings: Sequence[Sitting]) -> list[str]:
     told = [
-        f"Session {_name(sitting)} is not whole: {sitting.state}."
+        f"Session {sitting.name} is not whole: {sitting.state}."
         for sitting in sittings
         if sitting.state != "ended"
     ]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import MAX_PREC, ROUND_HALF_UP, Context, Decimal
 from enum import Enum
 from typing import TYPE_CHECKING, Any
+
+from vbraille.sessions.planning.spelling import UNREAD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 Value = str | int | float | None
 Row = dict[str, Any]  # a row's values, by the columns' names
 NOTE = "note"
+OTHER = "."  # heads the column of rare answers, as in the source
 _DIGITS = 12  # more than a measurement has, fewer than rounding in binary spoils
 
 
@@ -146,6 +149,42 @@ class Table:
             return None
         return max((mark for mark in self.marks if count > mark), default=None)
 
+    def gathered(self) -> Table:
+        """Confusion matrix as it is shown: rare answers that were never presented in one column.
+
+        That is the last, `OTHER`, as in Lévesque 2009, table 4.1. An answer is rare if none of its
+        counts is above the first of the marks. Where an answer for itself would be no more
+        than that column it stays; a table without marks does.
+        """
+        if not self.marks:
+            return self
+        known = {row[0] for row in self.rows} | {UNREAD}
+        rare = [
+            at
+            for at, column in enumerate(self.columns)
+            if at > 0
+            and column.heading not in known
+            and all(self.mark(row, at) is None for row in self.rows)
+        ]
+        if len(rare) < 2:
+            return self
+        kept = [at for at in range(len(self.columns)) if at not in set(rare)]
+        names = ", ".join(self.columns[at].heading for at in rare)
+        other = Column(f"answered {OTHER}", OTHER, "times answered otherwise", Kind.COUNT)
+        rows = tuple(
+            (*(row[at] for at in kept), sum(_count(row[at]) for at in rare)) for row in self.rows
+        )
+        about = (
+            f"Column {OTHER} gathers {len(rare)} answers that were never presented, and for none "
+            f"of the rows given more than {self.marks[0]} times: {names}."
+        )
+        return replace(
+            self,
+            about=f"{self.about} {about}".strip(),
+            columns=(*(self.columns[at] for at in kept), other),
+            rows=rows,
+        )
+
     def to_csv(self) -> str:
         """Text of its CSV: full precision, a missing value empty."""
         text = io.StringIO()
@@ -216,6 +255,10 @@ def round_half_up(value: float, decimals: int) -> str:
     exact = Decimal(f"{value:.{_DIGITS}g}")
     rounded = exact.quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, Context(MAX_PREC))
     return f"{abs(rounded) if rounded == 0 else rounded}".replace("-", "−")
+
+
+def _count(value: Value) -> int:
+    return value if isinstance(value, int) else 0
 
 
 def _plain(value: Any) -> Any:

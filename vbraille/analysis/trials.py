@@ -78,6 +78,9 @@ class Trials:
         Of each trial.
     presented, answered
         Unicode braille; `UNREAD` for a place not read.
+    string_set
+        Unicode braille of the string whose cells are presented in this order or another; where
+        strings keep their order, of what is presented.
     correct : bool[n]
         Whether all places are right.
     block, trial : int64[n]
@@ -94,6 +97,7 @@ class Trials:
     protocol: Factor
     presented: Factor
     answered: Factor
+    string_set: Factor
     correct: NDArray[np.bool_]
     block: NDArray[np.int64]
     trial: NDArray[np.int64]
@@ -122,6 +126,11 @@ class Trials:
             return Factor.of([str(block) for block in self.block.tolist()])
         return Factor.of(self.others[name])
 
+    def _listed(self) -> list[str]:
+        """Set of each trial's string; empty where it is the string itself."""
+        pairs = zip(self.string_set.names(), self.presented.names(), strict=True)
+        return ["" if listed == presented else listed for listed, presented in pairs]
+
     def rows(self) -> list[dict[str, str | int | float]]:
         """A row a trial, of all columns; what is not known is empty."""
         known = ("participant", "session", "protocol", "condition")
@@ -129,6 +138,7 @@ class Trials:
             "block": [block or "" for block in self.block.tolist()],
             "trial": self.trial.tolist(),
             "presented": self.presented.names(),
+            "string_set": self._listed(),
             "answered": self.answered.names(),
             "correct": self.correct.astype(int).tolist(),
             "duration_s": ["" if math.isnan(s) else s for s in self.duration_s.tolist()],
@@ -265,6 +275,11 @@ def name_string(text: str) -> str:
 def count(number: int, noun: str) -> str:
     """A number of things: "1 trial", "2 trials"."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def times(number: int) -> str:
+    """How often: "once", "2 times"."""
+    return "once" if number == 1 else f"{number} times"
 
 
 def _lengths(strings: Sequence[str]) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
+from vbraille.analysis.statistics.intervals import too_few
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 
@@ -30,11 +31,26 @@ CHOICES = Schema(
         NOTE_COLUMN,
     ),
 )
+CHOICES_OWN = Schema(
+    "choices_participants",
+    "How often each participant chose each value",
+    "Of the comparisons that the value was part of.",
+    (
+        Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
+        Column("participant", "participant", "pseudonym"),
+        Column("value", "value", "of the parameter", Kind.COUNT),
+        Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
+        Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
+        Column("share", "chosen (%)", "chosen by presented", Kind.PERCENT),
+    ),
+)
 PREFERRED = Schema(
     "preferred",
     "Preferred value",
-    "Where a parabola through the strongest value and its neighbours is highest. Half of the "
-    "choices should be of what came first: p is that of an exact binomial test.",
+    "The mean over participants of where a parabola through the strongest value of their own scale "
+    "and its neighbours is highest. The interval is of the population's mean, by Student's t; of "
+    "one participant it is of this participant's value, by a bootstrap. Half of the choices should "
+    "be of what came first: p is by a t-test over participants, of one by an exact binomial test.",
     (
         Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
         Column("participants", "participants", "how many", Kind.COUNT),
@@ -72,22 +88,52 @@ def tuning(comparisons: Comparisons, *, seed: int) -> tuple[Table, Table]:
             "participants": len(part.participant),
             "comparisons": len(part),
         }
-        bias = position_bias(part.chosen)
-        row |= {
-            "first_share": bias.share_first,
-            "first_low": bias.interval.low,
-            "first_high": bias.interval.high,
-            "first_p": bias.p,
-        }
+        bias = position_bias(part.chosen, part.participant.codes)
+        row |= {"first_share": bias.share_first, "first_p": bias.p}
+        notes = []
+        if bias.interval is not None:
+            row |= {"first_low": bias.interval.low, "first_high": bias.interval.high}
+        else:
+            notes.append(f"no interval of first chosen: {too_few(len(part.participant))}")
+        if bias.interval is not None and bias.p is None:
+            notes.append("no p: all participants chose the first as often")
         try:
             found = preferred(values, first, second, part.chosen, part.participant.codes, seed=seed)
         except Unanswerable as reason:
-            row |= {"note": f"no preferred value: {reason}"}
+            notes.insert(0, f"no preferred value: {reason}")
         else:
-            ends = found.interval
-            row |= {"preferred": found.value, "low": ends.low, "high": ends.high, "how": found.how}
-        liked.append(row)
+            row["preferred"] = found.value
+            notes = [found.note, *notes] if found.note else notes
+            if found.interval is not None:
+                ends = found.interval
+                row |= {"low": ends.low, "high": ends.high, "how": found.how}
+        liked.append(row | {"note": "; ".join(notes)})
     return CHOICES.fill(rows), PREFERRED.fill(liked)
+
+
+def choices_of_participants(comparisons: Comparisons) -> Table:
+    """Choices of each participant, a row a parameter, participant and value."""
+    rows: list[Row] = []
+    for code, parameter in enumerate(comparisons.parameter.levels):
+        part = comparisons[comparisons.parameter.codes == code]
+        won = np.where(part.chosen == 0, part.first, part.second)
+        for who, participant in enumerate(part.participant.levels):
+            own = part.participant.codes == who
+            for value in np.unique(np.concatenate((part.first, part.second))).tolist():
+                shown = int(((part.first == value) | (part.second == value))[own].sum())
+                chosen = int((won == value)[own].sum())
+                if shown:
+                    rows.append(
+                        {
+                            "parameter": parameter,
+                            "participant": participant,
+                            "value": value,
+                            "presented": shown,
+                            "chosen": chosen,
+                            "share": chosen / shown,
+                        }
+                    )
+    return CHOICES_OWN.fill(rows)
 
 
 def _choices(

@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _analysed(arguments: argparse.Namespace, options: Options) -> tuple[Results, Study | None]:
     """Results, and the study that they are of; None of a table of scores."""
     if arguments.scores is not None:
-        for name in ("factors", "protocol", "exclude", "marks"):
+        for name in ("factors", "protocol", "exclude", "marks", "sites"):
             if getattr(arguments, name):
                 raise InputError(f"--{name} is of trials, not of scores; leave it out")
         scores, about = load_scores(Path(arguments.scores))
@@ -70,5 +70,6 @@ def _analysed(arguments: argparse.Namespace, options: Options) -> tuple[Results,
         [Path(path) for path in arguments.paths],
         exclude=arguments.exclude,
         protocol=arguments.protocol,
+        sites=arguments.sites,
     )
     return analyse(study, options), study

@@ -6,11 +6,12 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
-from vbraille.translate import Book, Document, Table, find_table
+from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ class Page:
         What they are laid out for.
     first, last
         Lines asked for.
+    unknown
+        Counts what the table does not know.
     """
 
     layout: Layout
@@ -39,6 +42,7 @@ class Page:
     geometry: Geometry
     first: int
     last: int | None
+    unknown: Unknown
 
     @property
     def document(self) -> Document:
@@ -46,10 +50,17 @@ class Page:
         return self.layout.book.document
 
     def lines(self) -> Iterator[Line]:
-        """Lines asked for; says on stderr what the text's encoding needs saying."""
+        """Lines asked for; says on stderr what the text's encoding and script need saying."""
         for line in self.layout.lines(self.first, self.last):
             self.say_note()
+            self.unknown.see(line)
             yield line
+
+    def see(self, number: int) -> None:
+        """Count what the table does not know on a line that was laid out."""
+        line = self.layout.line(number)
+        if line is not None:
+            self.unknown.see(line)
 
     def progress(self, line: Line) -> float:
         """How much of the lines asked for is done with this one, about, 0 to 1."""
@@ -66,10 +77,16 @@ class Page:
         return (self.layout.progress(line) - skipped) / (1 - skipped)
 
     def say_note(self) -> None:
-        """Say once if the text is not UTF-8."""
-        note = self.document.note()
-        if note is not None:
-            print(printable(note), file=sys.stderr, flush=True)
+        """Say once if the text is not UTF-8, and of each script that the table does not know."""
+        for note in (self.document.note(), self.layout.book.table.note()):
+            if note is not None:
+                print(printable(note), file=sys.stderr, flush=True)
+
+    def say_unknown(self) -> None:
+        """Say at the end how many characters the table does not know, if there were any."""
+        sentence = self.unknown.sentence
+        if sentence is not None:
+            print(printable(sentence), file=sys.stderr, flush=True)
 
 
 def build_geometry(
@@ -104,15 +121,18 @@ def build_table(arguments: argparse.Namespace) -> Table:
     InputError
         If there is none such.
     """
+    undefined = Undefined(arguments.undefined)
     if arguments.table is None:
-        return Table(find_table(arguments.language or "en", arguments.grade))
+        return Table(find_table(arguments.language or "en", arguments.grade), undefined)
     if arguments.language is not None or arguments.grade is not None:
         raise InputError("a table has its language and grade; give either --table or those")
-    return Table(arguments.table)
+    return Table(arguments.table, undefined)
 
 
-def build_book(arguments: argparse.Namespace) -> Book:
+def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
     """The text and its table, before anything is laid out.
+
+    With `six_dots`, a table of eight dots is refused.
 
     Raises
     ------
@@ -120,6 +140,8 @@ def build_book(arguments: argparse.Namespace) -> Book:
         If an option or the text cannot be used.
     """
     table = build_table(arguments)
+    if six_dots and table.eight_dots:
+        raise InputError(_eight_dots(table))
     keep_lines = arguments.keep_lines
     if arguments.file == "-":
         if sys.stdin is None:
@@ -156,11 +178,14 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: G
         raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
     cells = "1 cell" if width == 1 else f"{width} cells"
     print(f"line width: {cells}", file=sys.stderr, flush=True)
-    return Page(layout, model, geometry, first, last)
+    unknown = Unknown(book.table, Undefined(arguments.undefined))
+    return Page(layout, model, geometry, first, last, unknown)
 
 
-def build_page(arguments: argparse.Namespace) -> Page:
+def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
     """Page of the text, and say on stderr how wide it is.
+
+    With `six_dots`, a table of eight dots is refused.
 
     Raises
     ------
@@ -169,7 +194,18 @@ def build_page(arguments: argparse.Namespace) -> Page:
     """
     model = MODELS[arguments.model]
     geometry = build_geometry(arguments, model)
-    return lay_out(arguments, build_book(arguments), model, geometry)
+    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model, geometry)
+
+
+def _eight_dots(table: Table) -> str:
+    """What to say of a table of eight dots where only six can be written."""
+    info = table.info
+    other = None if info is None else six_dot_table(info.language)
+    instead = f"give --table {other}, which has six, or" if other else "give"
+    return (
+        f"the table {table.name} has eight dots and BRF has six; "
+        f"{instead} --format unicode, which writes all eight"
+    )
 
 
 def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tuning]:

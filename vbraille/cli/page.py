@@ -6,7 +6,6 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
-from vbraille.errors import InputError
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -17,11 +16,12 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines."""
-    page = build_page(arguments)
+    page = build_page(arguments, six_dots=arguments.format == "brf")
     write = sys.stdout.write
     for line in page.lines():
         write(f"{_format(line, arguments.format)}\n")
     page.say_note()
+    page.say_unknown()
     return 0
 
 
@@ -32,7 +32,4 @@ def _format(line: Line, how: str) -> str:
         return line.printed.to_dots()
     if how == "unicode":
         return line.printed.to_unicode()
-    try:
-        return line.printed.to_brf()
-    except ValueError as error:
-        raise InputError(f"line {line.number}: {error}; use --format unicode") from None
+    return line.printed.to_brf()

@@ -81,6 +81,8 @@ def _table(arguments: argparse.Namespace) -> Table:
         raise InputError(f"--at is {arguments.at}; it must be a number of mm")
     page = build_page(arguments)
     lines = list(islice(page.lines(), None if page.last else _LINES))
+    page.say_note()
+    page.say_unknown()
     return pictures.page(
         lines, model=model, mapping=mapping, geometry=geometry, tuning=tuning, x_mm=arguments.at
     )

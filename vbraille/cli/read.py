@@ -106,6 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
     faults = ", ".join(f"{name} {count}" for name, count in host.counts.items() if count)
     if faults:
         _say(f"device: {faults}")
+    page.say_unknown()
     _say(_summary(reader.lines, host.tally, rate_hz))
     return 0
 
@@ -146,6 +147,7 @@ class _Reading:
                 self._start_again(fault)
                 continue
             self._step(ticks)
+            self._page.see(self._reader.line_number)
             self._page.say_note()
 
     def _step(self, ticks: NDArray[np.void]) -> None:

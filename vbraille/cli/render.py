@@ -90,6 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     if too_fast is not None:
         print(too_fast, file=sys.stderr)
     page.say_note()
+    page.say_unknown()
     print(
         f"rendered: {count(lines, 'line')}, {count(frames, 'frame')}, "
         f"{frames / rate_hz:.1f} s of reading"

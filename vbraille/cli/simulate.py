@@ -14,7 +14,7 @@ from vbraille.devices.firmware import describe
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.messages import Encoder
 from vbraille.devices.pty import Link, Port
-from vbraille.devices.simulator import Faults, Simulator
+from vbraille.devices.simulator import Defect, Faults, Simulator
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
 from vbraille.wording import printable
@@ -40,6 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
             corrupt=arguments.corrupt,
             stall_s=arguments.stall,
             unplug_every_s=arguments.unplug_every,
+            defect=None if arguments.defect is None else Defect(arguments.defect),
             seed=arguments.seed,
         )
     except ValueError as error:

@@ -96,6 +96,30 @@ class Sample(NamedTuple):
     x_mm: float
 
 
+@dataclass(frozen=True, slots=True)
+class Particulars:
+    """What a device may say of itself that reading does not ask for, but a builder does.
+
+    Parameters
+    ----------
+    firmware
+        Its version.
+    encoder
+        What its encoder knows of its place, in words.
+    largest_slew_per_s
+        Fastest that an actuator may be moved, in full swings a second; 0 is no limit.
+    disabled, inverted
+        Actuators that are broken, not fitted or without a swing, and those whose rest is the
+        highest level: row and column of each, from 0.
+    """
+
+    firmware: str
+    encoder: str
+    largest_slew_per_s: float
+    disabled: tuple[tuple[int, int], ...]
+    inverted: tuple[tuple[int, int], ...]
+
+
 class Placing(IntEnum):
     """What a device waits for before it knows where its carriage is."""
 
@@ -123,15 +147,25 @@ class Device(ABC):
         What it waits for before it can tell places; `read` gives None till then.
     taking : bool
         Whether it takes the frames that it is sent; False once it has taken none for a while.
+    acknowledges : bool
+        Whether the device says which frames it has.
     acknowledged_ns : int or None
         How long after the last frame was written the device said that it has it;
         None as long as it did not.
+    watchdog_trips : int or None
+        How often the device's watchdog brought the actuators to rest, as the device says;
+        None if it does not say.
+    particulars : Particulars or None
+        What else it says of itself.
     """
 
     rested = 0
     placing = Placing.DONE
     taking = True
+    acknowledges = False
     acknowledged_ns: int | None = None
+    watchdog_trips: int | None = None
+    particulars: Particulars | None = None
     _closed = False
 
     @property

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.base import Device, DeviceInfo, Sample
+from vbraille.devices.interface import misfits, wrong_values
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -33,6 +34,15 @@ def check_info(open_device: Open) -> None:
         assert isinstance(device.info, DeviceInfo), "info must be a DeviceInfo"
         assert device.info == device.info, "info must stay the same"
         assert device.info.name.strip(), "a device has a name"
+
+
+def check_members(open_device: Open) -> None:
+    """Methods can be called as they will be, what is to be a value is one, and gives its kind."""
+    with open_device() as device:
+        for misfit in misfits(device):
+            raise AssertionError(misfit)
+        for wrong in wrong_values(device):
+            raise AssertionError(wrong)
 
 
 def check_samples(open_device: Open) -> None:
@@ -81,7 +91,14 @@ def check_close(open_device: Open) -> None:
     _refused(device, _frame(device, 0.0), "a frame after close")
 
 
-CHECKS = (check_info, check_samples, check_frames, check_bad_frames, check_close)
+CHECKS = (
+    check_members,
+    check_info,
+    check_samples,
+    check_frames,
+    check_bad_frames,
+    check_close,
+)
 
 
 def _frame(device: Device, share: float) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS
+from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS
 
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
@@ -41,11 +41,13 @@ class Delivery:
         Whether it does not rest, though it is told to and is sent no FRAME: it is not safe.
     trips : int
         Of its watchdog, since its first WATCHDOG.
+    disbelieved : int
+        Reports that tell of more trips than there was time for.
     """
 
     def __init__(self, rate_hz: int) -> None:
         self.taking = self.at_rest = self.rest_due = self.stuck = False
-        self.trips = 0
+        self.trips = self.disbelieved = 0
         self._ramp_us = RAMP_MS * 1000 + -(-_US_PER_S // rate_hz)
         self._resting_us: int | None = None  # since when it says so, by its own clock
         self._resting_sequence = 0
@@ -54,6 +56,7 @@ class Delivery:
         self._offered: int | None = None  # first FRAME of rest sent since
         self._sent = 0
         self._sent_ns: int | None = None
+        self._reported_ns = 0
         self._trips_before: int | None = None
         self._counted = False  # the trip that STATEs tell of
         self._unreported = 0  # trips that were counted by STATEs alone
@@ -78,11 +81,17 @@ class Delivery:
         """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
         return self._sent_ns is not None and now_ns - self._sent_ns >= STALL_MS * _NS_PER_MS
 
-    def take_watchdog(self, watchdog: Watchdog) -> bool:
+    def take_watchdog(self, watchdog: Watchdog, now_ns: int) -> bool:
         """Take a report; whether the device went to rest, which was not known."""
-        tripped = 0 if self._trips_before is None else watchdog.trips - self._trips_before
-        self._trips_before = watchdog.trips
-        if tripped <= 0:
+        tripped = 0 if self._trips_before is None else (watchdog.trips - self._trips_before) & _U32
+        # A trip takes a frame, and then its time without one; a device's clock may go a bit fast.
+        elapsed_ms = (now_ns - self._reported_ns) // _NS_PER_MS
+        believable = 1 + elapsed_ms * 5 // (WATCHDOG_MS * 4)
+        self._trips_before, self._reported_ns = watchdog.trips, now_ns
+        if tripped > believable:
+            self.disbelieved += 1
+            return False
+        if not tripped:
             return False
         self.trips += max(tripped - self._unreported, 0)
         self._unreported = 0

@@ -21,8 +21,8 @@ class WrongLengthError(ValueError):
 class Field(Protocol):
     """How one field of a message goes over the wire."""
 
-    def check(self, name: str, value: Any, message: Message) -> None:
-        """Raise ValueError if the value is out of range."""
+    def check(self, name: str, value: Any, message: Any) -> None:
+        """Raise ValueError if the value is out of range; a fixed field asks no message for it."""
         ...
 
     def pack(self, value: Any) -> bytes:
@@ -82,7 +82,7 @@ class Number(Fixed):
         """Whether all that its bytes can say is in range; of a signed number never said."""
         return self.low == 0 and self.high == 256 ** Struct(self.code).size - 1
 
-    def check(self, name: str, value: int, _message: Message) -> None:
+    def check(self, name: str, value: int, _message: Any) -> None:
         """From `low` to `high`."""
         if not self.low <= value <= self.high:
             unit = f" {self.unit}" if self.unit else ""
@@ -114,7 +114,7 @@ class OptionalNumber(Number):
         """None for `none`."""
         return None if raw == self.none else raw
 
-    def check(self, name: str, value: int | None, message: Message) -> None:
+    def check(self, name: str, value: int | None, message: Any) -> None:
         """None, or a number from `low` to `high`."""
         if value is not None:
             Number.check(self, name, value, message)
@@ -127,11 +127,11 @@ class Choice(Fixed):
     code: str
     of: type[IntEnum]
 
-    def value(self, raw: int) -> IntEnum:
-        """Member of the enumeration; ValueError if it has none such."""
-        return self.of(raw)
+    def value(self, raw: int) -> IntEnum | int:
+        """Member of the enumeration; the number itself if it has none such, for `check` to name."""
+        return self.of(raw) if raw in list(self.of) else raw
 
-    def check(self, name: str, value: int, _message: Message) -> None:
+    def check(self, name: str, value: int, _message: Any) -> None:
         """One of the numbers."""
         if value not in list(self.of):
             names = ", ".join(f"{choice.value} ({choice.name})" for choice in self.of)
@@ -149,7 +149,7 @@ class Text:
     fewest: int
     most: int = 0xFF
 
-    def check(self, name: str, value: str, _message: Message) -> None:
+    def check(self, name: str, value: str, _message: Any) -> None:
         """Printable, and of the length allowed."""
         if not value.isprintable() or (self.fewest and not value.strip()):
             raise ValueError(f"{name} is {value!r}; it must be printable, and not blank")
@@ -202,7 +202,7 @@ class Packed:
 
     most: int
 
-    def check(self, name: str, value: bytes, _message: Message) -> None:
+    def check(self, name: str, value: bytes, _message: Any) -> None:
         """From one byte to `most`."""
         if not 1 <= len(value) <= self.most:
             raise ValueError(f"{name} are {len(value)} bytes; they must be 1 to {self.most}")

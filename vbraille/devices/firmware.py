@@ -112,6 +112,10 @@ class Controller:
         HELLOs of its version; of the watchdog; FRAMEs taken.
     last_frame_us : int
         When the last FRAME was taken; 0 before the first.
+    watchdog_us : int or None
+        How long without a FRAME until the watchdog trips; None is never, which no device may do.
+    acknowledges : bool
+        Whether STATE tells the last FRAME taken, as it must.
     rest_after_us : int | None
         How long after that the actuators were at rest, the last time that they went there.
     """
@@ -124,6 +128,8 @@ class Controller:
         self.placed = info.encoder is Encoder.ABSOLUTE
         self.greetings = self.trips = self.frames = 0
         self.last_frame_us = 0
+        self.watchdog_us: int | None = WATCHDOG_US
+        self.acknowledges = True
         self.rest_after_us: int | None = None
         self._packing = Levels(info.rows * info.columns, info.top_level)
         self._rest = np.frombuffer(info.inverted, np.uint8).astype(np.uint16) * info.top_level
@@ -264,11 +270,12 @@ class Controller:
 
     def _watch(self) -> bytes:
         """Trip if the time is up."""
-        if self._now_us - self.last_frame_us < WATCHDOG_US:
+        watchdog_us = self.watchdog_us
+        if watchdog_us is None or self._now_us - self.last_frame_us < watchdog_us:
             return b""
         self._armed, self._tripped = False, True
         self.trips += 1
-        self._start_ramp(self._due(self.last_frame_us + WATCHDOG_US))
+        self._start_ramp(self._due(self.last_frame_us + watchdog_us))
         return self._watchdog()
 
     def _start_ramp(self, begun_us: int) -> None:
@@ -319,7 +326,7 @@ class Controller:
                 sequence=self._sequence,
                 time_us=self._now_us & _U32,
                 count=count,
-                frame_sequence=self._frame_sequence,
+                frame_sequence=self._frame_sequence if self.acknowledges else 0,
                 flags=self._flags(),
                 buttons=self.buttons,
                 force_mn=self.force_mn,

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import DeviceInfo
+from vbraille.devices.base import DeviceInfo, Particulars
 from vbraille.devices.messages import (
     ANSWER_MS,
     HELLO_PERIOD_MS,
     VERSION,
+    Encoder,
     Error,
     Hello,
     Info,
@@ -21,7 +22,7 @@ from vbraille.devices.wire import DELIMITER, Decoder, OtherVersion, encode
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.devices.ports import Address
     from vbraille.devices.serialport import SerialPort
@@ -71,8 +72,11 @@ def greet(port: SerialPort, now_ns: Callable[[], int], pause: Callable[[float], 
             raise DeviceError(f"{port.address.url} went away; plug the device in and try again")
         heard = heard or bool(chunk)
         events = decoder.feed(chunk)
+        if decoder.bad_info:
+            raise _cannot_be(decoder.bad_info, port.address)
         for i, event in enumerate(events):
             if isinstance(event, Info):
+                _check(event, port.address)
                 return Greeted(event, decoder, events[i + 1 :])
             if isinstance(event, OtherVersion):
                 raise DeviceError(
@@ -100,6 +104,34 @@ def _no_answer(address: Address, heard: bool, speaks: bool) -> DeviceError:
     )
 
 
+def misfit(info: Info) -> str:
+    """Why a device cannot be read on, with the fields and their values; empty if it can."""
+    if info.encoder is Encoder.INCREMENTAL:
+        return ""
+    # Where the carriage is when the conversation begins is told by one count alone.
+    counts, told = info.travel_um * info.counts_per_m // 1_000_000, 1 << (info.count_bits - 1)
+    if counts < told:
+        return ""
+    return (
+        f"travel_um is {info.travel_um}, which takes {counts} counts with a counts_per_m of "
+        f"{info.counts_per_m}; it must take less than {told}, half the range of count_bits "
+        f"{info.count_bits}"
+    )
+
+
+def _check(info: Info, address: Address) -> None:
+    fault = misfit(info)
+    if fault:
+        raise _cannot_be(fault, address)
+
+
+def _cannot_be(fault: str, address: Address) -> DeviceError:
+    return DeviceError(
+        f"the device at {address.url} says in its INFO what cannot be: {fault}; "
+        f"mend its firmware or its settings"
+    )
+
+
 def info_of(info: Info) -> DeviceInfo:
     """What a device says of itself, in mm."""
     return DeviceInfo(
@@ -113,4 +145,26 @@ def info_of(info: Info) -> DeviceInfo:
         travel_mm=info.travel_um / 1e3,
         counts_per_mm=info.counts_per_m / 1e3,
         rate_hz=float(info.rate_hz),
+    )
+
+
+_ENCODERS: Final = {
+    Encoder.ABSOLUTE: "absolute",
+    Encoder.INDEX: "relative, with an index mark that must be passed",
+    Encoder.INCREMENTAL: "relative, and must be shown the left stop",
+}
+
+
+def particulars_of(info: Info) -> Particulars:
+    """What a device says of itself that reading does not ask for."""
+
+    def where(chosen: Iterable[bool]) -> tuple[tuple[int, int], ...]:
+        return tuple(divmod(at, info.columns) for at, is_one in enumerate(chosen) if is_one)
+
+    return Particulars(
+        firmware=info.firmware,
+        encoder=_ENCODERS[info.encoder],
+        largest_slew_per_s=info.largest_slew_per_s,
+        disabled=where(not (on and gain) for on, gain in zip(info.enabled, info.gain, strict=True)),
+        inverted=where(map(bool, info.inverted)),
     )

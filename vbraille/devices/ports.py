@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 import serial
 from serial.tools import list_ports
 
+from vbraille.devices.urls import check_url, explain_url
 from vbraille.errors import DeviceError, InputError, VbrailleError
 
 if TYPE_CHECKING:
@@ -134,6 +135,8 @@ def open_serial_port(address: Address, url: str | None = None) -> serial.SerialB
         If it cannot be opened.
     """
     url = url or address.url
+    if not address.is_path:
+        check_url(url)
     try:
         if address.is_path and not stat.S_ISCHR(Path(url).stat().st_mode):
             raise _no_port(url)
@@ -167,9 +170,7 @@ def explain(fault: Exception, url: str) -> VbrailleError:
         )
     if number in (errno.EBUSY, errno.EAGAIN):
         return DeviceError(f"{url} is busy; end the other program that uses it")
-    if "://" not in url:
-        return _no_port(url)
-    return InputError(f"{url} cannot be opened ({fault}); check the address")
+    return explain_url(fault, url) if "://" in url else _no_port(url)
 
 
 def _no_port(url: str) -> InputError:

@@ -7,13 +7,20 @@ opened `vbraille.devices.Device`. Packages of other builders join the same way.
 
 from __future__ import annotations
 
+from contextlib import contextmanager, suppress
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
+from vbraille.devices.base import Device
+from vbraille.devices.blame import naming
+from vbraille.devices.interface import misfits
+from vbraille.errors import DeviceError, InputError
 
 if TYPE_CHECKING:
-    from vbraille.devices.base import Device, DeviceInfo
+    from collections.abc import Iterator
+    from importlib.metadata import EntryPoint
+
+    from vbraille.devices.base import DeviceInfo
 
 GROUP = "vbraille.devices"
 # By how much a device's pitch may differ from the page's.
@@ -39,21 +46,60 @@ def open_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> D
     DeviceError
         If it cannot be opened.
     """
-    kind, _, address = spec.partition(":")
+    driver = _driver(spec)
+    with naming(driver):
+        device = driver.load()(spec.partition(":")[2], wanted)
+        _check_device(driver, device)
+        if wanted is not None:
+            try:
+                if fits:
+                    check_actuators(device.info, wanted)
+                _check_rate(device.info, wanted.rate_hz)
+            except InputError:
+                device.close()
+                raise
+        return device
+
+
+@contextmanager
+def opened_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> Iterator[Device]:
+    """Open the device of a spec, and close it in the end.
+
+    Whatever somebody else's driver raises in between names the driver, its file and its line.
+
+    Raises
+    ------
+    InputError, DeviceError
+        As `open_device` does, and `DeviceError` for every exception of another's driver.
+    """
+    with naming(_driver(spec)), open_device(spec, wanted, fits=fits) as device:
+        yield device
+
+
+def _driver(spec: str) -> EntryPoint:
+    """Entry point of a spec's kind; InputError if there is no such kind."""
+    kind, _, _ = spec.partition(":")
     found = entry_points(group=GROUP, name=kind) if kind else ()
     if not found:
         kinds = ", ".join(sorted(entry_points(group=GROUP).names))
         raise InputError(f"there is no device kind {kind!r}; there is {kinds}")
-    device = next(iter(found)).load()(address, wanted)
-    if wanted is not None:
-        try:
-            if fits:
-                check_actuators(device.info, wanted)
-            _check_rate(device.info, wanted.rate_hz)
-        except InputError:
-            device.close()
-            raise
-    return device
+    return next(iter(found))
+
+
+def _check_device(driver: EntryPoint, device: object) -> None:
+    """Raise DeviceError if a driver gives what cannot be read on; what it opened is let go."""
+    if not isinstance(device, Device):
+        raise DeviceError(
+            f"the driver {driver.name} ({driver.value}) gives {device!r} where it must give a "
+            f"vbraille.devices.Device; tell whoever wrote it"
+        )
+    for misfit in misfits(device):
+        with suppress(Exception):
+            device._release()
+        raise DeviceError(
+            f"the driver {driver.name} ({driver.value}) cannot be used, for {misfit}; "
+            f"tell whoever wrote it"
+        )
 
 
 def check_actuators(info: DeviceInfo, wanted: DeviceInfo) -> None:

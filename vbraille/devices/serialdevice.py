@@ -8,16 +8,16 @@ of them. `openserial` begins it. Its parts are `serialport` (bytes), `wire`
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from vbraille.devices.base import Device, Sample
+from vbraille.devices.changes import another, changes, differences, to_do
 from vbraille.devices.delivery import Delivery
 from vbraille.devices.drive import Drive
-from vbraille.devices.greeting import HELLO, info_of
+from vbraille.devices.greeting import HELLO, info_of, misfit, particulars_of
 from vbraille.devices.messages import (
     HELLO_PERIOD_MS,
     LOST_MS,
@@ -29,6 +29,7 @@ from vbraille.devices.messages import (
     State,
     Watchdog,
 )
+from vbraille.devices.notices import Notices
 from vbraille.devices.place import DeviceTime, Place
 from vbraille.devices.serialport import DRAIN_MS
 from vbraille.devices.wire import DELIMITER, OtherVersion, encode, unwrap
@@ -76,6 +77,8 @@ class SerialDevice(Device):
         FRAMEs a second that it is going to be sent; None is as many as it is made for.
     """
 
+    acknowledges = True
+
     def __init__(
         self,
         port: SerialPort,
@@ -90,13 +93,15 @@ class SerialDevice(Device):
         self._pause = pause
         self._decoder = greeted.decoder
         self._info = info_of(greeted.info)
-        self._notes: list[str] = []
+        self._notes = Notices()
         self._time = DeviceTime()
         self._away = False  # since a note said so, until another says that it is back
         self._sequence = 0  # of the last FRAME
         self._sent_ns: int | None = None  # when the one was that is not acknowledged
-        self._unsent = self._missed = self._trips_before = self._reconnections = 0
+        self._unsent = self._missed = self._reconnections = 0
+        self._trips_before = self._disbelieved_before = 0
         self._losses = port.losses
+        self.watchdog_trips = 0
         self._delivery = Delivery(greeted.info.rate_hz)
         self._begin(greeted.info, now_ns())
         self._take(greeted.events, now_ns())
@@ -119,8 +124,7 @@ class SerialDevice(Device):
 
     def take_notes(self) -> Sequence[str]:
         """What there is to say to the reader since the last call."""
-        notes, self._notes = self._notes, []
-        return notes
+        return self._notes.take(self._now_ns())
 
     def counts(self) -> Mapping[str, int]:
         """What went wrong so far."""
@@ -128,6 +132,7 @@ class SerialDevice(Device):
             "frames not sent": self._unsent + self._port.lost,
             "states missed": self._missed,
             "watchdog trips": self._trips_before + self._delivery.trips,
+            "watchdog reports not believed": self._disbelieved_before + self._delivery.disbelieved,
             "reconnections": self._reconnections,
             **{str(kind): number for kind, number in self._decoder.dropped.items()},
         }
@@ -150,7 +155,7 @@ class SerialDevice(Device):
         if self._port.losses != self._losses:
             self._losses = self._port.losses
             self._link = _Link.GONE
-            self._note_away("device: unplugged; plug it in again and reading goes on")
+            self._note_away("device: unplugged; plug it in again and reading goes on", now_ns)
         if self._port.gone:
             self._tell_taking()
             return None
@@ -174,12 +179,16 @@ class SerialDevice(Device):
             elif self._link not in (_Link.LIVE, _Link.SILENT):
                 pass  # of an earlier conversation
             elif isinstance(event, Watchdog):
-                if self._delivery.take_watchdog(event):
+                if self._delivery.take_watchdog(event, now_ns):
                     self._fell(now_ns)
             elif isinstance(event, Error):
                 if event.code < NOTICES:
                     raise DeviceError(f"{self._info.name}: {event.text or f'error {event.code}'}")
-                self._notes.append(f"device: {event.text or f'notice {event.code}'}")
+                said = event.text or f"notice {event.code}"
+                self._notes.add(f"notice {event.code}", f"device: {said}", now_ns)
+        if self._decoder.bad_info:
+            self._take_bad_info(self._decoder.bad_info, now_ns)
+            self._decoder.bad_info = ""
         return sample
 
     def _take_state(self, state: State, now_ns: int) -> Sample | None:
@@ -189,7 +198,7 @@ class SerialDevice(Device):
             self.rested += 1
         if self._away:
             self._away = False
-            self._notes.append("device: back")
+            self._notes.add("back", "device: back", now_ns)
         if state.faulty:  # its ERROR, which says why, was lost
             raise DeviceError(f"{self._info.name} has a fault; switch it off and on, and try again")
         if self._state_sequence is not None:
@@ -213,23 +222,40 @@ class SerialDevice(Device):
 
     def _take_info(self, info: Info | OtherVersion, now_ns: int) -> None:
         if isinstance(info, OtherVersion):
-            found = f"a device of version {info.version} of the protocol"
-        elif replace(info_of(info), name=self._info.name) != self._info:
-            found = f"another device, {info.name},"
+            self._turn_away(
+                f"a device of version {info.version} of the protocol came back; plug in "
+                f"{self._info.name} again and reading goes on",
+                now_ns,
+            )
+        elif others := differences(self._info, info_of(info)):
+            self._turn_away(another(self._info, info_of(info), others), now_ns)
+        elif misfit(info):
+            self._take_bad_info(misfit(info), now_ns)
         else:
+            changed = changes(self._greeted, info)
+            if changed:
+                self._notes.add(
+                    "changed", f"device: changed, for {', '.join(changed)}{to_do(info)}", now_ns
+                )
             self._reconnections += 1
             self.rested += 1
             self._begin(info, now_ns)
-            return
+
+    def _take_bad_info(self, fault: str, now_ns: int) -> None:
+        if self._link is _Link.GREETING and self._asked:
+            self._turn_away(f"what came back says in its INFO what cannot be: {fault}", now_ns)
+
+    def _turn_away(self, why: str, now_ns: int) -> None:
+        """Say nothing more to what is there now, which is not what reading began on."""
         self._link = _Link.STRANGER
         self._away = True
-        self._notes.append(
-            f"device: {found} came back; plug in {self._info.name} again and reading goes on"
-        )
+        self._notes.add("stranger", f"device: {why}", now_ns)
 
     def _begin(self, info: Info, now_ns: int) -> None:
         """Begin a conversation; the device is at rest."""
         self._link = _Link.LIVE
+        self._greeted = info
+        self.particulars = particulars_of(info)
         self._asked = False
         self._heard_ns = now_ns
         self._state_sequence: int | None = None
@@ -238,6 +264,7 @@ class SerialDevice(Device):
         self._time.restart()
         self._drive = Drive(info, now_ns, self._rate_hz)
         self._trips_before += self._delivery.trips
+        self._disbelieved_before += self._delivery.disbelieved
         self._delivery = Delivery(info.rate_hz)
         self._rest_frame = np.zeros((info.rows, info.columns))
         self._felt_ns = now_ns  # when a frame last had anything to feel
@@ -254,7 +281,8 @@ class SerialDevice(Device):
         if self._link is _Link.LIVE and silent_ns >= SILENCE_MS * _NS_PER_MS:
             self._link = _Link.SILENT
             self._stop()
-            self._note_away("device: silent, and sent to rest; reading goes on once it speaks")
+            note = "device: silent, and sent to rest; reading goes on once it speaks"
+            self._note_away(note, now_ns)
         if self._link in (_Link.LIVE, _Link.SILENT):
             self._tell()
         if self._link is _Link.SILENT and silent_ns >= LOST_MS * _NS_PER_MS:
@@ -289,9 +317,8 @@ class SerialDevice(Device):
         self._stop(tell=False)
         self._felt_ns = now_ns
         self.rested += 1
-        self._notes.append(
-            "device: no frame reached it in time, so it went to rest; reading goes on"
-        )
+        note = "device: no frame reached it in time, so it went to rest; reading goes on"
+        self._notes.add("watchdog", note, now_ns)
 
     def _tell_taking(self) -> None:
         """Say whether FRAMEs hold the actuators, or would if there were anything to feel.
@@ -299,10 +326,11 @@ class SerialDevice(Device):
         A device that is away is silent, which says enough.
         """
         self.taking = self._link is not _Link.LIVE or self._delivery.taking or self._idle
+        self.watchdog_trips = self._trips_before + self._delivery.trips
 
-    def _note_away(self, note: str) -> None:
+    def _note_away(self, note: str, now_ns: int) -> None:
         if not self._away:
-            self._notes.append(note)
+            self._notes.add(note, note, now_ns)
         self._away = True
 
     def _send(self, frame: NDArray[np.float64]) -> None:

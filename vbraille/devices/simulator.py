@@ -10,11 +10,12 @@ import math
 import random
 import select
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.carriage import Carriage
-from vbraille.devices.firmware import Controller
+from vbraille.devices.firmware import WATCHDOG_US, Controller
 from vbraille.devices.messages import Encoder
 from vbraille.devices.wire import DELIMITER, MOST_FRAME_BYTES
 
@@ -30,6 +31,20 @@ NS_PER_S: Final = 1_000_000_000
 # Between stalls, and how long it is unplugged.
 STALL_EVERY_S: Final = 1.0
 UNPLUGGED_S: Final = 0.3
+# How far a carriage that is off its place is off it, and how much too long a late watchdog takes.
+_OFF_PLACE_MM = 5000.0
+_LATE_TIMES = 4
+
+
+class Defect(StrEnum):
+    """What a device may be built wrong in, so that it is not fit to be read on."""
+
+    NO_ACKNOWLEDGEMENT = "no-acknowledgement"  # it takes FRAMEs, and does not say so
+    NO_ACTUATORS = "no-actuators"  # all of them are disabled
+    OFF_PLACE = "off-place"  # its carriage is 5 m away from where it can be
+    SLOW_CLOCK = "slow-clock"  # which goes at half its speed
+    NO_WATCHDOG = "no-watchdog"
+    LATE_WATCHDOG = "late-watchdog"  # which takes 200 ms, not 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +60,8 @@ class Faults:
         Its watchdog and its ramp, being hardware, go on.
     unplug_every_s
         How long after a greeting it is unplugged, for `UNPLUGGED_S`; 0 is never.
+    defect
+        What it is built wrong in; None if it is built right.
     seed
         Of these chances.
 
@@ -58,6 +75,7 @@ class Faults:
     corrupt: float = 0.0
     stall_s: float = 0.0
     unplug_every_s: float = 0.0
+    defect: Defect | None = None
     seed: int = 1
 
     def __post_init__(self) -> None:
@@ -144,13 +162,21 @@ class Simulator:
         say: Callable[[str], None],
         faults: Faults | None = None,
     ) -> None:
+        self._faults = faults or Faults()
+        defect = self._faults.defect
+        if defect is Defect.NO_ACTUATORS:
+            info = replace(info, enabled=bytes(info.rows * info.columns))
         self.controller = Controller(info)
+        self.controller.acknowledges = defect is not Defect.NO_ACKNOWLEDGEMENT
+        if defect is Defect.NO_WATCHDOG:
+            self.controller.watchdog_us = None
+        elif defect is Defect.LATE_WATCHDOG:
+            self.controller.watchdog_us = _LATE_TIMES * WATCHDOG_US
         self.states_sent = self.states_dropped = 0
         span_mm = (info.columns - 1) * info.column_pitch_nm / 1e6
         self._carriage = Carriage(hand, span_mm, info.travel_um / 1000)
         self._port = port
         self._say = say
-        self._faults = faults or Faults()
         self._spoiler = Spoiler(self._faults)
         self._begun_ns = time.monotonic_ns()
         self._greetings = self._frames = self._trips = 0
@@ -161,7 +187,8 @@ class Simulator:
     @property
     def now_us(self) -> int:
         """Its clock."""
-        return (time.monotonic_ns() - self._begun_ns) // 1000
+        us = (time.monotonic_ns() - self._begun_ns) // 1000
+        return us // 2 if self._faults.defect is Defect.SLOW_CLOCK else us
 
     def run(self, stopped: Callable[[], bool]) -> None:
         """Be a device until told to stop; a late tick is skipped, not chased.
@@ -214,7 +241,10 @@ class Simulator:
 
     def _tick(self) -> None:
         now_us, controller = self.now_us, self.controller
-        *messages, _ = split(controller.tick(now_us, self._carriage.way_mm(now_us)))
+        way_mm = self._carriage.way_mm(now_us)
+        if self._faults.defect is Defect.OFF_PLACE:
+            way_mm += _OFF_PLACE_MM
+        *messages, _ = split(controller.tick(now_us, way_mm))
         if messages:  # the last is STATE
             sent = [self._send(message) for message in messages][-1]
             self.states_sent += sent

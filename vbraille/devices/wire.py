@@ -72,6 +72,7 @@ class Layout:
         self._struct = struct.Struct("<B" + "".join(field.code for field in head))
         self._converting = [(i, field) for i, field in enumerate(head) if field.converts]
         self._head = self._names[: len(head)]
+        self._fixed = fields[: len(head)]
         self._rest = fields[len(head) :]
         # A message of numbers that may be all that their bytes can say needs no look at their
         # ranges, and is made without: STATE comes a thousand times a second.
@@ -124,6 +125,8 @@ class Layout:
             return message
         if self._rest:
             earlier = dict(zip(self._names, values, strict=False))
+            for name, field in self._fixed:  # by which the others are as long as they are
+                field.check(name, earlier[name], None)
             for name, field in self._rest:
                 earlier[name], at = field.unpack(body, at, earlier)
             values = earlier.values()
@@ -174,10 +177,13 @@ class Decoder:
     ----------
     dropped : dict[Drop, int]
         Frames that came to nothing, by kind.
+    bad_info : str
+        Why the last INFO that was whole was dropped, with its field and value; empty if none was.
     """
 
     def __init__(self, levels: Levels | None = None) -> None:
         self.dropped = dict.fromkeys(Drop, 0)
+        self.bad_info = ""
         self._levels = levels
         self._held = bytearray()
         self._skipping = False
@@ -235,10 +241,16 @@ class Decoder:
             if self._levels is not None and isinstance(message, Frame):
                 self._levels.check(message.packed)
         except WrongLengthError:
+            self._mind_info(layout, "it ends before its last field")
             return Drop.WRONG_LENGTH
-        except ValueError:
+        except ValueError as fault:
+            self._mind_info(layout, str(fault))
             return Drop.OUT_OF_RANGE
         return message
+
+    def _mind_info(self, layout: Layout, fault: str) -> None:
+        if layout.code == _INFO:
+            self.bad_info = fault
 
 
 class Levels:

@@ -1,4 +1,4 @@
-"""What a builder wants to know of a device: its actuators, its rate, its round trip."""
+"""What a builder wants to know of a device: actuators, rate, clock, place, round trip, watchdog."""
 
 from __future__ import annotations
 
@@ -24,6 +24,10 @@ SWING_S = 0.25  # of one actuator, out and back
 _MOST_SWINGS = 8  # of one actuator of a device that goes to rest again and again
 _PATIENCE_S = 0.25  # with a frame that is never acknowledged
 _LOOK_NS = 50_000
+# How far the actuators go, and how long they take, before a watchdog is left without frames.
+_HELD = 0.3
+_HOLD_S = 0.1
+_TRIP_PATIENCE_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,17 +40,24 @@ class Rate:
         Done, and missed.
     work_us
         Read, render and write: median and 99 %.
+    clock_s
+        Of the device's, in a second of ours.
+    x_mm
+        Where its left column was: leftmost and rightmost.
     """
 
     ticks: int
     late: int
     work_us: tuple[float, float]
+    clock_s: float
+    x_mm: tuple[float, float]
 
 
 def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
     """Swing one actuator after the other, out and back without a jump; rows and columns from 0.
 
-    Each is yielded before it swings, so that it can be said.
+    Each is yielded before it swings, so that it can be said. Those that the device says are
+    disabled are left out.
 
     Raises
     ------
@@ -56,7 +67,10 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
     info = device.info
     steps = round(SWING_S * info.rate_hz)
     frame = np.zeros((info.rows, info.columns))
+    told = device.particulars
     for row, column in np.ndindex(frame.shape):
+        if told is not None and (row, column) in told.disabled:
+            continue
         yield row, column
         due_ns = clock.now_ns()
         taking, step = device.taking, 0
@@ -105,12 +119,38 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
     engine.loop.show(_Breath(rate_hz))
     engine.loop.restart_clock()
-    work_us = []
+    polled = []
     while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
-        work_us.append(engine.poll()["work_ns"] / 1e3)
+        polled.append(engine.poll())
     engine.loop.fade_to_rest()
-    median, most = np.percentile(np.concatenate(work_us), (50, 99))
-    return Rate(engine.tally.ticks, engine.tally.late, (float(median), float(most)))
+    ticks = np.concatenate(polled)
+    median, most = np.percentile(ticks["work_ns"] / 1e3, (50, 99))
+    known = ticks[~np.isnan(ticks["x_mm"])]
+    x_mm = (math.nan, math.nan)
+    if known.size:
+        x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
+    return Rate(
+        ticks=engine.tally.ticks,
+        late=engine.tally.late,
+        work_us=(float(median), float(most)),
+        clock_s=_clock_s(known),
+        x_mm=x_mm,
+    )
+
+
+def _clock_s(ticks: NDArray[np.void]) -> float:
+    """How far the device's clock goes in a second of ours; not a number if it was never told.
+
+    What its clock is ahead of ours, in the first third and in the last: medians, for samples
+    that came late, as after a stall, say less.
+    """
+    third = ticks.size // 3
+    if not third:
+        return math.nan
+    first, last = ticks[:third], ticks[-third:]
+    ahead_ns = [float(np.median(part["device_ns"] - part["time_ns"])) for part in (first, last)]
+    passed_ns = float(np.median(last["time_ns"]) - np.median(first["time_ns"]))
+    return 1 + (ahead_ns[1] - ahead_ns[0]) / passed_ns
 
 
 def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float64]:
@@ -139,6 +179,52 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
             break
         taken.append(device.acknowledged_ns / 1e6)
     return np.array(taken)
+
+
+def trip_ms(device: Device, clock: Clock) -> float | None:
+    """Leave a device without frames, its actuators a bit off their rest, till its watchdog trips.
+
+    Afterwards the actuators are at rest and frames are sent again.
+
+    Returns
+    -------
+    float or None
+        From the last frame until the device has said that it tripped, in ms; None if it did not
+        within half a second, or does not say such a thing.
+
+    Raises
+    ------
+    DeviceError
+        If the device is gone.
+    """
+    _begin(device, clock, np.zeros((device.info.rows, device.info.columns)))
+    _move(device, clock, 0.0, _HELD)
+    _move(device, clock, _HELD, _HELD)
+    trips, last_ns = device.watchdog_trips, clock.now_ns()
+    while device.watchdog_trips == trips:
+        if clock.now_ns() - last_ns > _TRIP_PATIENCE_S * NS_PER_S:
+            _move(device, clock, _HELD, 0.0)
+            return None
+        clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
+        device.read()
+    taken_ms = (clock.now_ns() - last_ns) / 1e6
+    clock.sleep_until_ns(clock.now_ns() + round(_HOLD_S * NS_PER_S))  # its ramp to rest
+    _move(device, clock, 0.0, 0.0)
+    return taken_ms
+
+
+def _move(device: Device, clock: Clock, from_: float, to: float) -> None:
+    """Move all actuators from one deflection to another, at the device's rate."""
+    info = device.info
+    steps = round(_HOLD_S * info.rate_hz)
+    frame = np.empty((info.rows, info.columns))
+    due_ns = clock.now_ns()
+    for step in range(1, steps + 1):
+        frame.fill(from_ + (to - from_) * step / steps)
+        due_ns += round(NS_PER_S / info.rate_hz)
+        clock.sleep_until_ns(due_ns)
+        device.read()
+        device.write(frame)
 
 
 def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:

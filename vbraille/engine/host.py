@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import subprocess
 import sys
 from contextlib import suppress
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
 _END_S = 5.0
+# How long to wait for an answer before looking whether there is a process that could give it.
+_LOOK_S = 0.1
 
 
 class HostDiedError(VbrailleError):
@@ -93,8 +96,7 @@ class Host:
         if not self._launched:
             self.launch()
         while self._info is None:
-            if not self._hear():
-                raise self._end()
+            self._wait()
         if self._first not in (None, self._info):
             raise InputError(f"{self._info.name} is another device than before; start anew with it")
         return self._info
@@ -116,15 +118,16 @@ class Host:
         """
         self._first = self.open()
         while not self._ready:
-            if not self._hear():
-                raise self._end()
+            self._wait()
         self._launched = False
-        os.set_blocking(self._answers(), False)
         if self._shown is not None:
             self._posted.post(*self._shown)
 
     def launch(self) -> None:
-        """Start the process and wait for nothing: `start` does, when there is no more to do."""
+        """Start the process and wait for nothing: `start` does, when there is no more to do.
+
+        The system ends the process with the thread that calls this.
+        """
         self.close()
         self._launched = True
         if self.newest is not None:
@@ -139,6 +142,7 @@ class Host:
             stdout=subprocess.PIPE,
             pass_fds=(self._descriptor,),
         )
+        os.set_blocking(self._answers(), False)
         self._tell(
             device=self._device,
             wanted=asdict(self._wanted),
@@ -249,11 +253,7 @@ class Host:
         if process.stdin is not None:
             with suppress(BrokenPipeError):
                 process.stdin.close()  # one that waits to be told more ends, too
-        try:
-            process.wait(_END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        self._reap()
         while self._hear():
             pass
         if process.stdout is not None:
@@ -283,16 +283,37 @@ class Host:
         assert self._process.stdout is not None
         return self._process.stdout.fileno()
 
+    def _wait(self) -> None:
+        """Wait for an answer, for a moment; raise why there is no host if it has ended."""
+        select.select((self._answers(),), (), (), _LOOK_S)
+        if not self._hear():
+            raise self._end()
+
     def _hear(self) -> bool:
-        """Take the host's answers; whether more may come."""
+        """Take the host's answers; whether more may come.
+
+        None come once the process has ended and all that it said was read: somebody else, whom
+        a driver started, may hold the other end of the pipe for as long as he likes.
+        """
+        assert self._process is not None
+        ended = self._process.poll() is not None  # asked first: whatever it said is there then
         try:
             said = os.read(self._answers(), 1 << 16)
         except BlockingIOError:
-            return True
+            return not ended
         *lines, self._heard = (self._heard + said).split(b"\n")
         for line in lines:
             self._take(json.loads(line))
         return bool(said)
+
+    def _reap(self) -> int:
+        """Wait for the process's end, and bring it about if it takes too long; its exit code."""
+        assert self._process is not None
+        try:
+            return self._process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            return self._process.wait()
 
     def _take(self, answer: dict[str, Any]) -> None:
         if "opened" in answer:
@@ -307,8 +328,7 @@ class Host:
 
     def _end(self) -> VbrailleError:
         """Why there is no host any more."""
-        assert self._process is not None
-        code = self._process.wait()
+        code = self._reap()
         fault, self._fault = self._fault, None  # kept, it would keep all that raises it
         if fault is not None:
             return fault

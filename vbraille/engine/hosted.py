@@ -2,12 +2,16 @@
 
 `vbraille.engine.host` starts it, with two lines of JSON on standard input: which
 device to open, and, perhaps when that has been answered, how much memory to share. It
-answers with lines of JSON on standard output. Whatever happens to its parent,
-it brings the array to rest before it ends.
+answers with lines of JSON on what was standard output, which it keeps to itself:
+what a driver prints goes to standard error. Whatever happens to its parent, it
+brings the array to rest before it ends; and if a driver keeps it from ending,
+the system ends it.
 """
 
 from __future__ import annotations
 
+import ctypes
+import fcntl
 import json
 import os
 import select
@@ -18,7 +22,9 @@ from dataclasses import asdict
 from io import FileIO
 from typing import TYPE_CHECKING, Any
 
-from vbraille.devices import DeviceInfo, open_device
+from vbraille.devices import DeviceInfo, opened_device
+from vbraille.devices.blame import TRACEBACK
+from vbraille.devices.notices import EVERY_NS, Notices
 from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
@@ -44,6 +50,34 @@ _PARENT_S = (
 )
 _WARM_TICKS = 200
 _REHEARSAL_S = 0.05
+# Characters of a note or a fault, each up to 12 bytes of JSON: a pipe takes 4096 whole or not.
+_MOST_SAID = 300
+_PR_SET_PDEATHSIG = 1
+
+
+class Channel:
+    """The way to the parent, which is this process's standard output until it is taken."""
+
+    def __init__(self) -> None:
+        # Neither a driver nor a program that it starts may get at it; 0 to 2 are not for it.
+        self._descriptor = fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, 3)
+        try:
+            os.dup2(2, 1)
+        except OSError:  # there is no standard error
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False, errors="backslashreplace")
+
+    def say(self, **said: Any) -> None:
+        """Say something to the parent; what it has no room for is lost."""
+        for kind in ("note", "fault"):
+            if said.get(kind):
+                said[kind] = str(said[kind])[:_MOST_SAID]
+        with suppress(OSError):
+            os.write(self._descriptor, json.dumps(said).encode() + b"\n")
+
+    def never_wait(self) -> None:
+        """Wait for no room from now on."""
+        os.set_blocking(self._descriptor, False)
 
 
 class Hosted:
@@ -123,10 +157,21 @@ def rehearse(device: Device, rate_hz: float) -> None:
         loop.tick()
 
 
-def answer(**said: Any) -> None:
-    """Say something to the parent; what it has no room for is lost."""
-    with suppress(OSError):
-        os.write(sys.stdout.fileno(), json.dumps(said).encode() + b"\n")
+def end_after(parent: int) -> None:
+    """Have the system end this process some seconds after its parent, whatever a driver does.
+
+    A driver may wait for ever, in Python or in C, when it is opened or let go. So no code of
+    this process is asked: when the parent is gone the system sends SIGQUIT, whose handler is
+    the C library's own `alarm`. That takes the signal's number, 3, as seconds until SIGALRM,
+    which ends the process. Till then the loop has time to bring the array to rest.
+    """
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)  # a parent may have it ignored
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGALRM, signal.SIGQUIT))
+    library = ctypes.CDLL(None)
+    library.signal(int(signal.SIGQUIT), library.alarm)
+    library.prctl(_PR_SET_PDEATHSIG, int(signal.SIGQUIT))
+    if os.getppid() != parent:  # it was gone before that
+        signal.raise_signal(signal.SIGQUIT)
 
 
 def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
@@ -136,7 +181,7 @@ def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
     return orders.readline()
 
 
-def run(orders: RawIOBase, descriptor: int) -> None:
+def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
     """Open the device, drive it until it is enough, and rest it.
 
     Raises
@@ -146,9 +191,10 @@ def run(orders: RawIOBase, descriptor: int) -> None:
     """
     config = json.loads(orders.readline())
     wanted = DeviceInfo(**config["wanted"])
+    end_after(config["parent"])
     warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 1, _WARM_TICKS))
-    with open_device(config["device"], wanted, fits=config["fits"]) as device:
-        answer(opened=asdict(device.info))
+    with opened_device(config["device"], wanted, fits=config["fits"]) as device:
+        channel.say(opened=asdict(device.info))
         told = wait_for_line(orders, device, wanted.rate_hz)
         if not told:
             return  # nobody wants it any more
@@ -160,24 +206,24 @@ def run(orders: RawIOBase, descriptor: int) -> None:
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, extent, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
-        answer(ready=True, note=note)
-        os.set_blocking(sys.stdout.fileno(), False)
+        channel.say(ready=True, note=note)
+        channel.never_wait()
+        notices = Notices()
         try:
             loop.restart_clock()
             while hosted.wanted:
                 hosted.tick()
-                _say_notes(device)
+                for note in device.take_notes():
+                    notices.add(note, note, loop.clock.now_ns())
+                for note in notices.take(loop.clock.now_ns()):
+                    channel.say(note=note)
         finally:
             ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()
-            _say_notes(device)
-            answer(counts=dict(device.counts()))
-
-
-def _say_notes(device: Device) -> None:
-    for note in device.take_notes():
-        answer(note=note)
+            for note in (*device.take_notes(), *notices.take(loop.clock.now_ns() + EVERY_NS)):
+                channel.say(note=note)
+            channel.say(counts={str(name): int(n) for name, n in device.counts().items()})
 
 
 def main() -> int:
@@ -186,19 +232,19 @@ def main() -> int:
     # would leave the actuators where they are.
     for number in _PARENT_S:
         signal.signal(number, signal.SIG_IGN)
+    channel = Channel()
     try:
-        with FileIO(
-            sys.stdin.fileno(), closefd=False
-        ) as orders:  # without a buffer, to be waited for
-            run(orders, int(sys.argv[1]))
+        # Without a buffer, to be waited for.
+        with FileIO(sys.stdin.fileno(), closefd=False) as orders:
+            run(orders, int(sys.argv[1]), channel)
     except VbrailleError as error:
-        answer(fault=str(error), code=error.exit_code)
+        channel.say(fault=str(error), code=error.exit_code)
         return error.exit_code
     except Exception as error:
-        if os.environ.get("VBRAILLE_TRACEBACK"):
+        if os.environ.get(TRACEBACK):
             raise
         what = f"{type(error).__name__}: {error}"
-        answer(
+        channel.say(
             fault=f"a fault of vbraille's own, which its authors want to hear of: {what}", code=1
         )
         return 1

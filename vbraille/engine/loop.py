@@ -264,7 +264,11 @@ class Loop:
             return
         x_mm = sample.x_mm
         if not -1e6 < x_mm < 1e6:
-            raise DeviceError(f"{self.device.info.name} says that its carriage is at {x_mm} mm")
+            raise DeviceError(
+                f"{self.device.info.name} says that its carriage is at {x_mm} mm, where it cannot "
+                f"be; switch it off and on, and if it says so again, look at its encoder and at "
+                f"the counts that its INFO tells, with 'vbraille device check'"
+            )
         if self.x_mm is None:
             self._moved_mm, self._moved_ns = x_mm, now_ns
         else:

@@ -19,12 +19,15 @@ class Series:
         A value a group.
     lows, highs
         Ends of each value's interval; empty for none.
+    points
+        Of each participant a value a group; empty for none.
     """
 
     name: str
     values: Numbers
     lows: Numbers = ()
     highs: Numbers = ()
+    points: tuple[Numbers, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

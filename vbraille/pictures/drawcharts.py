@@ -17,7 +17,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from vbraille.pictures.charts import Bars, Matrix, Paths, Runs
 from vbraille.pictures.figures import FAINT, MIDDLE, styled
-from vbraille.pictures.words import plain, short
+from vbraille.pictures.words import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,12 +38,15 @@ FILLS: tuple[tuple[ColorType, str], ...] = (
 MISSING = "n/a"
 SHADE = "0.85"  # of the band in `Paths`, of the diagonal in `Matrix`
 _INCHES = 0.085  # across a character of a label
-_LABEL = 24  # characters of a label that are drawn; its table has all
+_LABEL = 24  # characters of a line of a label
 _SAMPLES = 500  # of a path: more than a panel has pixels to show
 _DOT = {"color": MIDDLE, "linewidth": 2.6, "solid_capstyle": "round", "snap": False}
 _PERCENT = (0, 50, 100)
-# Width and height of a panel, in inches, by how many stand side by side.
-_PANELS = ((6.5, 3.0), (3.6, 2.4), (2.9, 2.0), (2.5, 1.7), (2.2, 1.5))
+_JOINED = 12  # groups: points of more are joined by lines that nobody can follow
+# Width and height of a panel, in inches, by how many stand side by side: all fit upon A4.
+_PANELS = ((5.7, 3.0), (2.9, 2.2), (1.9, 1.7), (1.4, 1.4))
+_WIDEST = 9.0  # inches, of bars: A4 across
+_MATRIX = 5.8, 8.2  # inches of its columns and rows: with its labels within A4's margins of 20 mm
 
 
 def draw_chart(chart: Chart) -> Figure:
@@ -67,15 +70,14 @@ def draw_chart(chart: Chart) -> Figure:
 
 def _bars(chart: Bars) -> Figure:
     """Figs. 3.12, 4.7, 4.8 and 4.9: a panel a measure."""
-    groups = [short(group, _LABEL) for group in chart.groups]
+    groups = [plain(group) for group in chart.groups]
     most = max((len(series) for _, series in chart.panels), default=1)
     across = 0.13 * (most + 1) if most > 1 else 0.3  # inches a group needs for its bars
-    width = min(max(len(groups) * across, 5.5), 20)
+    width = min(max(len(groups) * across, 5.5), _WIDEST)
     # Labels lie, in lines, where they have room: upright ones are harder to read.
     room = int(0.95 * width / max(len(groups), 1) / _INCHES)  # characters
     upright = any(len(word) > room for group in groups for word in group.split())
-    if not upright:
-        groups = ["\n".join(textwrap.wrap(group, room)) for group in groups]
+    groups = [_lines(group, 2 * _LABEL if upright else room) for group in groups]
     figure = _figure(1 + width, 1.6 + 2.6 * len(chart.panels))
     panels = figure.subplots(len(chart.panels), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (label, several) in zip(panels, chart.panels, strict=True):
@@ -92,7 +94,7 @@ def _bars(chart: Bars) -> Figure:
     names = dict.fromkeys(series.name for _, several in chart.panels for series in several)
     if most > 1:
         keys = [_fill(number) for number in range(len(names))]
-        _legend(figure, keys, [short(name, 2 * _LABEL) for name in names])
+        _legend(figure, keys, [_lines(name, 2 * _LABEL) for name in names])
     return figure
 
 
@@ -116,9 +118,29 @@ def _draw_series(axes: Axes, series: Series, number: int, width: float) -> None:
             elinewidth=0.9,
             capsize=2.5,
         )
+    _draw_points(axes, series, at, width)
     for x in at[~known]:
         axes.annotate(
             MISSING, (x, 0), (0, 3), textcoords="offset points", rotation=90, ha="center", size=8
+        )
+
+
+def _draw_points(axes: Axes, series: Series, at: NDArray, width: float) -> None:
+    """Each participant's values upon the bars, side by side; joined where bars stand alone."""
+    for number, points in enumerate(series.points):
+        # Beside each other in the middle half of the bar, so that like values are seen apart.
+        aside = ((number + 0.5) / len(series.points) - 0.5) * width / 2
+        axes.plot(
+            at + aside,
+            _numbers(points),
+            color=MIDDLE,
+            linewidth=0.5 if width > 0.5 and at.size <= _JOINED else 0,
+            marker="o",
+            markersize=3.2,
+            markerfacecolor="white",
+            markeredgecolor="black",
+            markeredgewidth=0.7,
+            zorder=3,
         )
 
 
@@ -129,10 +151,11 @@ def _fill(number: int) -> Patch:
 
 def _runs(chart: Runs) -> Figure:
     """Fig. 3.14: a panel a run, a dot a trial."""
-    figure, panels = _grid(len(chart.runs), most=5, across="trial", sharey=True)
+    figure, panels = _grid(len(chart.runs), most=4, across="trial", sharey=True)
+    room = int(figure.get_figwidth() / min(4, len(chart.runs)) / _INCHES)
     for axes, run in zip(panels, chart.runs, strict=True):
         _draw_run(axes, run)
-        axes.set_title(short(run.name, _LABEL))
+        axes.set_title(_lines(run.name, max(room - 4, 10)), size="small")
     panels[0].set_yticks(_PERCENT)
     panels[0].set_ylim(-8, 108)
     figure.supylabel("legibility (%)")
@@ -159,7 +182,7 @@ def _paths(chart: Paths) -> Figure:
     )
     for axes, path in zip(panels, chart.paths, strict=True):
         _draw_path(axes, path)
-        axes.set_title("\n".join(textwrap.wrap(plain(path.name), 34)))
+        axes.set_title(_lines(path.name, 24), size="small")
     figure.supylabel("time (s)")
     keys = [
         Patch(facecolor=SHADE, edgecolor="black"),
@@ -195,19 +218,23 @@ def _draw_path(axes: Axes, path: Path) -> None:
 def _matrix(chart: Matrix) -> Figure:
     """Tables 3.4, 3.5 and 4.1: presented from above, answered from the left."""
     rows, columns = (
-        [short(label, 12) for label in labels] for labels in (chart.rows, chart.columns)
+        [_lines(label, 2 * _LABEL) for label in labels] for labels in (chart.rows, chart.columns)
     )
-    cell = 0.32 if max(len(rows), len(columns)) > 8 else 0.6  # inches
-    longest = max(map(len, columns), default=0)
+    wide, high = (
+        least / max(len(some), 1) for least, some in zip(_MATRIX, (columns, rows), strict=True)
+    )
+    cell = min(max(min(wide, high), 0.15), 0.6)  # inches
+    longest = max((len(line) for label in columns for line in label.split("\n")), default=0)
     upright = longest * _INCHES > 0.9 * cell
-    beside = 1 + max(map(len, rows), default=0) * _INCHES
-    above = 1.2 + (longest * _INCHES if upright else 0.2)
+    row_longest = max((len(line) for label in rows for line in label.split("\n")), default=0)
+    beside = 0.6 + row_longest * _INCHES
+    above = 1.5 + (longest * _INCHES if upright else 0.2)
     figure = _figure(max(len(columns) * cell + beside, 4.5), len(rows) * cell + above)
     axes = figure.subplots()
     axes.set(xlim=(0, len(columns)), ylim=(len(rows), 0), aspect="equal")
     axes.hlines(range(len(rows) + 1), 0, len(columns), color=FAINT, linewidth=0.6)
     axes.vlines(range(len(columns) + 1), 0, len(rows), color=FAINT, linewidth=0.6)
-    size = 9 if cell < 0.5 else 11
+    size = _digits_size(3, cell)
     for down, (counts, right) in enumerate(zip(chart.counts, chart.diagonal, strict=True)):
         for across, count in enumerate(counts):
             if across == right:
@@ -215,17 +242,24 @@ def _matrix(chart: Matrix) -> Figure:
             elif frame := _frame(count, chart.marks):
                 axes.add_patch(_cell(down, across, fill=False, linewidth=frame))
             if count:
-                axes.text(across + 0.5, down + 0.5, str(count), ha="center", va="center", size=size)
+                text = str(count)
+                own = min(_digits_size(len(text), cell), size)
+                axes.text(across + 0.5, down + 0.5, text, ha="center", va="center", size=own)
     for within in (*axes.texts, *axes.patches):
         within.set_in_layout(False)  # hundreds, that need no room of their own
     axes.spines[:].set_visible(False)
-    axes.tick_params(length=0, labelsize=size + 1)
+    axes.tick_params(length=0, labelsize=min(size + 1.5, 11))
     axes.xaxis.tick_top()
     axes.xaxis.set_label_position("top")
     axes.set_xticks(np.arange(len(columns)) + 0.5, columns, rotation=90 if upright else 0)
     axes.set_yticks(np.arange(len(rows)) + 0.5, rows)
     axes.set(xlabel=plain(chart.across), ylabel=plain(chart.down))
     return figure
+
+
+def _digits_size(digits: int, cell: float) -> float:
+    """Points of a number that has room in a cell of so many inches; a digit is 0.64 em wide."""
+    return min(cell * 72 * 0.85 / (digits * 0.64), 11.0)
 
 
 def _frame(count: int, marks: tuple[int, ...]) -> float:
@@ -246,7 +280,7 @@ def _figure(width: float, height: float) -> Figure:
 
 def _grid(panels: int, most: int, across: str, sharey: bool) -> tuple[Figure, list[Axes]]:
     """Figure with a grid of panels, at most so many side by side; the lowest ones are labelled."""
-    columns = min(most, math.ceil(math.sqrt(panels)) if most > 3 else panels)
+    columns = min(most, max(math.ceil(math.sqrt(panels)), 1) if most > 3 else panels)
     wide, high = _PANELS[columns - 1]
     rows = -(-panels // columns)
     figure = _figure(1 + wide * columns, 1.6 + high * rows)
@@ -264,6 +298,11 @@ def _legend(figure: Figure, keys: list, words: list[str]) -> None:
     width = sum(map(len, words)) * _INCHES + 0.9 * len(words)
     columns = max(1, int(len(words) * min(1, figure.get_figwidth() / width)))
     figure.legend(keys, words, loc="outside lower center", ncols=columns, frameon=False)
+
+
+def _lines(text: str, width: int) -> str:
+    """All of a label, in lines of so many characters."""
+    return "\n".join(textwrap.wrap(plain(text), max(width, 4)))
 
 
 def _numbers(values: Numbers | tuple[int, ...]) -> NDArray[np.float64]:

@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # No date, no version and no reader's own matplotlibrc: the same table gives the same bytes.
-METADATA = {"png": {"Software": "vbraille"}, "svg": {"Creator": "vbraille", "Date": None}}
+METADATA = {
+    "png": {"Software": "vbraille"},
+    "svg": {"Creator": "vbraille", "Date": None},
+    "pdf": {"Creator": "vbraille", "Producer": "vbraille", "CreationDate": None},
+}
 STYLE = {
     "axes.spines.right": False,
     "axes.spines.top": False,
@@ -32,6 +36,7 @@ STYLE = {
     "font.size": 11,
     "hatch.linewidth": 0.7,
     "lines.linewidth": 1.4,
+    "pdf.fonttype": 42,  # letters stay letters
     "svg.fonttype": "none",  # text stays text, for search and screen readers
     "svg.hashsalt": "vbraille",
     "text.parse_math": False,  # a dollar in a name is a dollar
@@ -58,7 +63,7 @@ def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
     Parameters
     ----------
     kind
-        Of `METADATA`: png or svg.
+        Of `METADATA`: png, svg or pdf.
     dpi
         Dots per inch of a PNG.
     """
@@ -83,7 +88,7 @@ def save(figure: Figure, path: str | Path) -> None:
     """
     path = Path(path)
     kind = path.suffix.lower()[1:]
-    if kind not in METADATA:
+    if kind not in ("png", "svg"):
         raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
     content = to_bytes(figure, kind)
     partial = path.with_name(f".{path.name}.{os.getpid()}")

@@ -20,12 +20,6 @@ def plain(text: str) -> str:
     return _UNFIT.sub(_spell, _BREAKS.sub(" ", text))
 
 
-def short(text: str, most: int) -> str:
-    """Plain text of at most so many characters."""
-    text = plain(text)
-    return text if len(text) <= most else f"{text[: most - 1]}…"
-
-
 def _spell(found: re.Match[str]) -> str:
     code = ord(found[0])
     if code < 0x100:

@@ -267,7 +267,7 @@ class Reader:
         if self._echo in (Echo.CELLS, Echo.BOTH):
             self._say(f"cells: {line.printed.to_unicode()}")
         if self._echo in (Echo.TEXT, Echo.BOTH):
-            self._say(f"text: {line.text}")
+            self._say(f"text: {line.text.strip()}")
 
     def _turn(self, name: str, step: float) -> None:
         value = round(min(max(getattr(self.tuning, name) + step, 0.0), 1.0), 6)

@@ -3,8 +3,15 @@
 from vbraille.translate.book import Book
 from vbraille.translate.cells import Cells
 from vbraille.translate.documents import Document
-from vbraille.translate.liblouis import Table, TableInfo, find_table, list_tables
+from vbraille.translate.liblouis import (
+    Table,
+    TableInfo,
+    find_table,
+    list_tables,
+    six_dot_table,
+)
 from vbraille.translate.paragraphs import Paragraph
+from vbraille.translate.undefined import Undefined
 
 __all__ = [
     "Book",
@@ -13,6 +20,8 @@ __all__ = [
     "Paragraph",
     "Table",
     "TableInfo",
+    "Undefined",
     "find_table",
     "list_tables",
+    "six_dot_table",
 ]

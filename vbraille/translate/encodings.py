@@ -43,7 +43,7 @@ _MAGIC = {
     b"\x89HDF": "an HDF5 file",
     b"SQLite format 3\0": "a database",
 }
-_TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\x1a\x1b")
+_TEXT_CONTROLS = frozenset(b"\b\t\n\v\f\r\x1a\x1b")
 # Text encodings to Python, and yet not what a text file is written in.
 _NO_FILE_ENCODINGS = {"idna", "punycode", "unicode-escape", "raw-unicode-escape"}
 # A shorter text says too little to tell DOS and Mac code pages from windows-1252.

@@ -10,9 +10,8 @@ import ctypes
 import difflib
 import itertools
 import threading
-import unicodedata
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,9 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.cells import UNICODE_BLANK, Cells
-from vbraille.translate.paragraphs import SPACE, to_text
+from vbraille.translate.paragraphs import SPACE, to_codes, to_text
+from vbraille.translate.scripts import script_of
+from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
 
 try:
     import louis
@@ -31,9 +32,12 @@ except ImportError as error:
     ) from error
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from vbraille.translate.paragraphs import Paragraph
+    from vbraille.translate.scripts import Script
 
 # Without metadata's help: what readers of the language expect. A bare query for French, say,
 # finds eight-dot computer braille.
@@ -59,6 +63,11 @@ _IGNORABLE = (
     | {*range(0x2060, 0x2070), *range(0xFE00, 0xFE10)}
     | {*range(0x180B, 0x1810), *range(0xE0000, 0xE0200)}
 )
+
+_BYTE_ORDER_MARK = 0xFEFF
+_SIX_DOTS = bytes(range(64))
+_SMALL = "abcdefghijklmnopqrstuvwxyz"
+_DIGITS = "0123456789"
 
 _lock = threading.RLock()
 # Calls of our own: the binding's would copy every number of the maps through Python lists.
@@ -176,6 +185,26 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
     return min(graded, key=preference).name
 
 
+def six_dot_table(language: str) -> str | None:
+    """Name of a language's table of six-dot braille, the most usual; None if there is none."""
+    tables = [table.name for table in list_tables() if table.language == language and language]
+    names = [find_table(language), *tables] if tables else []
+    return next((name for name in names if not Table(name).eight_dots), None)
+
+
+def tables_for(script: Script) -> str:
+    """End of a sentence that says which languages and tables there are for a script."""
+    there = {table.language for table in list_tables()}
+    found = [
+        f"{tag} ({name}, {find_table(tag)})"
+        for tag, name in script.languages.items()
+        if tag in there
+    ]
+    if not found:
+        return f"liblouis has no table for {script.name}"
+    return f"give its language: --language {', '.join(found)}"
+
+
 def nearest(name: str, names: list[str]) -> str:
     """End of a sentence that says what comes nearest to a name."""
     close = difflib.get_close_matches(name, names, n=3, cutoff=0.0)
@@ -190,6 +219,13 @@ class Table:
     name
         A file name of liblouis's (``en-ueb-g2.ctb``), a path, or several with
         commas between, as liblouis has it.
+    undefined
+        What is written for a character that the table does not know.
+
+    Attributes
+    ----------
+    undefined : set of int
+        Code points that were met and that the table does not know.
 
     Raises
     ------
@@ -197,8 +233,10 @@ class Table:
         If there is no such table or liblouis cannot compile it; it names the nearest.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
         self.name = name
+        self.undefined: set[int] = set()
+        self._how = undefined
         self._list = name.encode("utf-8", "surrogateescape")
         with _lock:
             known = bool(name.strip()) and "\0" not in name and len(self._list) <= _LONGEST_NAME
@@ -210,6 +248,8 @@ class Table:
         # Characters this table was seen to know; what stands for those it does not.
         self._known = {SPACE}
         self._instead: dict[int, tuple[int, ...]] = {}
+        self._foreign: dict[str, Script] = {}  # scripts of whole passages, by name
+        self._noted = 0
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
 
@@ -218,18 +258,54 @@ class Table:
         """The table's metadata, if it has some."""
         return next((t for t in list_tables() if t.name == Path(self.name).name), None)
 
-    def translate(self, paragraph: Paragraph) -> Cells:
-        r"""Cells of a paragraph, none of its characters left out.
+    @cached_property
+    def eight_dots(self) -> bool:
+        """Whether it is a table of eight-dot braille; one of six dots writes no dot 7 or 8.
 
-        A character that the table does not know appears as liblouis spells it,
-        ``'\xhhhh'``, even where the table would put a blank instead.
+        Metadata may leave it unsaid, or say it of a table that never raises dots 7 and 8.
+        Six-dot tables may have eight-dot cells for capitals or letters of another script.
+        """
+        with _lock:
+            said = _get_info(self._list, b"dots")
+            literary = _get_info(self._list, b"type") != b"computer"
+            described = bool(_get_info(self._list, b"language")) and literary
+        if said == b"6":
+            return False
+        if said == b"8" or not described:
+            return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(_native_letters())
+        has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
+        return self._high(_DIGITS if has_digits else _SMALL)
+
+    @cached_property
+    def marker(self) -> str:
+        """What marks characters that the table does not know."""
+        return "".join(map(chr, self._first_written(MARKERS)))
+
+    def note(self) -> str | None:
+        """Say once of each script that passages are in it which the table does not know."""
+        if self._noted == len(self._foreign):
+            return None
+        script = list(self._foreign.values())[self._noted]
+        self._noted += 1
+        return (
+            f"most of this passage is in {script.name}, which the table {self.name} does not "
+            f"know; {tables_for(script)}"
+        )
+
+    def translate(self, paragraph: Paragraph) -> Cells:
+        """Cells of a paragraph, none of its characters left out unless that was asked for.
+
+        What stands for a character that the table does not know is written by the rules
+        of the table, so that it reads back like any other text.
         """
         codes, source = paragraph.codes, paragraph.source
         if not paragraph.alphabet <= self._known:
-            codes, source = self._substitute(codes, source)
+            codes, source = self._substitute(paragraph)
         masks, inputs = self._call(codes, _MODE)
         if not masks.size:
             return Cells(masks, np.empty(0, np.int64), paragraph.end)
+        if masks.tobytes().translate(None, _SIX_DOTS) and not self.eight_dots:
+            masks &= 0x3F  # a rule for neighbours that raises what neither raises alone
         return Cells(masks, source[inputs], paragraph.end)
 
     def _grow(self, characters: int) -> None:
@@ -287,19 +363,38 @@ class Table:
             inputs = np.maximum(np.maximum.accumulate(self._inputs[:cells]), 0)
         return masks, inputs
 
-    def _substitute(
-        self, codes: NDArray[np.uint32], source: NDArray[np.int64]
-    ) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
+    def _substitute(self, paragraph: Paragraph) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
         """Put what the table can write for what it cannot."""
+        for code in paragraph.alphabet - self._known - self._instead.keys():
+            self._probe(code)
+        codes, source = paragraph.codes, paragraph.source
+        own = codes.tolist()
+        if self._instead.keys().isdisjoint(own):
+            return codes, source
+        self._look_for_foreign(own)
         written: list[int] = []
         places: list[int] = []
-        for code, place in zip(codes.tolist(), source.tolist(), strict=True):
-            if code not in self._known and code not in self._instead:
-                self._probe(code)
+        mark = _codes(self.marker) if self._how is Undefined.MARK else None
+        marked = False
+        for code, place in zip(own, source.tolist(), strict=True):
             instead = self._instead.get(code, (code,))
+            marked, before = instead == mark and code in self.undefined, marked
+            if marked and before:
+                continue  # one marker for all that stand together
             written += instead
             places += (place,) * len(instead)
         return np.array(written, np.uint32), np.array(places, np.int64)
+
+    def _look_for_foreign(self, codes: list[int]) -> None:
+        """Remember the script of a passage whose letters are mostly unknown to the table."""
+        if self.undefined.isdisjoint(codes):
+            return
+        letters = [letter for letter in map(chr, codes) if letter.isalpha()]
+        unknown = [letter for letter in letters if ord(letter) in self.undefined]
+        if 2 * len(unknown) > len(letters):
+            script = script_of(unknown)
+            if script is not None:
+                self._foreign.setdefault(script.name, script)
 
     def _probe(self, code: int) -> None:
         """Learn whether the table knows a character, and what to hand liblouis if it does not."""
@@ -310,26 +405,48 @@ class Table:
             self._instead[code] = instead
 
     def _find_instead(self, code: int) -> tuple[int, ...]:
-        if code == 0xFEFF:
+        if code == _BYTE_ORDER_MARK:
             return ()
-        if code and self._writes(code):
+        if self._writes(code):
             return (code,)
         if code in _IGNORABLE:
             return ()
-        character = to_text(np.array([code], np.uint32))
+        character = chr(code)
         if character.isspace():
             return (SPACE,)
-        plain = tuple(map(ord, unicodedata.normalize("NFKC", character)))
-        if code not in plain and all(c and self._writes(c) for c in plain):
-            return plain
-        if code and self._call(np.array([code], np.uint32), _MODE)[0].any():
-            return (code,)  # liblouis spells it out
-        return tuple(map(ord, f"'\\x{code:04x}'"))
+        alike = self._first_written(likenesses(character))
+        if alike:
+            return alike
+        self.undefined.add(code)
+        return self._first_written(spellings(character, self._how))
+
+    def _first_written(self, texts: Iterable[str]) -> tuple[int, ...]:
+        """The first of these texts all of whose characters the table can write, or nothing."""
+        return next((c for c in map(_codes, texts) if all(map(self._writes, c))), ())
 
     def _writes(self, code: int) -> bool:
-        """Whether the table has dots of its own for a character."""
+        """Whether the table has dots of its own for a character, and not more than it may."""
+        if code in (0, SPACE):
+            return code == SPACE
         masks, _ = self._call(np.array([code], np.uint32), _MODE | louis.noUndefined)
-        return bool(masks.any()) or (masks.size > 0 and code == UNICODE_BLANK)
+        if not masks.any():
+            return masks.size > 0 and code == UNICODE_BLANK
+        return masks.max() <= 0x3F or self.eight_dots
+
+    def _high(self, letters: str) -> bool:
+        """Whether any of these letters that the table knows is written with dot 7 or 8."""
+        masks, _ = self._call(to_codes(letters), _MODE | louis.noUndefined)
+        return bool(masks.size) and bool(masks.max() > 0x3F)
+
+
+@cache
+def _native_letters() -> str:
+    """Letters of other scripts than the Latin, for what a table's metadata leave open."""
+    return "".join(c for c in map(chr, range(0x370, 0x700)) if c.isalpha())
+
+
+def _codes(text: str) -> tuple[int, ...]:
+    return tuple(map(ord, text))
 
 
 def _is_file(name: str) -> bool:

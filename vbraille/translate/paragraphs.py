@@ -35,6 +35,7 @@ NO_BREAK_SPACE = 0xA0
 
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
+_BACKSPACE, _UNDERLINE = 0x08, 0x5F
 # Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
 _COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A))
 # Words before which a hyphen stands for the rest of the word before it.
@@ -140,6 +141,7 @@ def split_paragraphs(
     codes = stretch.codes
     kinds = kinds_of(codes)
     kinds[codes == _BYTE_ORDER_MARK] = DROPPED
+    kinds[_overstruck(codes, kinds)] = DROPPED
     text = np.flatnonzero(kinds == TEXT)
     newline = (kinds == NEWLINE) | (kinds == BREAK)
     newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
@@ -207,6 +209,25 @@ def split_paragraphs(
             at = int(stretch.place(stop[n] - 1)) + 1
             paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
     return Split(paragraphs, codes.size, continues=False)
+
+
+def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """Where printers of old were told to underline or to strike twice, which is no text.
+
+    An underline stands before or after a backspace and a character; one that is struck twice
+    stands on both sides of it.
+    """
+    backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
+    if not backspaces.size:
+        return backspaces
+    struck = (kinds[backspaces - 1] == TEXT) & (kinds[backspaces + 1] == TEXT)
+    backspaces = backspaces[struck & (codes[backspaces - 1] != _BACKSPACE)]
+    before, after = codes[backspaces - 1], codes[backspaces + 1]
+    first = (before == _UNDERLINE) | (before == after)
+    second = ~first & (after == _UNDERLINE)
+    return np.concatenate(
+        (backspaces[first | second], backspaces[first] - 1, backspaces[second] + 1)
+    )
 
 
 def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -5,6 +5,7 @@ from urllib.parse import unquote
 
 import html5lib
 import pytest
+from PIL import Image
 
 from tests.analysis.report.made import BARE, RESULTS
 from vbraille.analysis.report import write_report
@@ -33,7 +34,7 @@ def test_all_files_are_there(report):
     pictures = [
         f"figures/{picture.name}.{kind}"
         for picture in RESULTS.pictures()
-        for kind in ("svg", "png")
+        for kind in ("svg", "png", "pdf")
     ]
     names = ["report.html", "report.md", "results.json", *EXTRA, *tables, *pictures]
     assert [str(path.relative_to(folder)) for path in files] == names
@@ -50,7 +51,9 @@ def test_what_is_written_can_be_read(report):
         assert text == table.to_csv().replace("\udc80", "\\udc80")
     for picture in RESULTS.pictures():
         assert (folder / f"figures/{picture.name}.svg").read_bytes().startswith(b"<?xml")
-        assert (folder / f"figures/{picture.name}.png").read_bytes().startswith(b"\x89PNG")
+        assert (folder / f"figures/{picture.name}.pdf").read_bytes().startswith(b"%PDF")
+        with Image.open(folder / f"figures/{picture.name}.png") as image:
+            assert image.info["dpi"] == pytest.approx((300, 300), abs=0.1)
 
 
 def test_every_link_of_the_page_has_its_file(report):

@@ -21,8 +21,10 @@ from tests.analysis.report.made import (
     TRIALS,
 )
 from vbraille.analysis.report import shown, to_html, to_json, to_markdown
+from vbraille.analysis.report.tolines import to_lines
 from vbraille.analysis.report.tomarkdown import escape
 from vbraille.analysis.results import Results, Section
+from vbraille.analysis.tables import Column, Kind
 
 SVG = b"<svg xmlns='http://www.w3.org/2000/svg'/>"
 FIGURES = dict.fromkeys(("legibility", "confusions", "runs"), SVG)
@@ -65,12 +67,81 @@ def test_the_page_has_its_parts():
     assert TREE.get("lang") == "en"
     assert text(one("title")) == RESULTS.title
     assert text(one("h1")) == RESULTS.title
+    heads = [text(head) for head in TREE.iter("h2")]
+    assert heads[:5] == [
+        "Read this first",
+        "What was found",
+        "Data, versions and what was left out",
+        "Contents",
+        "Legibility",
+    ]
     assert [text(word) for word in one("dl").iter("dt")] == ["data", "versions", "left out"]
     assert one("nav").get("aria-label") == "Contents"
     skip = next(TREE.iter("a"))
     assert skip.get("href") == f"#{one('main').get('id')}"
     header = [text(item) for item in one("header").iter("li")]
     assert header == list(RESULTS.warnings)
+
+
+def test_what_was_found_stands_first_with_its_figure():
+    places = list(TREE.iter())
+    found, about = (
+        next(n for n, each in enumerate(places) if each.get("id") == name)
+        for name in ("findings", "about")
+    )
+    first = "".join(text(each) for each in places[found:about] if each.tag == "li")
+    assert all(finding in first for finding in RESULTS.findings)
+    (figure,) = [each for each in places[found:about] if each.tag == "figure"]
+    assert figure.get("id") == "figure-legibility"
+    pointer = next(each for each in TREE.iter("p") if "at the head of the report" in text(each))
+    assert next(pointer.iter("a")).get("href") == "#figure-legibility"
+    made = to_markdown(RESULTS)
+    order = ["Read this first", "What was found", "](figures/legibility.svg)", "Data, versions"]
+    assert [made.index(each) for each in order] == sorted(made.index(each) for each in order)
+    assert made.count("](figures/legibility.svg)") == 2  # shown, and linked to
+    lines = list(to_lines(RESULTS))
+    assert lines[1] == "warning: The device was simulated."
+    assert lines[3] == f"found: {RESULTS.findings[0]}"
+
+
+def test_nothing_is_wider_than_the_screen():
+    """Tables scroll within themselves, and whatever is in them; all else breaks where it must."""
+    held = {id(each) for wide in TREE.iter("div") for each in wide.iter("table")}
+    assert {id(each) for each in TREE.iter("table")} == held
+    for wide in TREE.iter("div"):
+        assert "wide" in wide.get("class").split()
+        assert wide.get("tabindex") == "0"
+    style = " ".join(text(one("style")).split())
+    assert "overflow-wrap: anywhere" in style
+    # Words for speech alone are placed outside the flow: within the table they widen nothing.
+    assert re.search(r"\.wide \{[^}]*overflow-x: auto;[^}]*position: relative", style)
+    assert re.search(r"img \{[^}]*max-width: 100%", style)
+    assert "@page { size: A4;" in style
+
+
+def test_rare_answers_of_a_matrix_are_gathered():
+    letters = "abc"
+    columns = (
+        Column("presented", "presented", ""),
+        *(
+            Column(f"answered {name}", name, "", Kind.COUNT)
+            for name in (*letters, "d", "e", "f", "?")
+        ),
+    )
+    rows = (("a", 9, 0, 0, 1, 4, 5, 2), ("b", 0, 9, 0, 0, 2, 0, 0), ("c", 0, 0, 9, 0, 0, 0, 0))
+    table = replace(CONFUSIONS, columns=columns, rows=rows)
+    found = table.gathered()
+    assert [column.heading for column in found.columns] == [
+        "presented", *letters, "f", "?", "."
+    ]  # fmt: skip
+    assert [row[-1] for row in found.rows] == [5, 2, 0]
+    assert sum(sum(row[1:]) for row in found.rows) == sum(sum(row[1:]) for row in rows)
+    assert "Column . gathers 2 answers that were never presented" in found.about
+    assert "more than 4 times: d, e." in found.about
+    results = Results("Confusions", (), (), (Section("All", "", (table,)),))
+    assert "| presented | a | b | c | f | ? | . |" in to_markdown(results)
+    assert "answered d" in table.to_csv()
+    assert CONFUSIONS.gathered() is CONFUSIONS
 
 
 def test_all_tables_are_headed():
@@ -143,7 +214,8 @@ def test_figures_have_texts_and_their_numbers():
         assert picture.text in text(caption)
         links = [link.get("href") for link in caption.iter("a")]
         stem = f"figures/{picture.name}"
-        assert links == [f"#table-{picture.table}", f"{stem}.svg", f"{stem}.png"]
+        files = [f"{stem}.{kind}" for kind in ("svg", "png", "pdf")]
+        assert links == [f"#table-{picture.table}", *files]
 
 
 def test_links_within_the_page_have_a_target():
@@ -154,7 +226,7 @@ def test_links_within_the_page_have_a_target():
     assert set(inner) <= set(ids)
     assert {f"table-{each.name}" for each in RESULTS.tables()} <= set(inner)
     labelled = {each.get("aria-labelledby") for each in TREE.iter()} - {None}
-    assert labelled == {"table-legibility"}
+    assert labelled == {"table-legibility", "table-confusions", "table-trials"}
     assert labelled <= set(ids)
 
 
@@ -185,7 +257,7 @@ def test_a_column_of_notes_is_left_out_where_there_are_none():
     """Every empty cell is one that a reader hears."""
     rows = tuple((*row[:-1], "") for row in LEGIBILITY.rows if None not in row)
     silent = replace(LEGIBILITY, rows=rows)
-    results = replace(RESULTS, sections=(Section("Legibility", "", (silent,)),))
+    results = replace(RESULTS, sections=(Section("Legibility", "", (silent,)),), main="")
     for made in (to_html(results, {}), to_markdown(results)):
         assert "mean duration (s)" in made
         assert "note" not in made
@@ -195,7 +267,11 @@ def test_a_column_of_notes_is_left_out_where_there_are_none():
 
 def test_json_has_all_rows():
     content = json.loads("".join(to_json(RESULTS)))
-    assert list(content) == ["title", "about", "warnings", "figures", "tables"]
+    assert list(content) == [
+        "title", "warnings", "findings", "about", "main_figure", "figures", "tables"
+    ]  # fmt: skip
+    assert content["findings"] == list(RESULTS.findings)
+    assert content["main_figure"] == "legibility"
     for each in RESULTS.tables():
         found = content["tables"][each.name]
         assert found["rows"] == each.records()

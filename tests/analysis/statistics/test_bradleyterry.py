@@ -5,13 +5,14 @@ from itertools import permutations
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from scipy.stats import binom
+from scipy.stats import t, ttest_1samp
 from statsmodels.genmod.families import Binomial
 from statsmodels.genmod.generalized_linear_model import GLM
 
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
 from vbraille.analysis.statistics.firth import connected, fit
 from vbraille.analysis.statistics.intervals import wilson
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 # Citations among Biometrika, Communications in Statistics, JASA and JRSS-B:
@@ -206,38 +207,87 @@ def test_three_equals_give_the_middle_one():
     assert found.value in (2.5, 3)
 
 
-def test_six_participants_are_resampled_whole(rng):
+def test_of_several_it_is_the_mean_of_their_own_with_students_interval(rng):
     s = -((np.array(WIDTHS_MM) - 2) ** 2)
-    tables = [wins_by(s + rng.normal(0, 0.3, 6), 3) for _ in range(6)]
-    found = preferred(WIDTHS_MM, *comparisons(tables), seed=3, resamples=300)
-    assert found.how == "bootstrap over 6 participants"
-    assert found.interval.low <= found.value <= found.interval.high
-    assert found == preferred(WIDTHS_MM, *comparisons(tables), seed=3, resamples=300)
-    # Participants who all choose alike leave nothing to resample; comparisons would.
-    alike = preferred(WIDTHS_MM, *comparisons([tables[0]] * 6), seed=3, resamples=50)
-    assert alike.interval.low == pytest.approx(alike.interval.high, abs=1e-6)
+    tables = [wins_by(s + rng.normal(0, 0.3, 6), 30) for _ in range(6)]
+    own = [best(table).value for table in tables]
+    found = preferred(WIDTHS_MM, *comparisons(tables), seed=3)
+    assert found.how == "Student's t over 6 participants' own values"
+    assert found.value == pytest.approx(np.mean(own))
+    half = t.ppf(0.975, 5) * np.std(own, ddof=1) / np.sqrt(6)
+    ends = found.interval
+    assert (ends.low, ends.high) == pytest.approx((found.value - half, found.value + half))
+    assert found.note == ""
 
 
-def test_fewer_are_resampled_within():
+@pytest.mark.parametrize(
+    ("people", "why"),
+    [(2, "two participants; how people differ is seen of three"), (5, "all values are the same")],
+)
+def test_participants_of_whom_no_difference_is_seen_have_no_interval(people, why):
     s = -((np.array(WIDTHS_MM) - 2) ** 2)
-    found = preferred(WIDTHS_MM, *comparisons([wins_by(s, 3)] * 4), seed=3, resamples=300)
-    assert found.how == (
-        "bootstrap over the comparisons within 4 participants, too few to resample"
-    )
-    assert found.interval.low < found.value < found.interval.high
+    found = preferred(WIDTHS_MM, *comparisons([wins_by(s, 3)] * people), seed=3)
+    assert found.value == pytest.approx(2)
+    assert (found.interval, found.how) == (None, "")
+    assert found.note.startswith(f"no interval: {why}")
+
+
+def test_of_one_participant_the_comparisons_are_resampled():
+    s = -((np.array(WIDTHS_MM) - 2) ** 2)
     one = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300)
     assert one.how == "bootstrap over the comparisons of one participant"
+    assert one.interval.low < one.value < one.interval.high
+    assert one == preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300)
     narrow = preferred(WIDTHS_MM, *comparisons([wins_by(s, 6)]), seed=3, resamples=300, level=0.5)
     assert narrow.interval.high - narrow.interval.low < one.interval.high - one.interval.low
 
 
-def test_resamples_that_leave_values_uncompared_are_told():
-    wins = np.array([[0, 4, 0], [4, 0, 3], [0, 1, 0]])
-    found = preferred([1, 2, 3], *comparisons([wins]), seed=3, resamples=400)
-    left_out = int(found.how.split("without ")[1].split()[0])
-    # All of twelve draws miss the last pair's four in (2/3)^12 of the resamples.
-    assert found.how.endswith("of 400 resamples that left some values uncompared")
-    assert 0 < left_out < binom.ppf(0.999, 400, (2 / 3) ** 12 + (1 / 3) ** 12)
+def test_at_the_end_of_what_was_tested_the_best_may_lie_beyond():
+    # It was an interval of no width.
+    beyond = "at the end of what was tested, and the best may lie beyond"
+    widest = wins_by(np.arange(6) * 2, 6)
+    for people in (1, 5):
+        found = preferred(WIDTHS_MM, *comparisons([widest] * people), seed=3, resamples=50)
+        assert (found.value, found.interval) == (3, None)
+        whose = "it" if people == 1 else "the value of 5 of 5 participants"
+        assert found.note == f"{whose} is {beyond}; no interval"
+    inner = [wins_by(-((np.array(WIDTHS_MM) - best_mm) ** 2), 30) for best_mm in (2.3, 2.6)]
+    found = preferred(WIDTHS_MM, *comparisons([*inner, widest]), seed=3)
+    assert found.note == f"the value of 1 of 3 participants is {beyond}"
+    assert found.interval.low < found.value < found.interval.high == 3
+
+
+def test_an_interval_that_reaches_the_end_says_so():
+    tables = [wins_by(-((np.array(WIDTHS_MM) - best_mm) ** 2), 30) for best_mm in (1, 1.8, 2.6)]
+    found = preferred(WIDTHS_MM, *comparisons(tables), seed=3)
+    assert (found.interval.low, found.interval.high) == (0.5, pytest.approx(3))
+    assert found.note == (
+        "the interval reaches the end of what was tested; the best may lie beyond"
+    )
+
+
+def test_who_has_no_scale_is_left_out_and_counted():
+    s = -((np.array(WIDTHS_MM) - 2) ** 2)
+    some = [wins_by(s + bent * np.arange(6), 30) for bent in (-0.1, 0, 0.1)]
+    short = np.zeros((6, 6), int)
+    short[0, 1] = 3
+    found = preferred(WIDTHS_MM, *comparisons([*some, short]), seed=3)
+    assert found.value == preferred(WIDTHS_MM, *comparisons(some), seed=3).value
+    assert found.note == ("without 1 of 4 participants, whose own comparisons prefer no value")
+    with pytest.raises(Unanswerable, match="a scale of their own"):
+        preferred([1, 2, 3], [0, 1], [1, 2], [0, 0], [0, 1], seed=1)
+
+
+def test_one_participants_few_comparisons_have_no_interval():
+    # A chain, highest in the middle: a resample that misses one link says nothing.
+    wins = np.zeros((6, 6), int)
+    for better, worse in ((1, 0), (2, 1), (2, 3), (3, 4), (4, 5)):
+        wins[better, worse] = 1
+    found = best(wins)
+    assert (found.value, found.interval) == (pytest.approx(1.5, abs=0.3), None)
+    assert found.note == (
+        "no interval: too few comparisons; most resamples leave some values uncompared"
+    )
 
 
 @pytest.mark.no_cover
@@ -255,8 +305,6 @@ def test_what_has_no_preferred_value():
         best(alike, [1, 2, 3])
     with pytest.raises(Unanswerable, match="no comparisons"):
         best(0 * alike, [1, 2, 3])
-    with pytest.raises(Unanswerable, match="most resamples"):
-        best(np.diag([1] * 5, 1), [1, 2, 3, 4, 5, 6])
 
 
 @pytest.mark.parametrize(
@@ -285,10 +333,23 @@ def test_what_are_no_comparisons(change, reason):
 
 
 def test_position_bias_is_the_binomial_test():
-    found = position_bias([0] * 9 + [1])
+    found = position_bias([0] * 9 + [1], [7] * 10)
     assert found.share_first == 0.9
     assert found.p == pytest.approx(2 * 11 / 1024)
     assert found.interval == wilson(9, 10)
-    assert position_bias([0, 1]).p == 1
+    assert position_bias([0, 1], [0, 0]).p == 1
     with pytest.raises(Unanswerable, match="no comparisons"):
-        position_bias([])
+        position_bias([], [])
+
+
+def test_of_several_the_position_bias_is_of_people():
+    chosen = [0] * 9 + [1] + [0] * 6 + [1] * 4 + [0] * 5 + [1] * 5
+    groups = np.repeat([0, 1, 2], 10)
+    found = position_bias(chosen, groups)
+    assert found.share_first == pytest.approx(20 / 30)
+    assert found.interval == mean_share([0.9, 0.6, 0.5], [10, 10, 10])
+    assert found.p == pytest.approx(ttest_1samp([0.9, 0.6, 0.5], 0.5).pvalue)
+    assert position_bias(chosen[:20], groups[:20])[1:] == (None, None)
+    assert position_bias([0, 1] * 3, np.repeat([0, 1, 2], 2)).p is None
+    with pytest.raises(ValueError, match="one length"):
+        position_bias([0, 1], [0])

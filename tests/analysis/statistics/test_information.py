@@ -12,11 +12,10 @@ from vbraille.analysis.statistics.information import (
     cohen_kappa,
     presented_bits,
     transmitted_bits,
-    transmitted_bits_corrected,
 )
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
-ALL = [accuracy, cohen_kappa, presented_bits, transmitted_bits, transmitted_bits_corrected]
+ALL = [accuracy, cohen_kappa, presented_bits, transmitted_bits]
 PUBLISHED = Path(__file__).parent.parent / "published.json"
 
 
@@ -52,12 +51,10 @@ def test_all_comes_through_without_error(letters):
     counts = 5 * np.eye(letters, dtype=int)
     assert presented_bits(counts) == pytest.approx(np.log2(letters))
     assert transmitted_bits(counts) == pytest.approx(np.log2(letters))
-    assert transmitted_bits_corrected(counts) == pytest.approx(np.log2(letters))
 
 
 def test_nothing_comes_through_of_guesses():
     assert transmitted_bits(np.full((4, 5), 7)) == pytest.approx(0, abs=1e-12)
-    assert transmitted_bits_corrected(np.full((4, 5), 7)) == 0
     assert cohen_kappa(np.full((4, 4), 7)) == 0
 
 
@@ -68,24 +65,6 @@ def test_information_is_symmetric_and_the_divergence_from_independence(rng):
     found = transmitted_bits(counts)
     assert found == pytest.approx(entropy(joint.ravel(), apart.ravel(), base=2))
     assert found == pytest.approx(transmitted_bits(counts.T))
-
-
-def test_the_correction_by_hand():
-    counts = [[6, 2, 0], [1, 7, 0]]
-    # Four cells, two rows and two columns are filled: one spare of 32 ln 2.
-    less = transmitted_bits(counts) - transmitted_bits_corrected(counts)
-    assert less == pytest.approx(1 / (32 * np.log(2)))
-
-
-@pytest.mark.no_cover
-def test_the_correction_takes_most_of_the_bias_away(rng):
-    joint = (np.eye(4) * 0.7 + 0.075) / 4
-    truth = 2 - entropy([0.775, 0.075, 0.075, 0.075], base=2)
-    tables = rng.multinomial(150, joint.ravel(), size=400).reshape(-1, 4, 4)
-    raw = np.mean([transmitted_bits(t) for t in tables]) - truth
-    corrected = np.mean([transmitted_bits_corrected(t) for t in tables]) - truth
-    assert raw > 0.03
-    assert abs(corrected) < raw / 3
 
 
 @pytest.mark.parametrize("measure", ALL)

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from scipy import stats
 
-from vbraille.analysis.statistics.intervals import Interval, bootstrap_mean, wilson
+from vbraille.analysis.statistics.intervals import Interval, mean_interval, wilson
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 
@@ -37,48 +38,35 @@ def test_a_proportion_is_of_counts(correct, trials):
         wilson(correct, trials)
 
 
-def test_bootstrap_is_the_same_on_every_run_and_hangs_on_its_seed(rng):
-    values = rng.normal(60, 15, 7)
-    assert bootstrap_mean(values, seed=4) == bootstrap_mean(list(values), seed=4)
-    assert bootstrap_mean(values, seed=4) != bootstrap_mean(values, seed=5)
-
-
-def test_bootstrap_comes_near_the_normal_interval_of_many_values(rng):
-    values = rng.normal(60, 15, 400)
-    half = 1.96 * values.std() / 20
-    found = bootstrap_mean(values, seed=1, resamples=4000)
-    assert found.low == pytest.approx(values.mean() - half, abs=0.15)
-    assert found.high == pytest.approx(values.mean() + half, abs=0.15)
-
-
-def test_bootstrap_of_two_values_is_known():
-    # A quarter of the resamples are each value alone, half are their mean.
-    assert bootstrap_mean([0, 1], seed=1, level=0.95) == Interval(0, 1, 0.95)
-    assert bootstrap_mean([0, 1], seed=1, level=0.4) == Interval(0.5, 0.5, 0.4)
-
-
-def test_bootstrap_of_values_all_the_same_is_that_value():
-    assert bootstrap_mean([0.1] * 6, seed=1) == Interval(0.1, 0.1, 0.95)
+def test_the_interval_of_a_mean_is_students(rng):
+    values = rng.normal(7, 2, 6)
+    theirs = stats.ttest_1samp(values, 0).confidence_interval(0.9)
+    found = mean_interval(values, 0.9)
+    assert (found.low, found.high) == pytest.approx((theirs.low, theirs.high))
 
 
 @pytest.mark.parametrize(
     ("values", "reason"),
-    [([], "no participants"), ([3.0], "one participant; a bootstrap needs two")],
+    [
+        ([], "no participants"),
+        ([3.0], "one participant"),
+        ([3.0, 4.0], "two participants; how people differ is seen of three or more"),
+        ([0.1] * 6, "all values are the same"),
+        ([0.0] * 3, "all values are the same"),
+    ],
 )
-def test_bootstrap_needs_two_values(values, reason):
+def test_what_leaves_no_interval_of_a_mean(values, reason):
     with pytest.raises(Unanswerable, match=reason):
-        bootstrap_mean(values, seed=1)
+        mean_interval(values)
 
 
-def test_bootstrap_refuses_what_it_cannot_use():
+def test_the_interval_of_a_mean_refuses_what_it_cannot_use():
     with pytest.raises(ValueError, match="finite"):
-        bootstrap_mean([1, np.nan], seed=1)
-    with pytest.raises(ValueError, match="dimensions"):
-        bootstrap_mean(np.ones((2, 2)), seed=1)
-    with pytest.raises(ValueError, match="resamples"):
-        bootstrap_mean([1, 2], seed=1, resamples=0)
+        mean_interval([1, 2, np.nan])
+    with pytest.raises(ValueError, match="dimension"):
+        mean_interval(np.ones((2, 2)))
     with pytest.raises(ValueError, match="level"):
-        bootstrap_mean([1, 2], seed=1, level=1)
+        mean_interval([1, 2, 3], level=1)
 
 
 def test_an_interval_checks_itself():

@@ -6,7 +6,7 @@ import shutil
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.report.shown import csv_name, picture_name
+from vbraille.analysis.report.shown import KINDS, csv_name, picture_name
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.tojson import to_json
 from vbraille.analysis.report.tomarkdown import to_markdown
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import Results
 
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
-_DPI = 110  # of the PNGs: sharp on a screen and quick; the SVGs are for print
+_DPI = 300  # of the PNGs: what a journal asks for
 
 
 def write_report(
@@ -85,9 +85,9 @@ def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
     pictures: dict[str, bytes] = {}
     for picture in results.pictures():
         figure = draw_chart(picture.chart)
-        pictures[picture.name] = to_bytes(figure, "svg")
-        drawn[picture_name(picture, "svg")] = pictures[picture.name]
-        drawn[picture_name(picture, "png")] = to_bytes(figure, "png", _DPI)
+        for kind in KINDS:
+            drawn[picture_name(picture, kind)] = to_bytes(figure, kind, _DPI)
+        pictures[picture.name] = drawn[picture_name(picture, "svg")]
     return {
         PAGE: encode(to_html(results, pictures, (TEXT, NUMBERS, *extra))),
         TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *extra))),

@@ -15,14 +15,22 @@ if TYPE_CHECKING:
 
 ROWS = 60  # of a table that a report shows: more are heard by nobody, and its CSV has all
 WARNINGS = "Read this first"
+FINDINGS = "What was found"
+ABOUT = "Data, versions and what was left out"
+KINDS = ("svg", "png", "pdf")  # of a figure's files
+ABOVE = "This figure stands at the head of the report:"
 CONTENTS = "Contents"
 UNKNOWN = "What cannot be said here"
 NO_ROWS = "This table has no rows."
 FILES = "Files beside this report"
 
 
-def without_empty_notes(table: Table) -> Table:
-    """Return the table without its notes, if no row has one: empty cells are a noise in speech."""
+def in_report(table: Table) -> Table:
+    """Return the table without its notes, if no row has one: empty cells are a noise in speech.
+
+    Of a confusion matrix rare answers are gathered.
+    """
+    table = table.gathered()
     if not table.rows or table.columns[-1].name != NOTE or any(row[-1] for row in table.rows):
         return table
     kept = tuple(row[:-1] for row in table.rows)

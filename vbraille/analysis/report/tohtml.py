@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 Element = ElementTree.Element
 _INLINE = {"a", "span", "strong"}  # after all others the source has a new line
-_WIDE = 6  # columns; a table of more can be scrolled with the keyboard
 # Nothing is fetched, whatever a name in the data should be.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'"
 _STYLE = """
@@ -33,7 +32,7 @@ _STYLE = """
 @media (prefers-color-scheme: dark) { :root { --ink: #eee; --paper: #161616; --line: #8c8c8c;
   --shade: #3a3a3a; --faint: #a8a8a8; --link: #9ec5ff; } }
 body { color: var(--ink); background: var(--paper); font: 1rem/1.5 sans-serif; margin: 0 auto;
-  max-width: 80rem; padding: 1rem; }
+  max-width: 80rem; padding: 1rem; overflow-wrap: anywhere; }
 p, li, dd, figcaption { max-width: 45rem; }
 a { color: var(--link); }
 dt { font-weight: bold; }
@@ -41,11 +40,12 @@ dt { font-weight: bold; }
 .skip:focus { position: static; }
 .hidden { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%);
   white-space: nowrap; }
-.wide { overflow-x: auto; }
+.wide { overflow-x: auto; max-width: 100%; position: relative; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; padding: 0.3rem 0; }
 th, td { border: 1px solid var(--line); padding: 0.2rem 0.5rem; text-align: left;
-  vertical-align: top; }
+  vertical-align: top; overflow-wrap: normal; max-width: 20rem; }
+.matrix th, .matrix td { padding: 0.1rem 0.25rem; }
 thead th { vertical-align: bottom; }
 .number { text-align: right; }
 .zero { color: var(--faint); }
@@ -54,8 +54,15 @@ thead th { vertical-align: bottom; }
 .most { outline-width: 3px; outline-offset: -4px; }
 figure { margin: 1rem 0; }
 img { max-width: 100%; height: auto; background: #fff; }
-@media print { nav, .skip { display: none; } body { max-width: none; padding: 0; }
-  figure, tr { break-inside: avoid; } .wide { overflow: visible; } }
+@page { size: A4; margin: 15mm; }
+@media print { nav, .skip { display: none; }
+  body { max-width: none; padding: 0; font-size: 10pt; }
+  h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; }
+  img { max-height: 170mm; } .wide { overflow: visible; }
+  table { font-size: 7pt; }
+  th, td { padding: 0.2mm 0.8mm; overflow-wrap: anywhere; max-width: none; }
+  .matrix table { font-size: 6.5pt; table-layout: fixed; width: 100%; }
+  .matrix th, .matrix td { padding: 0.2mm 0.3mm; } }
 """
 
 
@@ -71,8 +78,11 @@ def to_html(results: Results, figures: Mapping[str, bytes], beside: Sequence[str
     """
     titles = {table.name: table.title for table in results.tables()}
     main = _e("main", id="results", tabindex="-1")
+    main.extend(_findings(results, titles, figures))
+    main.extend(_about(results))
+    main.append(_contents(results))
     for number, section in enumerate(results.sections, 1):
-        main.append(_section(section, number, titles, figures))
+        main.append(_section(section, number, titles, figures, results.main))
     if beside:
         main.append(_e("h2", shown.FILES, id="files"))
         main.append(_list(_e("li", _link(name)) for name in beside))
@@ -92,7 +102,6 @@ def to_html(results: Results, figures: Mapping[str, bytes], beside: Sequence[str
             "body",
             _e("a", "Skip to the results", href="#results", class_="skip"),
             _header(results),
-            _contents(results),
             main,
         ),
         lang="en",
@@ -101,14 +110,33 @@ def to_html(results: Results, figures: Mapping[str, bytes], beside: Sequence[str
 
 
 def _header(results: Results) -> Element:
-    about = _e("dl")
-    for word, what in results.about:
-        about.extend([_e("dt", word), _e("dd", what)])
-    header = _e("header", _e("h1", results.title), about)
+    header = _e("header", _e("h1", results.title))
     if results.warnings:
         header.append(_e("h2", shown.WARNINGS, id="warnings"))
         header.append(_list(_e("li", warning) for warning in results.warnings))
     return header
+
+
+def _findings(
+    results: Results, titles: Mapping[str, str], figures: Mapping[str, bytes]
+) -> Iterator[Element]:
+    """What was found, and its main figure; nothing if nothing was."""
+    picture = results.main_picture()
+    if results.findings or picture is not None:
+        yield _e("h2", shown.FINDINGS, id="findings")
+    if results.findings:
+        yield _list(_e("li", finding) for finding in results.findings)
+    if picture is not None:
+        yield _figure(picture, titles[picture.table], figures[picture.name])
+
+
+def _about(results: Results) -> Iterator[Element]:
+    if results.about:
+        about = _e("dl")
+        for word, what in results.about:
+            about.extend([_e("dt", word), _e("dd", what)])
+        yield _e("h2", shown.ABOUT, id="about")
+        yield about
 
 
 def _contents(results: Results) -> Element:
@@ -122,18 +150,26 @@ def _contents(results: Results) -> Element:
 
 
 def _section(
-    section: Section, number: int, titles: Mapping[str, str], figures: Mapping[str, bytes]
+    section: Section,
+    number: int,
+    titles: Mapping[str, str],
+    figures: Mapping[str, bytes],
+    main: str,
 ) -> Element:
     made = _e("section", _e("h2", section.title, id=f"section-{number}"), _e("p", section.text))
     for table in section.tables:
         made.extend(_table(table))
     for picture in section.pictures:
-        made.append(_figure(picture, titles[picture.table], figures[picture.name]))
+        if picture.name == main:
+            there = _e("a", picture.title, href=f"#figure-{picture.name}")
+            made.append(_e("p", f"{shown.ABOVE} ", there, "."))
+        else:
+            made.append(_figure(picture, titles[picture.table], figures[picture.name]))
     return made
 
 
 def _table(table: Table) -> Iterator[Element]:
-    table = shown.without_empty_notes(table)
+    table = shown.in_report(table)
     yield _e("h3", table.title, id=f"table-{table.name}")
     for text in filter(None, (table.about, shown.marking(table))):
         yield _e("p", text)
@@ -146,10 +182,10 @@ def _table(table: Table) -> Iterator[Element]:
         for row in shown.rows(table):
             body.append(_row(table, row, heads))
         made = _e("table", _e("caption", shown.caption(table)), _e("thead", names), body)
-        if len(table.columns) > _WIDE:
-            about = f"table-{table.name}"
-            made = _e("div", made, class_="wide", tabindex="0", role="group", aria_labelledby=about)
-        yield made
+        # Whatever its width, it scrolls within itself, by the keyboard too.
+        about = f"table-{table.name}"
+        looks = "wide matrix" if table.marks else "wide"
+        yield _e("div", made, class_=looks, tabindex="0", role="group", aria_labelledby=about)
     else:
         yield _e("p", shown.NO_ROWS)
     if table.notes:
@@ -191,14 +227,19 @@ def _figure(picture: Picture, title: str, svg: bytes) -> Element:
                 "Its numbers: ",
                 _e("a", f"table “{title}”", href=f"#table-{picture.table}"),
                 ". The figure: ",
-                _link(shown.picture_name(picture, "svg")),
-                ", ",
-                _link(shown.picture_name(picture, "png")),
+                *_files(picture),
                 ".",
             ),
         ),
         id=f"figure-{picture.name}",
     )
+
+
+def _files(picture: Picture) -> Iterator[Element | str]:
+    for number, kind in enumerate(shown.KINDS):
+        if number:
+            yield ", "
+        yield _link(shown.picture_name(picture, kind))
 
 
 def _side(kind: Kind) -> str:

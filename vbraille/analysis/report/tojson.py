@@ -19,8 +19,10 @@ def to_json(results: Results) -> Iterator[str]:
     """Text of the results, in the report's order, table by table; a missing value is null."""
     head = {
         "title": results.title,
-        "about": dict(results.about),
         "warnings": results.warnings,
+        "findings": results.findings,
+        "about": dict(results.about),
+        "main_figure": results.main or None,
         "figures": {
             picture.name: {"title": picture.title, "text": picture.text, "table": picture.table}
             for picture in results.pictures()

@@ -23,10 +23,12 @@ def to_lines(results: Results) -> Iterator[str]:
     `ROWS` rows are counted, not told; so is what each number means, which the report has.
     """
     yield results.title
-    for word, sentence in results.about:
-        yield f"{word}: {sentence}"
     for warning in results.warnings:
         yield f"warning: {warning}"
+    for finding in results.findings:
+        yield f"found: {finding}"
+    for word, sentence in results.about:
+        yield f"{word}: {sentence}"
     for section in results.sections:
         for table in section.tables:
             yield f"table {table.name}: {table.title}"

@@ -31,15 +31,25 @@ def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
     """
     titles = {table.name: table.title for table in results.tables()}
     parts = [f"# {escape(results.title)}"]
-    parts.append(_items(f"**{escape(word)}**: {escape(what)}" for word, what in results.about))
     if results.warnings:
         parts += [f"## {shown.WARNINGS}", _items(map(escape, results.warnings))]
+    picture = results.main_picture()
+    if results.findings or picture is not None:
+        parts += [f"## {shown.FINDINGS}", _items(map(escape, results.findings))]
+    if picture is not None:
+        parts += _picture(picture, titles[picture.table])
+    if results.about:
+        about = (f"**{escape(word)}**: {escape(what)}" for word, what in results.about)
+        parts += [f"## {shown.ABOUT}", _items(about)]
     for section in results.sections:
         parts += [f"## {escape(section.title)}", escape(section.text)]
         for table in section.tables:
             parts += _table(table)
         for picture in section.pictures:
-            parts += _picture(picture, titles[picture.table])
+            if picture.name == results.main:
+                parts.append(f"{shown.ABOVE} {escape(picture.title)}.")
+            else:
+                parts += _picture(picture, titles[picture.table])
     if beside:
         parts += [f"## {shown.FILES}", _items(map(_link, beside))]
     return "\n\n".join(filter(None, parts)) + "\n"
@@ -52,7 +62,7 @@ def escape(text: str) -> str:
 
 
 def _table(table: Table) -> Iterator[str]:
-    table = shown.without_empty_notes(table)
+    table = shown.in_report(table)
     yield f"### {escape(table.title)}"
     yield escape(table.about)
     yield escape(shown.marking(table))
@@ -83,8 +93,8 @@ def _picture(picture: Picture, title: str) -> Iterator[str]:
     yield escape(picture.text)
     yield (
         f"Its numbers: [{escape(title)}]({quote(f'tables/{picture.table}.csv')}). "
-        f"The figure: {_link(shown.picture_name(picture, 'svg'))}, "
-        f"{_link(shown.picture_name(picture, 'png'))}."
+        f"The figure: "
+        f"{', '.join(_link(shown.picture_name(picture, kind)) for kind in shown.KINDS)}."
     )
 
 

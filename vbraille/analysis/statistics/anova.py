@@ -10,14 +10,18 @@ sphericity, so that the contrasts would be needed beside it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.stats import chi2, f
+from scipy.stats import f
 
 from vbraille.analysis.statistics.design import arrange
+from vbraille.analysis.statistics.effectsizes import partial_eta2_interval
+from vbraille.analysis.statistics.sphericity import sphericity
+from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -46,10 +50,12 @@ class Effect:
         F, and its p if sphericity holds.
     epsilon, p_corrected
         Greenhouse and Geisser's, and p with both degrees of freedom times it.
-    mauchly_w, mauchly_chi2, mauchly_df, mauchly_p
-        Mauchly's test of sphericity.
-    partial_eta2
-        SS_effect / (SS_effect + SS_error).
+    huynh_feldt, p_huynh_feldt
+        The same of Huynh and Feldt's.
+    mauchly_w, mauchly_chi2, mauchly_df, mauchly_p, mauchly_p_exact
+        Mauchly's test of sphericity; see `sphericity`.
+    partial_eta2, partial_low, partial_high
+        SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F.
     generalised_eta2
         SS_effect over itself, the participants' and all errors' (Olejnik and
         Algina 2003, all factors manipulated).
@@ -65,19 +71,25 @@ class Effect:
     p: float | None
     epsilon: float | None
     p_corrected: float | None
+    huynh_feldt: float | None
+    p_huynh_feldt: float | None
     mauchly_w: float | None
     mauchly_chi2: float | None
     mauchly_df: int | None
     mauchly_p: float | None
+    mauchly_p_exact: float | None
     partial_eta2: float | None
+    partial_low: float | None
+    partial_high: float | None
     generalised_eta2: float | None
     note: str
 
     def __post_init__(self) -> None:
         if self.df1 < 1 or self.df2 < self.df1:
             raise ValueError(f"degrees of freedom {self.df1}, {self.df2} of {self.name}")
-        if self.epsilon is not None and not 0 < self.epsilon <= 1:
-            raise ValueError(f"epsilon {self.epsilon} of {self.name} is not in 0…1")
+        for epsilon in (self.epsilon, self.huynh_feldt):
+            if epsilon is not None and not 0 < epsilon <= 1:
+                raise ValueError(f"epsilon {epsilon} of {self.name} is not in 0…1")
 
     @property
     def df1_corrected(self) -> float | None:
@@ -112,16 +124,6 @@ class Anova:
     dropped: tuple[tuple[str, tuple[Cell, ...]], ...]
     averaged: tuple[tuple[str, int], ...]
     effects: tuple[Effect, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Sphericity:
-    epsilon: float
-    w: float | None = None
-    chi2: float | None = None
-    df: int | None = None
-    p: float | None = None
-    note: str = ""
 
 
 def anova(
@@ -161,12 +163,13 @@ def anova(
     error = [_deviations(z) for z in contrasts]
     all_errors = sum(error) + _deviations(between)
     rounding = ROUNDING * float((cube**2).sum())
+    cells = math.prod(cube.shape[1:])
     return Anova(
         design.participants,
         design.dropped,
         design.averaged,
         tuple(
-            _effect(tuple(names[i] for i in subset), z, all_errors, rounding)
+            _effect(tuple(names[i] for i in subset), z, all_errors, rounding, cells)
             for subset, z in zip(subsets, contrasts, strict=True)
         ),
     )
@@ -198,7 +201,11 @@ def _deviations(z: NDArray[np.float64]) -> float:
 
 
 def _effect(
-    factors: tuple[str, ...], z: NDArray[np.float64], all_errors: float, rounding: float
+    factors: tuple[str, ...],
+    z: NDArray[np.float64],
+    all_errors: float,
+    rounding: float,
+    cells: int,
 ) -> Effect:
     """Test of one effect from its contrast scores, float64[n, df1]."""
     n, df1 = z.shape
@@ -208,71 +215,41 @@ def _effect(
     generalised = of_effect / total if total > rounding else None
     name = " × ".join(factors)
     if of_error <= rounding:
+        empty: dict[str, Any] = dict.fromkeys(Effect.__slots__)
+        known = {"name": name, "factors": factors, "df1": df1, "df2": df2}
         alike = "all participants differ alike between its levels; F has no value"
-        return Effect(
-            name=name,
-            factors=factors,
-            df1=df1,
-            df2=df2,
-            f=None,
-            p=None,
-            epsilon=None,
-            p_corrected=None,
-            mauchly_w=None,
-            mauchly_chi2=None,
-            mauchly_df=None,
-            mauchly_p=None,
-            partial_eta2=None,
-            generalised_eta2=generalised,
-            note=alike,
-        )
+        return Effect(**empty | known | {"generalised_eta2": generalised, "note": alike})
     ratio = (of_effect / df1) / (of_error / df2)
-    sphericity = _sphericity(z, one_factor=len(factors) == 1)
-    epsilon = sphericity.epsilon
+    found = sphericity(z, cells=cells, one_factor=len(factors) == 1)
+    p, p_greenhouse, p_huynh = (
+        float(f.sf(ratio, epsilon * df1, epsilon * df2))
+        for epsilon in (1.0, found.epsilon, found.huynh_feldt)
+    )
+    low, high, note = None, None, found.note
+    try:
+        interval = partial_eta2_interval(ratio, df1, df2)
+        low, high = interval.low, interval.high
+    except Unanswerable as reason:
+        note = "; ".join(filter(None, (note, f"no interval of partial eta²: {reason}")))
     return Effect(
         name=name,
         factors=factors,
         df1=df1,
         df2=df2,
         f=ratio,
-        p=float(f.sf(ratio, df1, df2)),
-        epsilon=epsilon,
-        p_corrected=float(f.sf(ratio, epsilon * df1, epsilon * df2)),
-        mauchly_w=sphericity.w,
-        mauchly_chi2=sphericity.chi2,
-        mauchly_df=sphericity.df,
-        mauchly_p=sphericity.p,
+        p=p,
+        epsilon=found.epsilon,
+        p_corrected=p_greenhouse,
+        huynh_feldt=found.huynh_feldt,
+        p_huynh_feldt=p_huynh,
+        mauchly_w=found.w,
+        mauchly_chi2=found.chi2,
+        mauchly_df=found.df,
+        mauchly_p=found.p,
+        mauchly_p_exact=found.p_exact,
         partial_eta2=of_effect / (of_effect + of_error),
+        partial_low=low,
+        partial_high=high,
         generalised_eta2=generalised,
-        note=sphericity.note,
+        note=note,
     )
-
-
-def _sphericity(z: NDArray[np.float64], *, one_factor: bool) -> _Sphericity:
-    """Whether an effect's contrasts vary alike and apart, as F supposes.
-
-    With S the covariance of d contrasts over n participants, Greenhouse and Geisser
-    1959 estimate Box's (1954) ε = tr(S)² / (d tr(S²)); Mauchly 1940 tests
-    W = |S| / (tr(S)/d)^d, and -(n - 1 - (2d² + d + 2)/(6d)) ln W is chi-square with
-    d(d + 1)/2 - 1 degrees of freedom (Anderson 2003, 10.7).
-    """
-    n, d = z.shape
-    if d == 1:
-        only = "two levels" if one_factor else "one contrast"
-        return _Sphericity(1.0, note=f"{only}: sphericity holds by itself")
-    deviations = z - z.mean(axis=0)
-    spread = np.linalg.svd(deviations, compute_uv=False) ** 2  # (n - 1) times S's eigenvalues
-    shares = spread / spread.sum()
-    epsilon = min(1.0, 1 / (d * float((shares**2).sum())))
-    if n - 1 < d:
-        return _Sphericity(
-            epsilon, note=f"{n} participants are too few to test the sphericity of {d} contrasts"
-        )
-    if shares.min() <= 1e-12 * shares.max():
-        return _Sphericity(
-            epsilon, note="some contrasts follow from the others; sphericity cannot be tested"
-        )
-    log_w = min(0.0, float(np.log(d * shares).sum()))
-    df = d * (d + 1) // 2 - 1
-    statistic = -(n - 1 - (2 * d**2 + d + 2) / (6 * d)) * log_w
-    return _Sphericity(epsilon, float(np.exp(log_w)), statistic, df, float(chi2.sf(statistic, df)))

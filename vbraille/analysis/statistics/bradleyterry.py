@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.stats import binomtest
+from scipy.stats import binomtest, ttest_1samp
 
 from vbraille.analysis.statistics.firth import connected, fit
-from vbraille.analysis.statistics.intervals import Interval, wilson
+from vbraille.analysis.statistics.intervals import (
+    FEWEST_PARTICIPANTS,
+    LEVEL,
+    ROUNDING,
+    Interval,
+    mean_interval,
+    wilson,
+)
 from vbraille.analysis.statistics.scores import check_level, finite_scores
+from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
@@ -18,8 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-# Fewer participants than this say little of how participants differ.
-FEWEST_PARTICIPANTS = 5
 SAME = 1e-8
 """Strengths that differ by less are equal; the fit goes on until steps are far below it."""
 
@@ -60,22 +66,25 @@ class Preference:
     Parameters
     ----------
     value, interval
-        In the unit of the values, mm.
+        In the unit of the values, mm; None for no interval.
     how
-        What the interval comes from, a clause for a report.
+        What the interval comes from, a clause for a report; empty if there is none.
+    note
+        Why there is no interval, and what else to know of it; else empty.
     """
 
     value: float
-    interval: Interval
+    interval: Interval | None
     how: str
+    note: str
 
 
 class PositionBias(NamedTuple):
-    """How often the first of a pair was chosen: its share, Wilson's interval, exact p."""
+    """How often the first of a pair was chosen: its share, its interval, p; None for none."""
 
     share_first: float
-    interval: Interval
-    p: float
+    interval: Interval | None
+    p: float | None
 
 
 def bradley_terry(wins: ArrayLike) -> Scale:
@@ -128,16 +137,16 @@ def preferred(
     *,
     seed: int,
     resamples: int = 2000,
-    level: float = 0.95,
+    level: float = LEVEL,
 ) -> Preference:
-    """Preferred value: the vertex of a parabola through the top of the scale.
+    """Preferred value: the mean over participants of where their own scale is highest.
 
-    The parabola goes through the highest strength and its two neighbours among the
-    ordered values, so that two neighbours chosen equally often give the value
-    between them; at an end it is the end. The interval is the percentile
-    bootstrap (Efron and Tibshirani 1993, ch. 13) over participants if there are five,
-    else over each participant's own comparisons, which says nothing of how
-    other participants would choose.
+    A parabola goes through the highest strength of a participant's scale and its two
+    neighbours among the ordered values, so that two neighbours chosen equally often give the
+    value between them; at an end it is the end. The interval is Student's, over three
+    participants or more, for the population that they come from; of one participant it is the
+    percentile bootstrap over the comparisons (Efron and Tibshirani 1993, ch. 13), for this
+    participant. Both end where the tested values do.
 
     Parameters
     ----------
@@ -150,19 +159,16 @@ def preferred(
     groups : int[n]
         Whose comparison each is.
     seed
-        Of the resampling: the same seed, the same interval.
+        Of the resampling of one participant's: the same seed, the same interval.
     resamples
-        How many. Those that leave some values uncompared are left out, and `how`
-        says how many.
+        How many. Those that leave some values uncompared are left out.
     level
         Confidence.
 
     Raises
     ------
     Unanswerable
-        If there are no comparisons, `bradley_terry` cannot make a scale of them,
-        all values are as strong, or more than half of the resamples leave some
-        values uncompared.
+        If there are no comparisons, or no participant's make a scale with a highest value.
     ValueError
         If the columns are not those of comparisons of these values.
     """
@@ -175,37 +181,59 @@ def preferred(
     wins = _wins_of_each(values.size, first, second, chosen, groups)
     order = np.argsort(values)
     values, wins = values[order], wins[:, order][:, :, order]
-    scale = bradley_terry(wins.sum(axis=0))
-    if np.ptp(scale.strengths) <= SAME:
-        raise Unanswerable("all values were chosen equally often; none is preferred")
-    rng = np.random.default_rng(seed)
-    drawn = _resampled(wins, resamples, rng)
-    usable = connected(drawn)
-    if usable.mean() < 0.5:
-        raise Unanswerable("too few comparisons; most resamples leave some values uncompared")
-    peaks = _peaks(values, fit(drawn[usable])[0])
-    tail = (1 - level) / 2
-    low, high = np.quantile(peaks, [tail, 1 - tail])
-    left_out = resamples - int(usable.sum())
-    return Preference(
-        float(_peaks(values, scale.strengths[None])[0]),
-        Interval(float(low), float(high), level),
-        _how(len(wins), left_out, resamples),
-    )
+    _check_all(wins.sum(axis=0))
+    own = _own_peaks(values, wins.astype(np.float64))
+    notes = []
+    if own.size < len(wins):
+        left = len(wins) - own.size
+        notes.append(
+            f"without {left} of {len(wins)} participants, whose own comparisons prefer no value"
+        )
+    at_end = int(np.isin(own, values[[0, -1]]).sum())
+    value, ends, how = float(own.mean()), None, ""
+    if at_end:
+        whose = "it" if len(wins) == 1 else f"the value of {at_end} of {own.size} participants"
+        notes.append(f"{whose} is at the end of what was tested, and the best may lie beyond")
+    if at_end == own.size:
+        notes.append("no interval")
+    elif len(wins) == 1:
+        try:
+            ends = _of_comparisons(values, wins[0], seed, resamples, level)
+            how = "bootstrap over the comparisons of one participant"
+        except Unanswerable as reason:
+            notes.append(f"no interval: {reason}")
+    else:
+        try:
+            ends = mean_interval(own, level)
+            how = f"Student's t over {own.size} participants' own values"
+        except Unanswerable as reason:
+            notes.append(f"no interval: {reason}")
+    if ends is not None and (ends.low <= values[0] or ends.high >= values[-1]):
+        ends = Interval(max(ends.low, values[0]), min(ends.high, values[-1]), level)
+        if not at_end:
+            notes.append("the interval reaches the end of what was tested; the best may lie beyond")
+    return Preference(value, ends, how, "; ".join(notes))
 
 
-def position_bias(chosen: ArrayLike) -> PositionBias:
+def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     """Whether the first of two is chosen more or less often than the second.
+
+    Of one participant: the share of the first, Wilson's interval, and the exact binomial test
+    against a half. Of several: the mean of their own shares, its interval for the population that
+    they come from, and Student's t-test of the own shares against a half.
 
     Parameters
     ----------
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
+    groups : int[n]
+        Whose choice each is.
 
     Returns
     -------
     PositionBias
-        Share of the first, 0…1; its interval; p of the exact binomial test against a half.
+        Share of the first, 0…1; its interval and p, None where participants are too few or all
+        alike.
 
     Raises
     ------
@@ -214,12 +242,24 @@ def position_bias(chosen: ArrayLike) -> PositionBias:
     ValueError
         If a choice is neither 0 nor 1.
     """
-    choice = _column("chosen", chosen, 2)
-    n = choice.size
-    if n == 0:
+    choice, who = _column("chosen", chosen, 2), np.asarray(groups)
+    if choice.shape != who.shape:
+        raise ValueError("chosen and groups must be of one length")
+    if choice.size == 0:
         raise Unanswerable("no comparisons")
-    firsts = int((choice == 0).sum())
-    return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+    index = np.unique(who, return_inverse=True)[1]
+    trials = np.bincount(index)
+    own = np.bincount(index, choice == 0) / trials
+    if own.size == 1:
+        firsts, n = int((choice == 0).sum()), choice.size
+        return PositionBias(firsts / n, wilson(firsts, n), float(binomtest(firsts, n).pvalue))
+    if own.size < FEWEST_PARTICIPANTS:
+        return PositionBias(float(own.mean()), None, None)
+    interval = mean_share(own, trials)
+    if np.ptp(own) <= ROUNDING:
+        return PositionBias(float(own.mean()), interval, None)
+    test: Any = ttest_1samp(own, 0.5)
+    return PositionBias(float(own.mean()), interval, float(test.pvalue))
 
 
 def _column(name: str, column: ArrayLike, count: int) -> NDArray[np.int64]:
@@ -248,18 +288,39 @@ def _wins_of_each(
     return wins
 
 
-def _resampled(
-    wins: NDArray[np.int64], resamples: int, rng: np.random.Generator
-) -> NDArray[np.float64]:
-    """Wins of as many made-up studies, float64[resamples, k, k]."""
-    people, k, _ = wins.shape
-    if people >= FEWEST_PARTICIPANTS:
-        times = rng.multinomial(people, np.full(people, 1 / people), size=resamples)
-        return np.tensordot(times, wins, axes=1).astype(np.float64)
+def _check_all(wins: NDArray[np.int64]) -> None:
+    """Refuse comparisons of all participants that prefer nothing."""
+    if np.ptp(bradley_terry(wins).strengths) <= SAME:
+        raise Unanswerable("all values were chosen equally often; none is preferred")
+
+
+def _own_peaks(values: NDArray[np.float64], wins: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where the scale of each participant who has one is highest, float64[participants]."""
+    whole = wins[connected(wins)]
+    if len(whole):
+        strengths = fit(whole)[0]
+        strengths = strengths[np.ptp(strengths, axis=1) > SAME]
+        if len(strengths):
+            return _peaks(values, strengths)
+    raise Unanswerable("too few comparisons of each participant for a scale of their own")
+
+
+def _of_comparisons(
+    values: NDArray[np.float64], wins: NDArray[np.int64], seed: int, resamples: int, level: float
+) -> Interval:
+    """Percentile bootstrap over one participant's comparisons."""
+    rng = np.random.default_rng(seed)
     # Comparisons drawn with replacement are multinomial counts of their outcomes.
-    flat = wins.reshape(people, -1)
-    drawn = sum(rng.multinomial(int(w.sum()), w / w.sum(), size=resamples) for w in flat)
-    return np.reshape(drawn, (resamples, k, k)).astype(np.float64)
+    drawn = rng.multinomial(int(wins.sum()), wins.ravel() / wins.sum(), size=resamples)
+    drawn = drawn.reshape(resamples, *wins.shape).astype(np.float64)
+    usable = connected(drawn)
+    if usable.mean() < 0.5:
+        raise Unanswerable("too few comparisons; most resamples leave some values uncompared")
+    tail = (1 - level) / 2
+    low, high = np.quantile(_peaks(values, fit(drawn[usable])[0]), [tail, 1 - tail]).tolist()
+    if high <= low:
+        raise Unanswerable("too few comparisons that differ; all resamples prefer the same value")
+    return Interval(low, high, level)
 
 
 def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -283,15 +344,3 @@ def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArr
     share = slope_left / np.where(flat | at_end, 1, bend)
     vertex = (left + mid) / 2 + share * (right - left) / 2
     return np.where(at_end, values[top], np.where(flat, mid, vertex))
-
-
-def _how(people: int, left_out: int, resamples: int) -> str:
-    """What an interval comes from."""
-    if people >= FEWEST_PARTICIPANTS:
-        over = f"bootstrap over {people} participants"
-    elif people == 1:
-        over = "bootstrap over the comparisons of one participant"
-    else:
-        over = f"bootstrap over the comparisons within {people} participants, too few to resample"
-    rest = f", without {left_out} of {resamples} resamples that left some values uncompared"
-    return over + (rest if left_out else "")

@@ -7,7 +7,6 @@ are answers that are never right, such as "not read".
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +17,16 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-def _checked(counts: ArrayLike) -> NDArray[np.int64]:
-    """Counts as int64[rows, columns], not empty."""
+def check_counts(counts: ArrayLike) -> NDArray[np.int64]:
+    """Counts as int64[rows, columns], not empty.
+
+    Raises
+    ------
+    Unanswerable
+        If there are no answers.
+    ValueError
+        If these are no counts, or there are fewer columns than rows.
+    """
     table = np.asarray(counts)
     if table.ndim != 2 or table.shape[1] < table.shape[0]:
         raise ValueError(f"counts of shape {table.shape}; each row needs a column of its own")
@@ -48,7 +55,7 @@ def accuracy(counts: ArrayLike) -> float:
     ValueError
         If these are no counts, or there are fewer columns than rows.
     """
-    table = _checked(counts)
+    table = check_counts(counts)
     return float(np.trace(table) / table.sum())
 
 
@@ -65,7 +72,7 @@ def cohen_kappa(counts: ArrayLike) -> float:
     ValueError
         If these are no counts, or there are fewer columns than rows.
     """
-    table = _checked(counts)
+    table = check_counts(counts)
     total = int(table.sum())
     presented, answered = table.sum(axis=1), table.sum(axis=0)[: table.shape[0]]
     # In whole numbers, so that agreement by chance alone is seen exactly.
@@ -85,7 +92,7 @@ def presented_bits(counts: ArrayLike) -> float:
     ValueError
         If these are no counts, or there are fewer columns than rows.
     """
-    return _entropy_bits(_checked(counts).sum(axis=1))
+    return _entropy_bits(check_counts(counts).sum(axis=1))
 
 
 def transmitted_bits(counts: ArrayLike) -> float:
@@ -93,7 +100,7 @@ def transmitted_bits(counts: ArrayLike) -> float:
 
     T = H(presented) + H(answered) - H(both), each with the observed shares in
     place of probabilities. It is too high for few answers: see
-    `transmitted_bits_corrected`.
+    `transmission`.
 
     Raises
     ------
@@ -102,29 +109,7 @@ def transmitted_bits(counts: ArrayLike) -> float:
     ValueError
         If these are no counts, or there are fewer columns than rows.
     """
-    table = _checked(counts)
+    table = check_counts(counts)
     presented, answered = table.sum(axis=1), table.sum(axis=0)
     bits = _entropy_bits(presented) + _entropy_bits(answered) - _entropy_bits(table)
     return max(0.0, bits)  # below 0 by rounding only
-
-
-def transmitted_bits_corrected(counts: ArrayLike) -> float:
-    """Transmitted information less its bias (Miller 1955), in bits per character.
-
-    Each entropy is too low by (m - 1) / (2 N ln 2), with m the cells that are
-    not empty and N the answers; so T is too high by
-    (m_both - m_presented - m_answered + 1) / (2 N ln 2). What is left is clipped
-    to 0…`presented_bits`, between which the truth must lie.
-
-    Raises
-    ------
-    Unanswerable
-        If there are no answers.
-    ValueError
-        If these are no counts, or there are fewer columns than rows.
-    """
-    table = _checked(counts)
-    filled = np.count_nonzero
-    spare = filled(table) - filled(table.sum(axis=1)) - filled(table.sum(axis=0)) + 1
-    bits = transmitted_bits(table) - spare / (2 * table.sum() * math.log(2))
-    return float(min(max(0.0, bits), presented_bits(table)))

@@ -1,4 +1,4 @@
-"""Intervals of a proportion and of a mean."""
+"""Intervals of a proportion of one person's answers, and of a mean over people."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import bootstrap
+from scipy import stats
 from statsmodels.stats.proportion import proportion_confint
 
 from vbraille.analysis.statistics.scores import check_level, finite_scores
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike
 
 LEVEL = 0.95
+FEWEST_PARTICIPANTS = 3
+ROUNDING = 1e-12  # values that differ by a smaller share of them are the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,77 +75,39 @@ def wilson(correct: int, trials: int, level: float = 0.95) -> Interval:
     return Interval(float(low), float(high), level)
 
 
-def wilson_each(
-    correct: NDArray[np.int64], trials: NDArray[np.int64], level: float = LEVEL
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """`wilson` of many proportions at once.
-
-    Parameters
-    ----------
-    correct, trials : int64[n]
-        How many of how many; of at least one.
-
-    Returns
-    -------
-    low, high : float64[n]
-    """
-    low, high = proportion_confint(correct, trials, alpha=1 - level, method="wilson")
-    return np.clip(low, 0.0, 1.0), np.clip(high, 0.0, 1.0)
-
-
-def bootstrap_mean(
-    values: Sequence[float] | NDArray[np.float64],
-    *,
-    seed: int,
-    resamples: int = 9999,
-    level: float = 0.95,
-) -> Interval:
-    """Percentile bootstrap of the mean over participants (Efron and Tibshirani 1993, ch. 13).
-
-    The percentile method, not BCa: the acceleration of BCa is estimated from the
-    very few participants of such a study, and it has no value where many of them
-    score alike (all at 100 %, say). The interval stays within the scores; with
-    fewer than about ten participants it is known to be somewhat too narrow.
+def mean_interval(values: ArrayLike, level: float = LEVEL) -> Interval:
+    """Student's interval of the mean over the population that participants come from.
 
     Parameters
     ----------
     values : float[n]
-        One value of each participant, in any unit.
-    seed
-        Of the resampling: the same seed, the same interval.
-    resamples
-        How many.
+        One value of each participant, in any unit, such as seconds.
     level
         Confidence.
 
     Returns
     -------
     Interval
-        In the unit of the values. A single point if all values are the same.
+        In the unit of the values.
 
     Raises
     ------
     Unanswerable
-        If there are fewer than two values.
+        If there are fewer than three values, or all are the same: how people differ is not seen.
     """
     check_level(level)
-    if resamples < 1:
-        raise ValueError(f"{resamples} resamples; one at least is needed")
     row = finite_scores("values", values)
-    if row.size < 2:
-        raise Unanswerable(
-            f"{'one participant' if row.size else 'no participants'}; a bootstrap needs two"
-        )
-    if np.ptp(row) == 0:
-        return Interval(float(row[0]), float(row[0]), level)
-    found = bootstrap(
-        (row,),
-        np.mean,
-        n_resamples=resamples,
-        batch=1000,
-        vectorized=True,
-        confidence_level=level,
-        method="percentile",
-        rng=np.random.default_rng(seed),
-    ).confidence_interval
-    return Interval(float(found.low), float(found.high), level)
+    if row.size < FEWEST_PARTICIPANTS:
+        raise Unanswerable(too_few(row.size))
+    error = float(row.std(ddof=1)) / math.sqrt(row.size)
+    if np.ptp(row) <= ROUNDING * np.abs(row).max():
+        raise Unanswerable("all values are the same; how people differ is not seen")
+    half = float(stats.t.ppf((1 + level) / 2, row.size - 1)) * error
+    mean = float(row.mean())
+    return Interval(mean - half, mean + half, level)
+
+
+def too_few(participants: int) -> str:
+    """Why there is no interval of so few participants."""
+    few = ("no participants", "one participant", "two participants")[participants]
+    return f"{few}; how people differ is seen of three or more"

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import gammaln
 from scipy.stats import ttest_rel
 
+from vbraille.analysis.statistics.effectsizes import d_z_interval
 from vbraille.analysis.statistics.scores import check_level, finite_scores
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
@@ -40,6 +41,8 @@ class PairedTest:
         Student's t, its degrees of freedom, the two-sided p.
     d_z
         Cohen's d of the differences, mean / sd (Cohen 1988, 2.3.5).
+    d_low, d_high
+        Its confidence interval, by noncentral t; None where t is too large for one.
     g_z
         `d_z` with Hedges' correction for few participants; None for two
         participants, where the correction leaves nothing of it.
@@ -55,6 +58,8 @@ class PairedTest:
     df: int
     p: float
     d_z: float
+    d_low: float | None
+    d_high: float | None
     g_z: float | None
 
     def __post_init__(self) -> None:
@@ -117,6 +122,10 @@ def paired_t(
         raise Unanswerable("all differences are the same; t has no value")
     test = ttest_rel(one, two)
     interval = test.confidence_interval(level)
+    try:
+        of_d = d_z_interval(float(test.statistic), n, level)
+    except Unanswerable:
+        of_d = None
     mean = float(differences.mean())
     return PairedTest(
         n=n,
@@ -129,5 +138,7 @@ def paired_t(
         df=n - 1,
         p=float(test.pvalue),
         d_z=mean / sd,
+        d_low=None if of_d is None else of_d.low,
+        d_high=None if of_d is None else of_d.high,
         g_z=hedges_correction(n - 1) * mean / sd if n > 2 else None,
     )

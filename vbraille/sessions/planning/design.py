@@ -133,6 +133,13 @@ class StringList:
         """Cells of the trials of a condition, in the order of the design."""
         return list(self.strings) * self.repeats
 
+    def listed(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
+        """String of the list that these cells are an order of; None if none is, or none changes."""
+        if not self.reorder:
+            return None
+        cells = sorted(masks)
+        return next((string for string in self.strings if sorted(string) == cells), None)
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:

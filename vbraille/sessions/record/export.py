@@ -16,6 +16,8 @@ import numpy as np
 from vbraille.engine.ring import Flag
 from vbraille.errors import InputError, VbrailleError
 from vbraille.geometry import BOUNDS_MM
+from vbraille.sessions.planning.design import StringList
+from vbraille.sessions.planning.spelling import to_braille
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
@@ -58,6 +60,8 @@ COLUMNS = {
     "travel_mm": "of the carriage",
     "parameter": "what two stimuli were compared by, in mm; empty where strings are read",
     "presented": "Unicode braille of the cells asked for; two values, the first one first",
+    "string_set": "Unicode braille of the protocol's string, if its cells come in another order "
+    "at each showing; else empty",
     "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
     "correct": "1 if all places are right, 0 if not; empty for comparisons and without an answer",
     "first_answer": "what had been answered before an undo; else empty",
@@ -237,6 +241,7 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
         row["first_answer"] = _chosen(values, told.first_answer)
     else:
         row["presented"] = trial.presented
+        row["string_set"] = _string_set(record, trial)
         row["answered"] = told.answer or ""
         row["first_answer"] = told.first_answer or ""
         if told.answer is not None:
@@ -244,6 +249,13 @@ def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
         if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
             row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
+
+
+def _string_set(record: Record, trial: Trial) -> str:
+    design = record.protocol.design
+    masks = trial.stimuli[0].masks[slice(*trial.asked)]
+    listed = design.listed(masks) if isinstance(design, StringList) else None
+    return "" if listed is None else to_braille(listed)
 
 
 def _noted(notes: list[Note], trial: int) -> dict[str, str]:

@@ -1,0 +1,168 @@
+"""Whether a device is fit to be read on, by a controller on a clock that is turned by hand."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from tests.devices.test_serialdevice import Bench
+from tests.engine.test_loop import info
+from vbraille.cli.checking import check
+from vbraille.devices.messages import Encoder
+from vbraille.devices.openserial import open_serial
+from vbraille.devices.simulated import SimulatedDevice
+from vbraille.engine.clock import ManualClock
+
+SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
+
+
+class BenchClock:
+    """The clock of a bench: who sleeps on it has the controller go on."""
+
+    def __init__(self, bench):
+        self._bench = bench
+
+    def now_ns(self):
+        return self._bench.now_ns()
+
+    busy_ns = now_ns
+
+    def sleep_until_ns(self, deadline_ns):
+        while self.now_ns() < deadline_ns:
+            self._bench.pause(0.001)
+
+
+@pytest.fixture
+def checked(tmp_path):
+    """Check a device of two actuators whose controller is made as it should not be."""
+    benches = []
+
+    def run(spoil=lambda _bench: None, **changes):
+        bench = Bench(tmp_path / "vb0", **{**SMALL, **changes})
+        benches.append(bench)
+        spoil(bench)
+        said = []
+        device = open_serial(str(bench.link), None, now_ns=bench.now_ns, pause=bench.pause)
+        with device:
+            code = check(device, BenchClock(bench), said.append)
+        return code, said
+
+    yield run
+    for bench in benches:
+        bench.unplug()
+
+
+def test_what_is_as_it_should_be_is_fit_and_measured(checked):
+    code, said = checked()
+    assert (code, said[-1]) == (0, "verdict: fit to be read on")
+    kinds = [line.partition(":")[0] for line in said]
+    assert kinds[:6] == ["actuator", "actuator", "rate", "work", "clock", "place"]
+    assert "clock: 1.000 s pass on it in a second, 0.98 to 1.02 s are allowed" in said
+    assert (
+        "place: 5.0 to 5.0 mm from the left stop, of 300 mm; 2 mm beyond either end are allowed"
+    ) in said
+    (tripped,) = [line for line in said if line.startswith("watchdog: tripped")]
+    assert re.match(r"watchdog: tripped 3 of 3 times, median 5[01]\.0 ms after the last", tripped)
+
+
+def late(bench):
+    bench.controller.watchdog_us = 200_000
+
+
+def early(bench):
+    bench.controller.watchdog_us = 30_000
+
+
+def missing(bench):
+    bench.controller.watchdog_us = None
+
+
+def unacknowledged(bench):
+    bench.controller.acknowledges = False
+
+
+def untaken(bench):
+    bench.controller._take_frame = lambda _frame: b""
+
+
+def far_off(bench):
+    bench.way_mm = 5005.0
+
+
+def a_bit_off(bench):
+    bench.way_mm = -2.5
+
+
+def clock_at(speed):
+    def spoil(bench):
+        tick, receive = bench.controller.tick, bench.controller.receive
+        bench.controller.tick = lambda us, way_mm: tick(round(us * speed), way_mm)
+        bench.controller.receive = lambda chunk, us: receive(chunk, round(us * speed))
+
+    return spoil
+
+
+@pytest.mark.parametrize(
+    ("spoil", "found"),
+    [
+        (unacknowledged, "it acknowledges none of the frames that it is sent; see to its frame_se"),
+        (untaken, "it acknowledges none of the frames that it is sent; see to its frame_sequence"),
+        (
+            far_off,
+            "its carriage is at 5005.0 mm from the left stop, where it cannot be; see to the",
+        ),
+        (a_bit_off, "its carriage is at -2.5 mm from the left stop, where it cannot be"),
+        (clock_at(0.5), "its clock goes 0.50 times as fast as it should; see to its time_us"),
+        (clock_at(0.97), "its clock goes 0.97 times as fast as it should"),
+        (missing, "its watchdog does not trip when no frame comes; nobody may read on it"),
+        (late, "its watchdog trips after 201 ms, too late; 50 ms are right"),
+        (early, "its watchdog trips after 31 ms, too early; 50 ms are right"),
+    ],
+    ids=lambda value: getattr(value, "__name__", None),
+)
+def test_what_is_not_as_it_should_be_is_not_fit(checked, spoil, found):
+    code, said = checked(spoil)
+    assert code == 1
+    assert said[-1].startswith("verdict: not fit to be read on: ")
+    assert found in said[-1]
+
+
+@pytest.mark.parametrize("changes", [{"enabled": b"\0\0"}, {"gain": b"\0\0"}])
+def test_actuators_that_are_all_disabled_are_not_fit_and_not_swung(checked, changes):
+    code, said = checked(**changes)
+    assert code == 1
+    assert said[-1] == "verdict: not fit to be read on: every one of its actuators is disabled"
+    assert not [line for line in said if line.startswith("actuator")]
+
+
+def test_some_disabled_actuators_are_said_with_the_verdict(checked):
+    code, said = checked(enabled=b"\1\0")
+    assert code == 0
+    assert said[-1] == (
+        "verdict: fit to be read on, without 1 of its actuators, which are disabled"
+    )
+    assert said[0] == "actuator: row 1, column 1"
+    assert "actuator: row 1, column 2" not in said
+
+
+def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):
+    def spoil(bench):
+        clock_at(0.99)(bench)
+        bench.way_mm = -1.5
+
+    assert checked(spoil)[0] == 0
+
+
+def test_a_place_that_the_reader_shows_is_not_tested(checked):
+    code, said = checked(encoder=Encoder.INCREMENTAL, left_stop_count=0)
+    assert code == 0
+    assert [line for line in said if line.startswith("place: not tested")]
+
+
+def test_what_a_device_does_not_tell_is_said_with_the_verdict():
+    clock, said = ManualClock(), []
+    with SimulatedDevice(replace(info(), rows=1, columns=2), clock.now_ns) as device:
+        assert check(device, clock, said.append) == 0
+    assert said[-1] == (
+        "verdict: fit to be read on, but what it has taken and its watchdog could not be tested"
+    )

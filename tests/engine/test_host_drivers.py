@@ -1,0 +1,198 @@
+"""Drivers of others in a host process: what they print, raise, start and wait for."""
+
+import os
+import re
+import resource
+import select
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tests import drivers
+from tests.engine.test_host import PATIENCE_S, descriptors, lasting, until
+from tests.engine.test_loop import info
+from vbraille.engine.host import Host, HostDiedError
+from vbraille.errors import DeviceError
+
+_HEAD = """
+import ctypes, os, subprocess, sys, time
+import numpy as np
+from vbraille.devices.simulated import SimulatedDevice
+"""
+
+
+@pytest.fixture
+def driver(tmp_path, monkeypatch):
+    """Install a driver ``other`` of some lines of a class's body; its module's lines."""
+
+    def install(body, head="", kind="SimulatedDevice"):
+        source = f"{_HEAD}{head}\nclass Other({kind}):\n" + "".join(
+            f"    {line}\n" for line in body.splitlines()
+        )
+        source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
+        folder = drivers.install(tmp_path, "other", "open_other", source)["PYTHONPATH"]
+        monkeypatch.setenv("PYTHONPATH", folder)
+        return source.splitlines()
+
+    return install
+
+
+def line_of(lines, part):
+    return next(number for number, line in enumerate(lines, 1) if part in line)
+
+
+def test_what_a_driver_prints_is_no_answer(driver, capfd):
+    driver(
+        """
+def read(self):
+    print("a print", '{"ready": 1}')
+    os.write(1, b"a write\\n")
+    if self.frames == 100:
+        subprocess.run(["echo", "a program"])
+    return super().read()
+""",
+        head='print("while it is loaded")',
+    )
+    with Host("other:", info(), 26) as host:
+        until(host, lasting(300))
+        assert host.info == info()
+    said = capfd.readouterr()
+    for part in ("while it is loaded\n", "a print", "a write\n", "a program\n"):
+        assert part in said.err
+    assert said.out == ""
+
+
+@pytest.mark.parametrize(
+    "body", ["def read(self):\n    return 1 / 0  # mark", "def _release(self):\n    mark"]
+)
+def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, tmp_path, body):
+    lines = driver(body)
+    before = descriptors()
+    with pytest.raises(DeviceError) as raised, Host("other:", info(), 26) as host:
+        until(host, lambda new: new.size and host._mailbox.stop())
+    said = str(raised.value)
+    assert said.startswith("the driver other, which is not vbraille's own, has a fault (")
+    assert f"at {tmp_path}/other.py, line {line_of(lines, 'mark')}; tell whoever wrote it" in said
+    assert descriptors() == before
+
+
+_PARENT = """
+import sys, time
+from tests.engine.test_host import info
+from vbraille.engine.host import Host
+host = Host("other:", info(), 26)
+host.launch()
+print(host.process_id, flush=True)
+host.start()
+while host.tally.ticks < 50:
+    time.sleep(0.01)
+    host.poll()
+print("reading", flush=True)
+time.sleep(600)
+"""
+# It holds all of Python: no thread and no signal's handler of Python's own runs meanwhile.
+_WAIT = "ctypes.PyDLL(None).sleep(600)"
+_STUCK = {
+    "opened": "def __init__(self, wanted):\n    print('stuck', flush=True)\n    {wait}",
+    "closed": "def _release(self):\n    {wait}",
+    "read": "def read(self):\n    if self.frames > 200:\n        {wait}\n    return super().read()",
+}
+
+
+def test_a_driver_that_waits_for_ever_outlives_a_killed_parent_by_seconds(tmp_path):
+    parents, hosts = [], []
+    try:
+        for name, body in _STUCK.items():
+            folder = tmp_path / name
+            folder.mkdir()
+            lines = body.format(wait=_WAIT).splitlines()
+            source = f"{_HEAD}\nclass Other(SimulatedDevice):\n" + "".join(
+                f"    {line}\n" for line in lines
+            )
+            source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
+            path = drivers.install(folder, "other", "open_other", source)["PYTHONPATH"]
+            parent = subprocess.Popen(
+                [sys.executable, "-c", _PARENT],
+                env={**os.environ, "PYTHONPATH": f"{path}:."},
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            parents.append(parent)
+            hosts.append(os.pidfd_open(int(parent.stdout.readline())))
+        for name, parent in zip(_STUCK, parents, strict=True):
+            said = parent.stderr if name == "opened" else parent.stdout
+            assert said.readline() in ("stuck\n", "reading\n")
+        for parent in parents:
+            parent.kill()
+        for host in hosts:
+            assert select.select([host], [], [], PATIENCE_S)[0], "the host goes on for ever"
+    finally:
+        for parent in parents:
+            parent.kill()
+            parent.communicate()
+        for host in hosts:
+            os.close(host)
+
+
+_FORKS = """
+def __init__(self, wanted):
+    super().__init__(wanted)
+    if os.fork() == 0:
+        os.setsid()
+        time.sleep(600)
+        os._exit(0)
+    path, = [p for p in sys.path if os.path.exists(os.path.join(p, "other.py"))]
+    child = open(f"/proc/self/task/{os.getpid()}/children").read().split()[0]
+    open(os.path.join(path, "child"), "w").write(child)
+"""
+
+
+@pytest.fixture
+def child(tmp_path):
+    """Number of the process that a driver forked, which holds the pipe to the parent."""
+    yield lambda: int((tmp_path / "child").read_text())
+    os.kill(int((tmp_path / "child").read_text()), signal.SIGKILL)
+
+
+def spent_s():
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def test_a_host_is_closed_while_a_child_of_its_driver_holds_the_pipe(driver, child):
+    driver(_FORKS)
+    with Host("other:", info(), 26) as host:
+        until(host, lasting(30))
+        begun_s, busy_s = time.monotonic(), spent_s()
+    assert time.monotonic() - begun_s < 4.0  # it did not have to be killed
+    assert spent_s() - busy_s < 1.0
+    os.kill(child(), 0)  # which is still there
+
+
+def test_a_host_s_death_is_seen_while_a_child_of_its_driver_holds_the_pipe(driver, child):
+    driver(_FORKS)
+    with Host("other:", info(), 26) as host:
+        until(host, lasting(30))
+        os.kill(host.process_id, signal.SIGKILL)
+        with pytest.raises(HostDiedError, match="signal 9"):
+            until(host, lambda _new: False)
+        assert child()
+
+
+def test_a_host_that_dies_when_it_starts_is_seen_while_a_child_holds_the_pipe(driver, child):
+    driver(_FORKS + "    os._exit(7)\n")
+    with pytest.raises(HostDiedError, match="exit code 7"):
+        Host("other:", info(), 26).__enter__()
+    assert child()
+
+
+def test_long_notes_come_whole_or_cut(driver):
+    driver("def take_notes(self):\n    return ['\\U0001f600' * 9999] if self.frames == 99 else []")
+    notes = []
+    with Host("other:", info(), 26) as host:
+        until(host, lambda new: notes.extend(host.take_notes()) or lasting(200)(new))
+    assert [re.sub("(\U0001f600)+", "…", note) for note in notes if "\U0001f600" in note] == ["…"]

@@ -1,0 +1,277 @@
+"""What was found, in sentences made of the tables' rows, for the head of a report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.analysis.tables import NOTE, Kind, to_print
+from vbraille.analysis.trials import UNREAD, count, times
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from vbraille.analysis.tables import Row, Table
+
+SURE = 0.05  # p below which a difference is called one
+_TOLD = ("legibility of strings", "duration (s)", "score")  # of the measures; the tables have all
+_MOST = 6  # sentences about pairs of levels, or conditions in one; the tables have all
+_NO_INTERVAL = "no interval"
+
+
+def findings(tables: Iterable[Table]) -> tuple[str, ...]:
+    """Sentences, in the order of the report; what the tables do not have is not told.
+
+    Parameters
+    ----------
+    tables
+        Of the report.
+    """
+    of = {table.name: table for table in tables if table.rows}
+    found = [
+        *_averages(of),
+        *_effects(of),
+        *_differences(of),
+        *_characters(of),
+        *_confusions(of),
+        *_information(of),
+        *_over_time(of),
+        *_preferred(of),
+    ]
+    return tuple(found)
+
+
+def interval_words(
+    row: Row, kind: Kind, unit: str = "", ends: Sequence[str] = ("low", "high")
+) -> str:
+    """Words for a row's 95 % interval; why it has none, as its note says."""
+    low, high = (row.get(end) for end in ends)
+    if low is None or high is None:
+        # A note may tell of the interval of something else too: "no interval of d_z: …".
+        own = tuple(ends) == ("low", "high")
+        reasons = [
+            part
+            for part in _parts(row)
+            if part.startswith(_NO_INTERVAL) and part.startswith(f"{_NO_INTERVAL} of ") != own
+        ]
+        return reasons[0] if reasons else f"{_NO_INTERVAL} is known"
+    return f"95 % interval {to_print(low, kind)} to {to_print(high, kind)}{unit}"
+
+
+def _averages(of: Mapping[str, Table]) -> Iterator[str]:
+    if "averages" not in of:
+        return
+    rows = [row for row in of["averages"].records() if row["legibility"] is not None]
+    told = [
+        f"{to_print(row['legibility'], Kind.PERCENT)} % of strings in {row['condition']} "
+        f"({count(row['participants'], 'participant')}, {interval_words(row, Kind.PERCENT, ' %')})"
+        for row in rows[:_MOST]
+    ]
+    more = f"; {len(rows) - _MOST} more conditions are in the table" if len(rows) > _MOST else ""
+    yield f"On average participants read right {_and(told, ';')}{more}."
+    single = [row for row in of["legibility"].records() if row["trials"]]
+    if len(single) > 1:
+        least, most = (end(single, key=lambda row: row["legibility"]) for end in (min, max))
+        yield f"The least was {_whose(least)}, the most {_whose(most)}."
+    timed = [row for row in rows if row["duration_mean_s"] is not None]
+    if timed:
+        told = [
+            f"{to_print(row['duration_mean_s'], Kind.SECONDS)} s in {row['condition']}"
+            for row in timed[:_MOST]
+        ]
+        yield f"On average a string took {_and(told)}."
+
+
+def _differences(of: Mapping[str, Table]) -> Iterator[str]:
+    for measure, rows in _by_measure(of, "t_tests"):
+        tested = [row for row in rows if row["p"] is not None]
+        differ = [row for row in tested if row["p_corrected"] < SURE]
+        for row in tested if len(tested) <= _MOST else differ[:_MOST]:
+            yield _difference(measure, row)
+        if len(tested) > _MOST:
+            yield (
+                f"Of {len(tested)} pairs of levels {len(differ)} differ in {measure} with p below "
+                f"{SURE:g}, corrected for their number if it is."
+            )
+
+
+def _difference(measure: str, row: Row) -> str:
+    differ = row["p_corrected"] < SURE
+    first, second = row["first"], row["second"]
+    share = measure.startswith("legibility")
+    kind, unit = (Kind.PERCENT, " percentage points") if share else (Kind.NUMBER, _unit(measure))
+    corrected = "" if row["p_corrected"] == row["p"] else f", corrected {_p(row['p_corrected'])}"
+    effect = (
+        ""
+        if row["d_low"] is None
+        else f", {to_print(row['d_low'], Kind.NUMBER)} to {to_print(row['d_high'], Kind.NUMBER)}"
+    )
+    numbers = (
+        f"{interval_words(row, kind)}; t({row['df']}) = {to_print(row['t'], Kind.NUMBER)}, "
+        f"{_p(row['p'])}{corrected}; d_z {to_print(row['d_z'], Kind.NUMBER)}{effect}"
+    )
+    size = to_print(abs(row["mean_difference"]), kind)
+    name = _plain(measure)
+    if differ:
+        way = "higher" if row["mean_difference"] > 0 else "lower"
+        return f"{name} was {size}{unit} {way} in {first} than in {second} ({numbers})."
+    difference = to_print(row["mean_difference"], kind)
+    return (
+        f"That {name[0].lower()}{name[1:]} differs between {first} and {second} is not shown: "
+        f"the difference is {difference}{unit} ({numbers})."
+    )
+
+
+def _effects(of: Mapping[str, Table]) -> Iterator[str]:
+    for measure, rows in _by_measure(of, "anova"):
+        for row in rows:
+            if row["f"] is None:
+                continue
+            sure = row["p_corrected"] < SURE
+            said = "changed with" if sure else "is not shown to change with"
+            corrected = (
+                ""
+                if row["epsilon"] == 1
+                else f", by Greenhouse and Geisser {_p(row['p_corrected'])}"
+            )
+            numbers = (
+                f"F({row['df1']}, {row['df2']}) = {to_print(row['f'], Kind.NUMBER)}, "
+                f"{_p(row['p'])}{corrected}; partial eta² "
+                f"{to_print(row['partial_eta2'], Kind.NUMBER)}, "
+                f"{interval_words(row, Kind.NUMBER, ends=('partial_low', 'partial_high'))}"
+            )
+            yield f"{_plain(measure)} {said} {row['effect']} ({numbers})."
+
+
+def _characters(of: Mapping[str, Table]) -> Iterator[str]:
+    if "characters" not in of or len(of["characters"].rows) < 2:
+        return
+    rows = of["characters"].records()
+    shares = [row["legibility"] for row in rows]
+    ends = []
+    for end in (max, min):
+        names = [row["name"] for row in rows if row["legibility"] == end(shares)]
+        who = _and(names) if len(names) <= _MOST else f"{len(names)} of them"
+        ends.append(f"{who} ({to_print(end(shares), Kind.PERCENT)} %)")
+    if min(shares) < max(shares):
+        yield f"Of {len(rows)} characters the most legible was {ends[0]}, the least {ends[1]}."
+
+
+def _confusions(of: Mapping[str, Table]) -> Iterator[str]:
+    if "errors" in of:
+        first = of["errors"].records()[0]
+        total = sum(row["count"] for row in of["errors"].records())
+        yield (
+            f"Of {count(total, 'place')} answered wrongly the most frequent kind is "
+            f"“{first['error']}”: {first['count']}, {to_print(first['share'], Kind.PERCENT)} %."
+        )
+    if "confusion_characters" in of:
+        table = of["confusion_characters"]
+        wrong = [
+            (number, row[0], column.heading)
+            for row in table.rows
+            for at, (number, column) in enumerate(zip(row, table.columns, strict=True))
+            if at
+            and isinstance(number, int)
+            and number
+            and not table.is_right(row, at)
+            and column.heading != UNREAD
+        ]
+        if wrong:
+            most = max(number for number, *_ in wrong)
+            alike = [(row, column) for number, row, column in wrong if number == most]
+            if len(alike) <= _MOST:
+                told = _and([f"{row} was taken for {column}" for row, column in alike])
+                yield f"Most often {told}: {times(most)}{' each' if len(alike) > 1 else ''}."
+
+
+def _information(of: Mapping[str, Table]) -> Iterator[str]:
+    rows = of["information"].records() if "information" in of else []
+    for row in rows:
+        if row["condition"] != "all" or row["of"] != "characters":
+            continue
+        if row["corrected_bits"] is None:
+            reasons = [part for part in _parts(row) if "corrected bits" in part] or _parts(row)
+            yield f"How much information answers carried is not known: {reasons[0]}."
+        else:
+            yield (
+                f"An answer carried {to_print(row['corrected_bits'], Kind.NUMBER)} of the "
+                f"{to_print(row['presented_bits'], Kind.NUMBER)} bits of a character"
+                f" ({interval_words(row, Kind.NUMBER)})."
+            )
+
+
+def _over_time(of: Mapping[str, Table]) -> Iterator[str]:
+    rows = of["slopes"].records() if "slopes" in of else []
+    known = [row for row in rows if row["p"] is not None]
+    if known:
+        up, down = (
+            sum(row["p"] < SURE and (row["slope"] > 0) == rose for row in known)
+            for rose in (True, False)
+        )
+        yield (
+            f"Of {len(known)} series of a participant's trials in a session and "
+            f"condition, legibility rose in {up} and fell in {down} with p below {SURE:g}, not "
+            f"corrected for their number."
+        )
+
+
+def _preferred(of: Mapping[str, Table]) -> Iterator[str]:
+    for row in of["preferred"].records() if "preferred" in of else []:
+        name = row["parameter"]
+        unit = " mm" if name.endswith("_mm") else ""
+        words = name.removesuffix("_mm").replace("_", " ")
+        who = (
+            f"{count(row['comparisons'], 'comparison')} of "
+            f"{count(row['participants'], 'participant')}"
+        )
+        if row["preferred"] is None:
+            yield f"No {words} is known to be preferred ({who}): {_parts(row)[0]}."
+            continue
+        more = [part for part in _parts(row) if not part.startswith((_NO_INTERVAL, "no p:"))]
+        note = "".join(f"; {part}" for part in more)
+        yield (
+            f"The preferred {words} is {to_print(row['preferred'], Kind.NUMBER)}{unit} "
+            f"({interval_words(row, Kind.NUMBER, unit)}; {who}){note}."
+        )
+
+
+def _by_measure(of: Mapping[str, Table], name: str) -> Iterator[tuple[str, list[Row]]]:
+    rows = of[name].records() if name in of else []
+    for measure in _TOLD:
+        found = [row for row in rows if row["measure"] == measure]
+        if found:
+            yield measure, found
+
+
+def _parts(row: Row) -> list[str]:
+    """Clauses of a row's note."""
+    return str(row.get(NOTE, "")).split("; ")
+
+
+def _whose(row: Row) -> str:
+    return (
+        f"{to_print(row['legibility'], Kind.PERCENT)} % by {row['participant']} in "
+        f"{row['condition']}"
+    )
+
+
+def _plain(measure: str) -> str:
+    """Measure without its unit, to begin a sentence."""
+    name = measure.removesuffix(" (s)")
+    return name[:1].upper() + name[1:]
+
+
+def _unit(measure: str) -> str:
+    return " s" if measure.endswith("(s)") else ""
+
+
+def _p(p: float) -> str:
+    text = to_print(p, Kind.P)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
+
+
+def _and(parts: Sequence[str], comma: str = ",") -> str:
+    """List in words: "a, b and c"."""
+    if len(parts) < 2:
+        return "".join(parts)
+    return f"{f'{comma} '.join(parts[:-1])}{comma * (comma != ',')} and {parts[-1]}"

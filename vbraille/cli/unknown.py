@@ -1,0 +1,68 @@
+"""What is said of characters that the table does not know."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from vbraille.translate import Undefined
+from vbraille.translate.undefined import describe
+
+if TYPE_CHECKING:
+    from vbraille.page import Line
+    from vbraille.translate import Table
+
+_NAMED = 3  # so many characters are named in the sentence, those that are most frequent
+
+
+class Unknown:
+    """Count the characters on lines that the table does not know, each line once.
+
+    Parameters
+    ----------
+    table
+        The table; it knows which characters those are.
+    how
+        What was written for them.
+    """
+
+    def __init__(self, table: Table, how: Undefined) -> None:
+        self._table = table
+        self._how = how
+        self._last = 0
+        self._counts: Counter[str] = Counter()
+
+    def see(self, line: Line) -> None:
+        """Count those of a line, unless it or a later one was counted before."""
+        if line.number <= self._last:
+            return
+        self._last = line.number
+        if self._table.undefined:
+            self._counts.update(c for c in line.text if ord(c) in self._table.undefined)
+
+    @property
+    def sentence(self) -> str | None:
+        """How many there were and what was written for them; None if there were none."""
+        total = self._counts.total()
+        if not total:
+            return None
+        named = [f"{n} of {describe(c)}" for c, n in self._counts.most_common(_NAMED)]
+        others = total - sum(n for _, n in self._counts.most_common(_NAMED))
+        if others:
+            named.append(f"{others} of others")
+        return (
+            f"the table {self._table.name} does not know {total} "
+            f"character{'' if total == 1 else 's'} ({', '.join(named)}), {self._written()}; "
+            f"--undefined chooses mark, name, code or drop"
+        )
+
+    def _written(self) -> str:
+        match self._how:
+            case Undefined.MARK:
+                return f"marked {self._table.marker}"
+            case Undefined.NAME:
+                return "written as names in brackets"
+            case Undefined.CODE:
+                return "written as numbers in brackets"
+            case Undefined.DROP:
+                return "left out"

@@ -1,0 +1,89 @@
+"""Whose fault it is: an exception of somebody else's driver, as a sentence with file and line."""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+from contextlib import contextmanager
+from pathlib import Path
+from traceback import extract_tb
+from typing import TYPE_CHECKING, NoReturn
+
+import vbraille
+from vbraille.errors import DeviceError, VbrailleError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from importlib.metadata import EntryPoint
+
+# Set to anything, it lets a traceback through for whoever mends the driver.
+TRACEBACK = "VBRAILLE_TRACEBACK"
+_OURS = str(Path(vbraille.__file__).parent)
+_PYTHON = sysconfig.get_path("stdlib")
+_PACKAGES = sysconfig.get_path("purelib")
+
+
+@contextmanager
+def naming(driver: EntryPoint) -> Iterator[None]:
+    """Have whatever a driver raises come as a `DeviceError` with its name, file and line.
+
+    What vbraille's own drivers raise, and what is a sentence already, passes.
+
+    Raises
+    ------
+    DeviceError
+        In the place of any other exception of the driver.
+    """
+    try:
+        yield
+    except VbrailleError:
+        raise
+    except (Exception, SystemExit) as error:
+        if driver.module.partition(".")[0] == "vbraille" or os.environ.get(TRACEBACK):
+            raise
+        _blame(driver, error)
+
+
+def _blame(driver: EntryPoint, error: Exception | SystemExit) -> NoReturn:
+    where = _place(driver, error)
+    if where is None and isinstance(error, OSError):
+        raise error  # our own output, perhaps
+    what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
+    if where is None:
+        where = f"{driver.value}; no line of its own was at work"
+    raise DeviceError(
+        f"the driver {driver.name}, which is not vbraille's own, has a fault ({what}) "
+        f"at {where}; tell whoever wrote it, or set {TRACEBACK}=1 to see more"
+    ) from error
+
+
+def _place(driver: EntryPoint, error: BaseException) -> str | None:
+    """File and line of the driver's that were at work last; None if there are none."""
+    if isinstance(error, SyntaxError) and error.filename:
+        return f"{error.filename}, line {error.lineno}"
+    lines = [(line.filename, line.lineno) for line in extract_tb(error.__traceback__)]
+    home = _home(driver)
+    at_work = [line for line in lines if home is not None and line[0].startswith(home)]
+    if not at_work:  # a package that the driver calls, or the driver itself while it is loaded
+        ours = max(number for number, (name, _) in enumerate(lines) if name.startswith(_OURS))
+        at_work = [line for line in lines[ours + 1 :] if not _is_python(line[0])]
+    if not at_work:
+        return None
+    name, number = at_work[-1]
+    return f"{name}, line {number}"
+
+
+def _is_python(name: str) -> bool:
+    """Whether a file is of Python's own."""
+    library = name.startswith(_PYTHON) and not name.startswith(_PACKAGES)
+    return library or name.startswith("<frozen")
+
+
+def _home(driver: EntryPoint) -> str | None:
+    """Folder of a driver that is a package, or file of one that is a module."""
+    module = sys.modules.get(driver.module.partition(".")[0])
+    name = getattr(module, "__file__", None)
+    if name is None:
+        return None
+    return str(Path(name).parent) if hasattr(module, "__path__") else name

@@ -1,0 +1,94 @@
+"""What the members of a driver must be, told from `Device` itself."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+
+from vbraille.devices.base import Device, Particulars, Placing
+
+# What a member is given, where it is given anything.
+_ARGUMENTS = {"write": 1, "_send": 1, "follow": 1}
+_METHODS = (
+    "read",
+    "write",
+    "rest",
+    "close",
+    "_send",
+    "_release",
+    "set_zero",
+    "take_notes",
+    "counts",
+    "follow",
+)
+_VALUES: dict[str, tuple[type, ...]] = {
+    "rested": (int,),
+    "placing": (Placing,),
+    "taking": (bool,),
+    "acknowledges": (bool,),
+    "acknowledged_ns": (int, type(None)),
+    "watchdog_trips": (int, type(None)),
+    "followed": (bool,),
+    "particulars": (Particulars, type(None)),
+}
+
+
+def misfits(device: Device) -> Iterator[str]:
+    """What members of a device are something else than `Device` says, a sentence each.
+
+    A property in the place of a method would be called, and a method in the place of a
+    property would always be true; neither shows before somebody reads on the device.
+    Nothing of the device is called.
+    """
+    for name in _METHODS:
+        method = _plain(inspect.getattr_static(device, name))
+        if not callable(method):
+            kind = "a property" if isinstance(method, property | cached_property) else f"{method!r}"
+            yield f"{name} must be a method, and is {kind}"
+        elif not _takes(method, _given(device, name)):
+            given = ", ".join(["self", *["value"] * _ARGUMENTS.get(name, 0)])
+            yield f"{name} must be a method that can be called as {name}({given})"
+    for name in ("info", *_VALUES):
+        if callable(_plain(inspect.getattr_static(device, name))):
+            yield f"{name} must be a property or a value, and is a method"
+
+
+def wrong_values(device: Device) -> Iterator[str]:
+    """What an opened device gives that is something else than `Device` says, a sentence each."""
+    for name, kinds in _VALUES.items():
+        value = getattr(device, name)
+        if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+            wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
+            yield f"{name} must be {wanted}, and is {value!r}"
+    notes = device.take_notes()
+    if isinstance(notes, str) or not isinstance(notes, Sequence):
+        yield f"take_notes must give a list of sentences, and gives {notes!r}"
+    elif not all(isinstance(note, str) for note in notes):
+        yield f"take_notes must give sentences as text, and gives {notes!r}"
+    counts = device.counts()
+    if not isinstance(counts, Mapping) or not all(
+        isinstance(name, str) and isinstance(count, int) for name, count in counts.items()
+    ):
+        yield f"counts must give whole numbers by name, and gives {counts!r}"
+
+
+def _plain(member: object) -> object:
+    return member.__func__ if isinstance(member, staticmethod | classmethod) else member
+
+
+def _given(device: Device, name: str) -> int:
+    """How many arguments a member gets, the device itself among them if it is of its class."""
+    static = isinstance(inspect.getattr_static(device, name), staticmethod)
+    return _ARGUMENTS.get(name, 0) + (name not in vars(device) and not static)
+
+
+def _takes(method: Callable[..., object], given: int) -> bool:
+    """Whether a method can be called with so many arguments."""
+    try:
+        inspect.signature(method).bind(*[None] * given)
+    except TypeError:
+        return False
+    except ValueError:  # compiled, and without a signature
+        return True
+    return True

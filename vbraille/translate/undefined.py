@@ -1,0 +1,69 @@
+"""Characters that a braille table does not know, and what stands in their place."""
+
+from __future__ import annotations
+
+import unicodedata
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# In order of preference: the first of which the table can write every character is the marker.
+# Three full cells are how typists of braille cross out; few tables know no question mark.
+MARKERS = ("[?]", "(?)", "?", "⠿⠿⠿")
+_BRACKETS = ("[]", "()")
+# What typewriters put for the marks of typesetters.
+_PLAIN = str.maketrans(
+    {
+        "\u2010": "-", "\u2011": "-", "\u2012": "-", "\u2013": "-", "\u2014": "--", "\u2015": "--",
+        "\u2018": "'", "\u2019": "'", "\u201a": "'", "\u02bc": "'", "\u2212": "-", "\u2044": "/",
+        "\u201c": '"', "\u201d": '"', "\u201e": '"', "\u00ab": '"', "\u00bb": '"',
+    }
+)  # fmt: skip
+
+
+class Undefined(StrEnum):
+    """What is written for a character that the table does not know."""
+
+    MARK = "mark"
+    """The same short marker, such as ``[?]``, for each run of them."""
+    NAME = "name"
+    """Its name in Unicode, such as ``[grinning face]``."""
+    CODE = "code"
+    """Its number in Unicode, such as ``[U+1F600]``."""
+    DROP = "drop"
+    """Nothing."""
+
+
+def spellings(character: str, how: Undefined) -> Iterator[str]:
+    """Texts that may stand for a character, best first; a table takes the first it can write."""
+    if how is Undefined.DROP:
+        yield ""
+    if how is Undefined.NAME and (name := unicodedata.name(character, "")):
+        yield from (f"{opening}{name.lower()}{closing}" for opening, closing in _BRACKETS)
+    if how is Undefined.NAME or how is Undefined.CODE:
+        number = number_of(character)
+        for text in (number, number.lower()):  # the capitals of some tables have eight dots
+            yield from (f"{opening}{text}{closing}" for opening, closing in _BRACKETS)
+    yield from MARKERS
+
+
+def likenesses(character: str) -> Iterator[str]:
+    """Other spellings of the same text: a ligature's letters, plain quotes, a small letter."""
+    seen = {character}
+    plain = unicodedata.normalize("NFKC", character)
+    for text in (plain, plain.translate(_PLAIN), plain.lower()):
+        if text not in seen:
+            seen.add(text)
+            yield text
+
+
+def number_of(character: str) -> str:
+    """Number of a character as Unicode writes it, such as U+1F600."""
+    return f"U+{ord(character):04X}"
+
+
+def describe(character: str) -> str:
+    """A character's number, and its name where it has one."""
+    return f"{number_of(character)} {unicodedata.name(character, '').lower()}".rstrip()
