@@ -137,9 +137,9 @@ class Bench:
     def begin(self, device, frame=HALF) -> None:
         """Tick until frames are taken, and then some: a conversation begins at rest."""
         for _ in range(100):
+            self.run(device, 1, frame)
             if device.taking:
                 break
-            self.run(device, 1, frame)
         assert device.taking
         self.run(device, 3, frame)
 

@@ -321,8 +321,11 @@ class SerialDevice(Device):
         self._notes.add("watchdog", note, now_ns)
 
     def _tell_taking(self) -> None:
-        """Say whether FRAMEs hold the actuators, or would if there were anything to feel."""
-        self.taking = self._link is _Link.LIVE and (self._delivery.taking or self._idle)
+        """Say whether FRAMEs hold the actuators, or would if there were anything to feel.
+
+        A device that is away is silent, which says enough.
+        """
+        self.taking = self._link is not _Link.LIVE or self._delivery.taking or self._idle
         self.watchdog_trips = self._trips_before + self._delivery.trips
 
     def _note_away(self, note: str, now_ns: int) -> None:
