@@ -100,7 +100,7 @@ def tables() -> Iterator[tuple[str, Table]]:
             _grid(
                 f"Preferred value of 0.5 to 3 mm, by mean and SD over people ({SLOW:,} studies)",
                 [(n,) for n in (1, *people.PEOPLE[:4])],
-                "{} people",
+                "people: {}",
                 list(product((1.75, 2.0, 2.6), (0.2, 0.4, 0.8))),
                 "{} mm, SD {}",
                 lambda row, column: pool.submit(people.preference, *row, *column, SLOW),

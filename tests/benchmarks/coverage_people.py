@@ -11,7 +11,7 @@ from scipy.special import expit, logit
 
 from tests.conftest import SEED
 from vbraille.analysis.statistics.bradleyterry import preferred
-from vbraille.analysis.statistics.intervals import LEVEL, mean_interval
+from vbraille.analysis.statistics.intervals import LEVEL, mean_duration
 from vbraille.analysis.statistics.paired import paired_t
 from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
 from vbraille.analysis.statistics.unanswerable import Unanswerable
@@ -81,7 +81,7 @@ def durations(people: int, sd: float, studies: int) -> Found:
     own = np.exp(random.normal(2.0, sd, (studies, people)))
     seconds = own * np.exp(random.normal(0.0, 0.5, (40, studies, people))).mean(axis=0)
     truth = float(np.exp(2.0 + sd**2 / 2 + 0.125))
-    ends = [mean_interval(row) for row in seconds]
+    ends = [mean_duration(row) for row in seconds]
     return Found(studies, sum(e.low <= truth <= e.high for e in ends), studies)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from vbraille.analysis.averages import over_participants
 from vbraille.analysis.legibility import unequal_notes
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, too_few
 from vbraille.analysis.statistics.shares import mean_share
-from vbraille.analysis.statistics.unanswerable import Unanswerable
 from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.trials import name_cell, name_string
 from vbraille.translate.cells import UNICODE_BLANK
@@ -172,10 +172,9 @@ def _count(
 def _share(means: NDArray[np.float64], numbers: NDArray[np.int64]) -> Row:
     """Mean of the participants' means, with its interval or why there is none."""
     row: Row = {"participants": means.size, "legibility": float(means.sum()) / means.size}
-    try:
-        interval = mean_share(means, numbers)
-    except Unanswerable as reason:
-        return row | {"note": f"no interval: {reason}"}
+    if means.size < FEWEST_PARTICIPANTS:
+        return row | {"note": f"no interval: {too_few(means.size)}"}
+    interval = mean_share(means, numbers)
     return row | {"low": interval.low, "high": interval.high}
 
 

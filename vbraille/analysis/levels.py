@@ -11,7 +11,7 @@ import numpy as np
 from vbraille.analysis.averages import mean_or_none
 from vbraille.analysis.statistics.anova import anova
 from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.intervals import Interval, mean_interval
+from vbraille.analysis.statistics.intervals import Interval, mean_duration, mean_interval
 from vbraille.analysis.statistics.paired import PairedTest, paired_t
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
@@ -31,8 +31,8 @@ MEANS = Schema(
     "Means of the levels",
     "Over participants' own means; scores are averaged over other factors, and repeated ones "
     "within the participant; who misses a cell of a level is left out of it. The interval is of "
-    "the population's mean: for shares by a logit-normal model of how people differ, for others "
-    "Student's.",
+    "the population's mean: for shares by a logit-normal model of how people differ, for durations "
+    "Cox's, for others Student's.",
     (
         Column("measure", "measure", "what is compared, with its unit; legibility from 0 to 1"),
         Column("factor", "factor", "by what"),
@@ -140,7 +140,7 @@ def level_means(measures: Sequence[Scores]) -> Table:
                 }
                 notes = _without(scores.participants, means[level])
                 try:
-                    interval = _interval(means[level], trials)
+                    interval = _interval(scores, means[level], trials)
                     row |= {"low": interval.low, "high": interval.high}
                 except Unanswerable as reason:
                     notes.append(f"no interval: {reason}")
@@ -260,10 +260,12 @@ def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
     return answers
 
 
-def _interval(means: dict[str, float], trials: dict[str, int] | None) -> Interval:
-    """Interval of the population's mean, of a share or of anything else."""
+def _interval(scores: Scores, means: dict[str, float], trials: dict[str, int] | None) -> Interval:
+    """Interval of the population's mean: of a share, of a duration, or of anything else."""
     own = list(means.values())
-    return mean_interval(own) if trials is None else mean_share(own, [trials[who] for who in means])
+    if trials is not None:
+        return mean_share(own, [trials[who] for who in means])
+    return mean_duration(own) if scores.durations else mean_interval(own)
 
 
 def _pairs(

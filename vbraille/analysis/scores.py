@@ -35,6 +35,8 @@ class Scores:
         Level of each score, [n], by the factor's name.
     scores : [n]
         NaN where one is missing.
+    durations
+        Whether scores are durations, which are above 0 and skewed.
     trials : [n]
         How many answers each share is of; None if scores are no shares of answers.
     """
@@ -44,6 +46,7 @@ class Scores:
     factors: Mapping[str, Sequence[str]]
     scores: Sequence[float]
     trials: Sequence[int] | None = None
+    durations: bool = False
 
 
 def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Scores]:
@@ -90,7 +93,7 @@ def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Sc
         ]
         columns = dict(zip(factors, names[1:], strict=True))
         of = counts.tolist() if share else None
-        scores.append(Scores(measure, names[0], columns, means.tolist(), of))
+        scores.append(Scores(measure, names[0], columns, means.tolist(), of, not share))
     return scores
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from vbraille.analysis.statistics.intervals import Interval, mean_interval, wilson
+from vbraille.analysis.statistics.intervals import Interval, mean_duration, mean_interval, wilson
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 
@@ -67,6 +67,21 @@ def test_the_interval_of_a_mean_refuses_what_it_cannot_use():
         mean_interval(np.ones((2, 2)))
     with pytest.raises(ValueError, match="level"):
         mean_interval([1, 2, 3], level=1)
+
+
+def test_the_interval_of_durations_is_coxs():
+    # y = 1, 2, 3: variance 1, so that log of the mean is 2.5, its error √(1/3 + 1/4).
+    found = mean_duration(np.exp([1.0, 2, 3]))
+    half = 4.302653 * np.sqrt(1 / 3 + 1 / 4)
+    assert np.log([found.low, found.high]) == pytest.approx([2.5 - half, 2.5 + half])
+    with pytest.raises(Unanswerable, match="a duration is 0"):
+        mean_duration([0.0, 1, 2])
+    with pytest.raises(Unanswerable, match="two participants"):
+        mean_duration([1.0, 2])
+    with pytest.raises(Unanswerable, match="all values are the same"):
+        mean_duration([2.0] * 3)
+    with pytest.raises(Unanswerable, match="differ too much"):
+        mean_duration([1e-90, 1.0, 1e90])
 
 
 def test_an_interval_checks_itself():

@@ -20,7 +20,7 @@ def test_it_is_within_a_tenth_of_a_bit(rng, name):
     found = [transmission(table, seed=1) for table in tables]
     assert np.mean([f.bits for f in found]) == pytest.approx(bits_of(shares), abs=0.1)
     for one in found:
-        assert one.interval.low <= one.bits <= one.interval.high <= one.interval.low + 0.4
+        assert one.interval.low <= one.bits <= one.interval.high <= one.interval.low + 0.35
 
 
 def test_chance_is_not_information(rng):

@@ -107,6 +107,44 @@ def mean_interval(values: ArrayLike, level: float = LEVEL) -> Interval:
     return Interval(mean - half, mean + half, level)
 
 
+def mean_duration(values: ArrayLike, level: float = LEVEL) -> Interval:
+    """Interval of a mean of durations, which are skewed: Cox's, with Student's t (Olsson 2005).
+
+    Their logarithms y are taken for normal over the population, of mean μ and variance s². The
+    mean duration is exp(μ + s²/2), whose logarithm has the standard error
+    √(s²/n + s⁴/(2 (n - 1))).
+
+    Parameters
+    ----------
+    values : float[n]
+        One mean duration of each participant, in seconds.
+    level
+        Confidence.
+
+    Raises
+    ------
+    Unanswerable
+        If there are fewer than three values, one is 0, or all are the same.
+    """
+    check_level(level)
+    row = finite_scores("durations", values)
+    if row.size < FEWEST_PARTICIPANTS:
+        raise Unanswerable(too_few(row.size))
+    if row.min() <= 0:
+        raise Unanswerable("a duration is 0; its interval is by logarithms")
+    if np.ptp(row) <= ROUNDING * row.max():
+        raise Unanswerable("all values are the same; how people differ is not seen")
+    y = np.log(row)
+    variance = float(y.var(ddof=1))
+    middle = float(y.mean()) + variance / 2
+    error = math.sqrt(variance / row.size + variance**2 / (2 * (row.size - 1)))
+    half = float(stats.t.ppf((1 + level) / 2, row.size - 1)) * error
+    try:
+        return Interval(math.exp(middle - half), math.exp(middle + half), level)
+    except OverflowError:
+        raise Unanswerable("durations differ too much for an interval of their mean") from None
+
+
 def too_few(participants: int) -> str:
     """Why there is no interval of so few participants."""
     few = ("no participants", "one participant", "two participants")[participants]

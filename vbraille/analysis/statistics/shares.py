@@ -31,7 +31,7 @@ MEANS, SPREADS = 240, 32  # points of the grid
 _FINE, _LARGEST = 0.2, 8.0  # σ is spaced evenly below the first, by equal shares above; its end
 _NOISE, _STEEP = 1.25, 0.45  # of the prior of σ
 _STEPS, _NEAR = 25, 1e-3  # of Newton's method, in log odds; quadratic, so that more is not needed
-_NODES = 11
+_NODES, _MANY, _NODES_OF_MANY = 11, 100, 5  # where there are many right and wrong it is normal
 
 
 class Grid(NamedTuple):
@@ -119,7 +119,9 @@ def log_likelihood(correct: float, trials: float) -> NDArray[np.float32]:
             break
     p = expit(peak)
     width = 1 / np.sqrt(trials * p * (1 - p) + precision)
-    nodes, weights = np.polynomial.hermite_e.hermegauss(_NODES)
+    nodes, weights = np.polynomial.hermite_e.hermegauss(
+        _NODES if min(correct, trials - correct) < _MANY else _NODES_OF_MANY
+    )
     top, total = _log_density(correct, trials, mu, precision, peak), np.zeros_like(mu)
     for node, weight in zip(nodes.tolist(), weights.tolist(), strict=True):
         at = peak + width * node
