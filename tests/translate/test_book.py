@@ -2,6 +2,7 @@
 
 import io
 import random
+import re
 
 import pytest
 
@@ -62,7 +63,8 @@ class TestCells:
 
     def test_hard_wrapped_lines_are_one_text(self, english, table):
         wrapped = Book(Document.from_text(english), table)
-        lines = [" ".join(paragraph.split()) for paragraph in english.split("\n\n")]
+        items = re.sub(r"\n(?=\d\. |- )", "\n\n", english)  # each of a list is a paragraph
+        lines = [" ".join(paragraph.split()) for paragraph in items.split("\n\n")]
         joined = Book(Document.from_text("\n\n".join(lines)), table)
         n = 0
         while (found := wrapped.paragraph(n)) is not None:
