@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS
+from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS, WATCHDOG_MS
 
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
@@ -76,6 +76,11 @@ class Delivery:
         self.taking = self.at_rest = False
         self.rest_due = tell
         self._resting_us = self._held_us = self._told_ns = self._offered = self._sent_ns = None
+
+    def stall(self, now_ns: int) -> None:
+        """Send no FRAME either; the device's watchdog has time to see to the rest."""
+        self.stop(tell=False)
+        self._told_ns = now_ns + WATCHDOG_MS * _NS_PER_MS
 
     def stalled(self, now_ns: int) -> bool:
         """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
