@@ -34,7 +34,7 @@ def spoken(path, first, last, labels=("line", "cells", "text")):
 def test_without_a_terminal_it_runs_through_and_says_each_line(text):
     done = program.run("read", text, "--hand", "sweep:500", "--lines", "2-3")
     assert done.returncode == 0
-    assert done.stderr == "line width: 26 cells\n"
+    assert done.stderr == "line width: 26 cells, table en-ueb-g2.ctb\n"
     *lines, summary = of_lines(done.stdout)
     assert lines == spoken(text, 2, 3)
     found = re.fullmatch(SUMMARY, summary)
@@ -66,7 +66,7 @@ def test_the_other_model_and_the_tuning(call, text):
     options = "--model vbd --dot-row 3 --texture 0.5 --contrast 0.5 --rate 500 --lines 3"
     said = call("read", text, *FAST, *options.split())
     assert said.code == 0
-    assert said.err == "line width: 28 cells\n"
+    assert said.err == "line width: 28 cells, table en-ueb-g2.ctb\n"
     assert "line: 3" in said.out
 
 
@@ -115,7 +115,7 @@ def test_keys_at_a_terminal(tmp_path, text):
             return terminal.until(rf"(^|\n){re.escape(said)}\r\n")
 
         start = terminal.until("h says the keys\r\n")
-        assert start.splitlines()[0] == "line width: 26 cells"
+        assert start.splitlines()[0] == "line width: 26 cells, table en-ueb-g2.ctb"
         assert terminal.settings() != terminal.before
         helped = press("h", "q: stop reading").splitlines()
         assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
@@ -206,7 +206,7 @@ def test_standard_input_is_read_without_a_terminal_too(text):
 
 def test_a_line_of_one_cell_is_said_in_the_singular(call, text):
     done = call("read", text, *FAST, "--travel", "18", "--lines", "1")
-    assert done.err == "line width: 1 cell\n"
+    assert done.err == "line width: 1 cell, table en-ueb-g2.ctb\n"
 
 
 def test_help_says_the_keys_and_how_a_slow_hand_is_called():

@@ -143,19 +143,19 @@ def test_the_page_is_laid_out_for_the_travel_that_there_is(tmp_path, text):
     with simulated(tmp_path, "--travel", "60") as (spec, _):
         done = program.run("read", text, "--device", spec)
         assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 4 cells\n"
+        assert done.stderr == "line width: 4 cells, table en-ueb-g2.ctb\n"
         said = [line for line in done.stdout.splitlines() if line.startswith("text: ")]
         assert " ".join(line.removeprefix("text: ") for line in said[:3]) == "one two three"
         narrower = program.run("read", text, "--device", spec, "--travel", "50", "--lines", "1")
         assert narrower.returncode == 0, narrower.stderr
-        assert narrower.stderr == "line width: 3 cells\n"
+        assert narrower.stderr == "line width: 3 cells, table en-ueb-g2.ctb\n"
 
 
 def test_the_page_is_laid_out_for_the_actuators_that_there_are(tmp_path, text):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
         done = program.run("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
         assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 28 cells\n"
+        assert done.stderr == "line width: 28 cells, table en-ueb-g2.ctb\n"
         other = program.run("read", text, "--device", spec, "--mapping", "paired")
         assert other.returncode == 2
         assert other.stderr == (

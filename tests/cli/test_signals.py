@@ -37,7 +37,7 @@ def stopped_at(moment, *arguments):
     )  # fmt: skip
     said = done.stderr.splitlines()
     assert done.returncode in (0, 1), f"moment {moment}: {done.returncode}, {done.stderr}"
-    if said[:1] == ["line width: 26 cells"]:
+    if said[:1] == ["line width: 26 cells, table en-ueb-g2.ctb"]:
         del said[0]
     wanted = ["vbraille: stopped"] if done.returncode else []
     assert said == wanted, f"moment {moment}: {done.stderr}"
@@ -82,7 +82,10 @@ def test_signals_while_reading(text):
         with program.start("read", text, "--hand", "sweep:20") as process:
             assert process.stdout.readline() == b"line: 1\n"
             process.send_signal(number)
-            assert process.stderr.read() == b"line width: 26 cells\nvbraille: stopped\n"
+            assert (
+                process.stderr.read()
+                == b"line width: 26 cells, table en-ueb-g2.ctb\nvbraille: stopped\n"
+            )
             assert process.wait(program.PATIENCE_S) == 1
             assert b"summary" not in process.stdout.read()
 

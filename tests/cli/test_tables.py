@@ -15,13 +15,15 @@ def test_every_table_is_a_line_that_says_what_it_is(call):
 
 
 def test_the_tables_of_a_language(call):
-    lines = call("tables", "--language", "fr").out.splitlines()
+    usual, *lines = call("tables", "--language", "fr").out.splitlines()
+    assert usual == "usual: fr-bfu-comp6.utb"
     assert len(lines) >= 3
     assert all(", language fr" in line for line in lines)
-    assert call("tables", "--language", "FR").out.splitlines() == lines
+    for spelling in ("FR", "fr_FR", "fr-CA"):
+        assert call("tables", "--language", spelling).out.splitlines() == [usual, *lines]
     for line in lines:
         Table(line.split(":")[0])
-    chinese = call("tables", "--language", "CMN_hans").out.splitlines()
+    _, *chinese = call("tables", "--language", "CMN_hans").out.splitlines()
     assert chinese
     assert all("language cmn-Hans" in line for line in chinese)
     assert set(chinese) <= set(call("tables", "--language", "cmn").out.splitlines())

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from vbraille.errors import InputError
-from vbraille.translate import Cells, Document, Table, find_table, list_tables
+from vbraille.translate import Cells, Document, Table
 from vbraille.translate.liblouis import nearest
 
 TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "de-g2.ctb")
@@ -55,47 +55,15 @@ def sample_of_unicode() -> list[str]:
 likely = st.deferred(lambda: st.sampled_from([*sample_of_unicode(), *"abc ABC 123 .,'-"]))
 
 
-class TestFindTable:
-    @pytest.mark.parametrize(
-        ("language", "grade", "name"),
-        [
-            ("en", None, "en-ueb-g2.ctb"),
-            ("en", 1, "en-ueb-g1.ctb"),
-            ("EN", 2, "en-ueb-g2.ctb"),
-            ("fr", None, "fr-bfu-comp6.utb"),
-            ("fr", 2, "fr-bfu-g2.ctb"),
-            ("de", None, "de-g2.ctb"),
-            ("de", 0, "de-g0.utb"),
-            ("fr-FR", None, "fr-bfu-comp6.utb"),
-            ("fr_CA", None, "fr-bfu-comp6.utb"),
-        ],
-    )
-    def test_what_readers_expect(self, language, grade, name):
-        assert find_table(language, grade) == name
-        assert translate(Table(name), "a").to_dots().endswith("1")
-
-    def test_other_languages_by_their_metadata(self):
-        for language in ("es", "it", "nl", "pl", "sv"):
-            info = Table(find_table(language)).info
-            assert info is not None
-            assert info.speaks(language)
-            assert info.dots != 8
-            assert info.kind != "computer"
-
-    def test_every_language_has_a_table(self):
-        languages = {table.language for table in list_tables() if table.language}
-        assert len(languages) > 50
-        names = {table.name for table in list_tables()}
-        assert {find_table(language) for language in languages} <= names
-
-    def test_no_such_language_or_grade(self):
-        with pytest.raises(InputError, match=r"no table for language 'tlh'; the nearest are \w+"):
-            find_table("tlh")
-        with pytest.raises(InputError, match=r"no grade 7 for language 'en'; there is .*2"):
-            find_table("en", 7)
-
-
 class TestTable:
+    @pytest.mark.parametrize("name", ["hyph_fr_FR.dic", "hyph_en_US.dic,hyph_da_DK.dic"])
+    def test_hyphenation_is_no_braille(self, name):
+        with pytest.raises(
+            InputError, match="has no braille in it, as tables for hyphenation have"
+        ):
+            Table(name)
+        assert Table(f"en-ueb-g2.ctb,{name}").name
+
     @pytest.mark.parametrize(
         "name",
         [

@@ -123,7 +123,8 @@ def build_table(arguments: argparse.Namespace) -> Table:
     """
     undefined = Undefined(arguments.undefined)
     if arguments.table is None:
-        return Table(find_table(arguments.language or "en", arguments.grade), undefined)
+        language = "en" if arguments.language is None else arguments.language
+        return Table(find_table(language, arguments.grade), undefined)
     if arguments.language is not None or arguments.grade is not None:
         raise InputError("a table has its language and grade; give either --table or those")
     return Table(arguments.table, undefined)
@@ -177,7 +178,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: G
             raise InputError(f"{name} has no text in it; give a text file")
         raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
     cells = "1 cell" if width == 1 else f"{width} cells"
-    print(f"line width: {cells}", file=sys.stderr, flush=True)
+    print(f"line width: {cells}, table {printable(book.table.name)}", file=sys.stderr, flush=True)
     unknown = Unknown(book.table, Undefined(arguments.undefined))
     return Page(layout, model, geometry, first, last, unknown)
 

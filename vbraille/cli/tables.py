@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
-from vbraille.translate import list_tables
-from vbraille.translate.liblouis import nearest
+from vbraille.translate import find_table, list_tables, tables_of
 
 if TYPE_CHECKING:
     import argparse
@@ -15,16 +13,13 @@ if TYPE_CHECKING:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print a line a table."""
-    tables = list_tables()
-    if arguments.language is not None:
-        wanted = arguments.language.lower().replace("_", "-")
-        tables = [t for t in tables if t.speaks(wanted)]
-        if not tables:
-            tags = sorted({t.language for t in list_tables() if t.language})
-            raise InputError(
-                f"there is no table for language {arguments.language!r}{nearest(wanted, tags)}"
-            )
+    """Print a line a table; of a language also which is taken if none is named."""
+    if arguments.language is None:
+        for table in list_tables():
+            print(_describe(table))
+        return 0
+    _, tables = tables_of(arguments.language)
+    print(f"usual: {find_table(arguments.language)}")
     for table in tables:
         print(_describe(table))
     return 0

@@ -3,13 +3,8 @@
 from vbraille.translate.book import Book
 from vbraille.translate.cells import Cells
 from vbraille.translate.documents import Document
-from vbraille.translate.liblouis import (
-    Table,
-    TableInfo,
-    find_table,
-    list_tables,
-    six_dot_table,
-)
+from vbraille.translate.languages import find_table, six_dot_table, tables_of
+from vbraille.translate.liblouis import Table, TableInfo, list_tables
 from vbraille.translate.paragraphs import Paragraph
 from vbraille.translate.undefined import Undefined
 
@@ -24,4 +19,5 @@ __all__ = [
     "find_table",
     "list_tables",
     "six_dot_table",
+    "tables_of",
 ]

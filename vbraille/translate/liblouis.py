@@ -39,19 +39,6 @@ if TYPE_CHECKING:
     from vbraille.translate.paragraphs import Paragraph
     from vbraille.translate.scripts import Script
 
-# Without metadata's help: what readers of the language expect. A bare query for French, say,
-# finds eight-dot computer braille.
-_DEFAULTS = {
-    ("en", 1): "en-ueb-g1.ctb",
-    ("en", 2): "en-ueb-g2.ctb",
-    ("fr", 1): "fr-bfu-comp6.utb",
-    ("fr", 2): "fr-bfu-g2.ctb",
-    ("de", 0): "de-g0.utb",
-    ("de", 1): "de-g1.ctb",
-    ("de", 2): "de-g2.ctb",
-}
-_USUAL_GRADE = {"en": 2, "fr": 1, "de": 2}
-
 # Bytes; liblouis puts a name, with a folder before it, into 2 kB, and does not look if it fits.
 _LONGEST_NAME = 1_000
 
@@ -144,67 +131,6 @@ def _table_info(path: bytes) -> TableInfo:
     )
 
 
-def find_table(language: str = "en", grade: int | None = None) -> str:
-    """Name of the table for a language and grade.
-
-    Parameters
-    ----------
-    language
-        BCP 47 tag; a region may follow ("en-GB").
-    grade
-        0 or 1 uncontracted, 2 and up contracted; None for the usual one.
-
-    Raises
-    ------
-    InputError
-        If there is none; it names the nearest.
-    """
-    wanted = language.lower().replace("_", "-")
-    usual = _USUAL_GRADE.get(wanted)
-    if usual is not None:
-        name = _DEFAULTS.get((wanted, usual if grade is None else grade))
-        if name is not None:
-            return name
-    tables = [t for t in list_tables() if t.speaks(wanted)]
-    if not tables and "-" in wanted:
-        return find_table(wanted.rpartition("-")[0], grade)
-    if not tables:
-        tags = sorted({t.language for t in list_tables() if t.language})
-        raise InputError(f"there is no table for language {language!r}{nearest(wanted, tags)}")
-    graded = [t for t in tables if grade is None or t.grade == str(grade)]
-    if not graded:
-        grades = ", ".join(sorted({t.grade for t in tables if t.grade})) or "none that is named"
-        raise InputError(
-            f"there is no grade {grade} for language {language!r}; there is {grades} "
-            f"(vbraille tables --language {language})"
-        )
-
-    def preference(t: TableInfo) -> tuple[bool, bool, bool, str]:
-        return t.kind == "computer", t.dots != 6, t.language.lower() != wanted, t.name
-
-    return min(graded, key=preference).name
-
-
-def six_dot_table(language: str) -> str | None:
-    """Name of a language's table of six-dot braille, the most usual; None if there is none."""
-    tables = [table.name for table in list_tables() if table.language == language and language]
-    names = [find_table(language), *tables] if tables else []
-    return next((name for name in names if not Table(name).eight_dots), None)
-
-
-def tables_for(script: Script) -> str:
-    """End of a sentence that says which languages and tables there are for a script."""
-    there = {table.language for table in list_tables()}
-    found = [
-        f"{tag} ({name}, {find_table(tag)})"
-        for tag, name in script.languages.items()
-        if tag in there
-    ]
-    if not found:
-        return f"liblouis has no table for {script.name}"
-    return f"give its language: --language {', '.join(found)}"
-
-
 def nearest(name: str, names: list[str]) -> str:
     """End of a sentence that says what comes nearest to a name."""
     close = difflib.get_close_matches(name, names, n=3, cutoff=0.0)
@@ -252,6 +178,15 @@ class Table:
         self._noted = 0
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
+        if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, _all_letters)):
+            raise InputError(
+                f"{name} has no braille in it, as tables for hyphenation have not; give a braille "
+                f"table (vbraille tables lists all)"
+            )
+
+    def _writes_some(self, text: str) -> bool:
+        """Whether the table has dots of its own for any character of a text."""
+        return bool(self._call(to_codes(text), _MODE | louis.noUndefined)[0].any())
 
     @property
     def info(self) -> TableInfo | None:
@@ -285,6 +220,9 @@ class Table:
         """Say once of each script that passages are in it which the table does not know."""
         if self._noted == len(self._foreign):
             return None
+        # Not above: what a language takes is looked up among the tables here.
+        from vbraille.translate.languages import tables_for
+
         script = list(self._foreign.values())[self._noted]
         self._noted += 1
         return (
@@ -443,6 +381,12 @@ class Table:
 def _native_letters() -> str:
     """Letters of other scripts than the Latin, for what a table's metadata leave open."""
     return "".join(c for c in map(chr, range(0x370, 0x700)) if c.isalpha())
+
+
+def _all_letters() -> str:
+    """Letters of every script of today but the Latin; of the large ones some."""
+    codes = (*range(0x370, 0x2000), *range(0x3041, 0x3100), *range(0x4E00, 0xD7A4, 64))
+    return "".join(c for c in map(chr, codes) if c.isalpha())
 
 
 def _codes(text: str) -> tuple[int, ...]:
