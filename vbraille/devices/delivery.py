@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS, WATCHDOG_MS
+from vbraille.devices.messages import LOST_MS, RAMP_MS, STALL_MS, WATCHDOG_MS
 
 if TYPE_CHECKING:
     from vbraille.devices.messages import State, Watchdog
