@@ -146,7 +146,7 @@ class Device(ABC):
     placing : Placing
         What it waits for before it can tell places; `read` gives None till then.
     taking : bool
-        Whether it takes the frames that it is sent; False once it has taken none for a while.
+        Whether frames reach the actuators; False while these rest by themselves, and fade in then.
     acknowledges : bool
         Whether the device says which frames it has.
     acknowledged_ns : int or None

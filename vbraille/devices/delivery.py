@@ -77,6 +77,11 @@ class Delivery:
         self.rest_due = tell
         self._resting_us = self._held_us = self._told_ns = self._offered = self._sent_ns = None
 
+    def stall(self, now_ns: int) -> None:
+        """Send no FRAME either; the device's watchdog has time to see to the rest."""
+        self.stop(tell=False)
+        self._told_ns = now_ns + WATCHDOG_MS * _NS_PER_MS
+
     def stalled(self, now_ns: int) -> bool:
         """Whether FRAMEs are owed, and the last is so old that the device may rest by now."""
         return self._sent_ns is not None and now_ns - self._sent_ns >= STALL_MS * _NS_PER_MS

@@ -310,6 +310,7 @@ class SerialDevice(Device):
             self._fell(now_ns)
         else:
             self._stop(tell=False)
+        self._delivery.stall(now_ns)
         return True
 
     def _fell(self, now_ns: int) -> None:
