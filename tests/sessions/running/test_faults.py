@@ -51,6 +51,27 @@ def test_one_tick_within_a_poll_marks_its_trial(tmp_path, flag, what, repeats):
     assert [well["tick"] for well in wells] == ([] if repeats else [851])
 
 
+@pytest.mark.parametrize("poll_ticks", [7, 100])
+@pytest.mark.parametrize(("held", "marked"), [(25, False), (99, False), (120, True)])
+def test_a_device_that_wakes_after_the_hand_stood_still_is_no_fault(
+    tmp_path, held, marked, poll_ticks
+):
+    class Waking(BatchEngine):
+        def __init__(self, device, **_):
+            super().__init__(device, 1000.0, poll_ticks)
+
+        def poll(self):
+            ticks = super().poll()
+            at, flags = ticks["tick"], ticks["flags"]
+            flags[(at >= 800) & (at < 850)] |= int(Flag.RESTING)
+            flags[(at >= 850) & (at < 850 + held)] |= int(Flag.HELD)
+            return ticks
+
+    sat = Session(tmp_path / "s", hand="sweep:60").sit(engine=Waking)
+    faults = [told.faults for told in sat.progress.trials.values()]
+    assert faults == [["the array went to rest by itself"] if marked else [], [], [], []]
+
+
 def test_the_size_of_a_poll_does_not_matter(tmp_path):
     told = []
     for size in (9, 100, 1000):

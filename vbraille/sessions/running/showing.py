@@ -37,6 +37,8 @@ _AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
 _UNFELT = _AWAY | int(Flag.RESTED)
 # A trial is marked by the first time; who hears of it need not hear of it more often.
 _TOLD_S = 1.0
+# A device that was at rest since the hand stood still is asked to take frames again first.
+_WAKING_S = 0.1
 
 
 class RunEngine(Engine, Protocol):
@@ -129,6 +131,8 @@ class OnDevice:
         self._edge_mm: float | None = None
         self._touched = self._read = self._away = self._ready = False
         self._trial_line = self._shown_line = 0  # the first of the trial, and of the stimulus
+        self._still = False  # whether the newest tick was at rest for want of motion
+        self._waking_ns = -(1 << 62)  # when the device last began to wake after that
         self._told_ns: int | None = None  # when the last fault of the trial was
         self._felt: list[list[NDArray[np.void]]] = []
 
@@ -292,13 +296,13 @@ class OnDevice:
         The rule: a tick of the trial, pauses left out, at which the device was silent, did
         not know its place, had gone to rest by itself or took no frames, or one before which
         others were lost. That the array rests because the hand stands still is as it is
-        always read.
+        always read, and so are the moments that a device then takes to wake.
         """
         shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & Flag.PAUSED == 0)
         ticks, lost = ticks[shown], lost[shown]
         if not ticks.size:
             return []
-        unfelt = (ticks["flags"] & _UNFELT != 0) | lost
+        unfelt = (ticks["flags"] & _UNFELT != 0) & ~self._wakes(ticks) | lost
         at = np.flatnonzero(unfelt)
         happened = []
         if at.size and not self._away:
@@ -313,6 +317,21 @@ class OnDevice:
             well = int(at[-1]) + 1 if at.size else 0
             happened.append(Happened("well", _when(ticks[well])))
         return happened
+
+    def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
+        """Which ticks are of a device that takes no frames yet, since the hand stood still."""
+        flags, times_ns = ticks["flags"], ticks["time_ns"]
+        held = flags & (Flag.HELD | Flag.RESTED | Flag.SILENT) == Flag.HELD
+        wakes = np.zeros(ticks.size, np.bool_)
+        for n in np.flatnonzero(held):
+            begins = (
+                self._still if n == 0 else bool(flags[n - 1] & Flag.RESTING) and not held[n - 1]
+            )
+            if begins:
+                self._waking_ns = int(times_ns[n])
+            wakes[n] = times_ns[n] - self._waking_ns < _WAKING_S * 1e9
+        self._still = bool(flags[-1] & Flag.RESTING) and not held[-1]
+        return wakes
 
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
         """What the hand did with the stimulus in these ticks."""
