@@ -1,4 +1,4 @@
-"""The commands and what their help says; `options` has the options of each."""
+"""The commands and what their help says; `options` and `laboptions` have the options of each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import os
 
 from vbraille import __version__
-from vbraille.cli import options
+from vbraille.cli import laboptions, options
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -55,7 +55,7 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "analyse": (
         "Make tables, statistics and a report of sessions.",
-        options.analyse,
+        laboptions.analyse,
         "vbraille analyse P01-letters-* P02-letters-* --out report",
     ),
     "tables": (
@@ -85,32 +85,32 @@ DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
 SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "protocols": (
         "List the protocols that come with the program, or print one to be copied and edited.",
-        options.session_protocols,
+        laboptions.session_protocols,
         "vbraille session protocols letters > mine.toml",
     ),
     "plan": (
         "Print the whole order of a session before anyone sits down.",
-        options.session_plan,
+        laboptions.session_plan,
         "vbraille session plan legibility --participant P07 --seed 42",
     ),
     "run": (
         "Run a session; at its prompt, help says what can be typed.",
-        options.session_run,
+        laboptions.session_run,
         "vbraille session run legibility --participant P07 --device serial:/dev/ttyACM0",
     ),
     "resume": (
         "Go on with a session at the next trial of the same order.",
-        options.session_resume,
+        laboptions.session_resume,
         "vbraille session resume P07-legibility-20261121-101500",
     ),
     "export": (
         "Make tables of a session.",
-        options.session_export,
+        laboptions.session_export,
         "vbraille session export P07-legibility-20261121-101500 --out trials.csv",
     ),
     "check": (
         "See whether every file of a session is whole, and nothing was changed.",
-        options.session_check,
+        laboptions.session_check,
         "vbraille session check P07-legibility-20261121-101500",
     ),
 }
