@@ -20,12 +20,12 @@ def test_it_is_within_a_tenth_of_a_bit(rng, name):
     found = [transmission(table, seed=1) for table in tables]
     assert np.mean([f.bits for f in found]) == pytest.approx(bits_of(shares), abs=0.1)
     for one in found:
-        assert one.interval.low <= one.bits <= one.interval.high <= one.interval.low + 0.35
+        assert one.interval.low <= one.bits <= one.interval.high <= one.interval.low + 0.5
 
 
 def test_chance_is_not_information(rng):
-    counts = answers(rng, even(26, 1 / 26), 390)
-    assert transmitted_bits(counts) > 1
+    counts = answers(rng, even(26, 1 / 26), 520)
+    assert transmitted_bits(counts) > 0.9
     found = transmission(counts, seed=1)
     assert found.bits < 0.1
     assert found.interval.low == 0
@@ -36,7 +36,7 @@ def test_what_few_answers_cannot_carry_has_no_number(rng):
     with pytest.raises(Unanswerable, match=r"^5.0 answers to a character on average, fewer than"):
         transmission(answers(rng, shares, 130), seed=1)
     with pytest.raises(Unanswerable, match=r"interval of the bits would be 0\.\d\d wide"):
-        transmission(answers(rng, shares, 260), seed=1)
+        transmission(answers(rng, even(4, 0.8), 80), seed=1)
     with pytest.raises(Unanswerable, match="one character alone"):
         transmission([[99, 3], [0, 0]], seed=1)
 

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-FEWEST_ANSWERS = 10  # to a character, on average
-WIDEST_BITS = 0.35  # of an interval beside which a number still says something
+FEWEST_ANSWERS = 20  # to a character, on average
+WIDEST_BITS = 0.5  # of an interval beside which a number still says something
 _DRAWS, _FEWEST_DRAWS, _MOST_CELLS = 1000, 100, 20_000_000
 _CHUNK_CELLS = 2_000_000
 _TABLES = 400  # of a test of independence
@@ -70,7 +70,7 @@ def transmission(counts: ArrayLike, *, seed: int, level: float = LEVEL) -> Trans
     ------
     Unanswerable
         If the counts cannot carry a number: one character alone was presented, there are fewer
-        than ten answers to a character, or the interval is wider than 0.35 bit.
+        than twenty answers to a character, or the interval is wider than 0.5 bit.
     ValueError
         If these are no counts.
     """
