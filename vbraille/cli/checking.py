@@ -193,7 +193,7 @@ class _Check:
         tripped = [ms for ms in taken if ms is not None]
         if not tripped:
             self._say("watchdog: no trip was reported")
-            return ["its watchdog does not trip when no frame comes; nobody may read on it"]
+            return ["its watchdog does not trip in time when no frame comes; nobody may read on it"]
         median = float(np.median(tripped))
         promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.info.rate_hz
         self._say(
