@@ -139,10 +139,10 @@ def _program(what: str, bar: str, most_s: float, most_mb: int | None, arguments:
 def _sit(session: Session, random: np.random.Generator) -> None:
     """Fill a session's journal and trace with what a hand did that took its time."""
     array = session.protocol.model.array
-    trace = TraceWriter(session.folder / "trace-001.gz")
     hand = HumanHand(DEVICE, session.plan.seed)
     ticks = 0
     with Journal(session.folder) as journal:
+        trace = TraceWriter(session.folder / "trace-001.gz", tie=lambda: journal.durable)
 
         def log(event: str, trial: Trial | None = None, **fields: object) -> None:
             of = {} if trial is None else {"trial": trial.number}
@@ -170,8 +170,7 @@ def _sit(session: Session, random: np.random.Generator) -> None:
             log("answer", trial, attempt=1, answer="?" * 5 if wrong else trial.presented)
         trace.close()
         log("end", why="all trials are done")
-        size = (session.folder / "trace-001.gz").stat().st_size
-        log("closed", lost=0, counts={}, trace="trace-001.gz", trace_bytes=size)
+        log("closed", lost=0, counts={}, **trace.closed())
 
 
 def _ticks(

@@ -204,7 +204,7 @@ def _check_tie(path: Path, trace: Trace, told: Told) -> Iterator[Finding]:
     elif trace.loose:
         yield Finding(f"{path.name}: a part of it is not tied to the journal", good=False)
     closed = (event for event in told.events if event["event"] == "closed")
-    sums = [e["trace_sha256"] for e in closed if e.get("trace") == path.name]
+    sums = [e.get("trace_sha256") for e in closed if e.get("trace") == path.name]
     if sums and sums[-1] != sha256(path.read_bytes()).hexdigest():
         yield Finding(f"{path.name}: it is not what it was when it was closed", good=False)
 
