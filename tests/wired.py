@@ -86,7 +86,7 @@ class Wired:
     swing
         Of the picture: 0 is the same everywhere, so that only fades move actuators.
     speed_mm_s
-        Of the hand, to the right.
+        Speed of the hand to the right, in mm/s.
     """
 
     def __init__(

@@ -24,7 +24,7 @@ def findings(tables: Iterable[Table]) -> tuple[str, ...]:
     Parameters
     ----------
     tables
-        Of the report.
+        All tables of the report.
     """
     of = {table.name: table for table in tables if table.rows}
     found = [

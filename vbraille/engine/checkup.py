@@ -41,7 +41,7 @@ class Rate:
     work_us
         Read, render and write: median and 99 %.
     clock_s
-        Of the device's, in a second of ours.
+        Seconds that the device's clock goes on in one second of the computer's.
     x_mm
         Where its left column was: leftmost and rightmost.
     """

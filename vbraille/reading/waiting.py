@@ -33,11 +33,11 @@ class Waiting:
     Parameters
     ----------
     span_mm
-        Of the array.
+        Width of the array, from its left column to its right one, in mm.
     end_mm
         Right edge of the line's last dot.
     number
-        Of the line.
+        Number of the line that is under the hand.
     by_hand
         Whether the next line comes when the hand returns; else a key brings it.
     keys

@@ -62,7 +62,7 @@ def sphericity(z: NDArray[np.float64], *, cells: int, one_factor: bool) -> Spher
     z : float64[n, d]
         The contrasts of each participant, not all alike.
     cells
-        Of the whole design.
+        Cells that the whole design has, all its factors crossed.
     one_factor
         Whether the effect is a main effect.
     """
@@ -114,7 +114,7 @@ def mauchly_p(log_w: float, n: int, d: int, cells: int) -> tuple[float, int, flo
     n, d
         Participants and contrasts, d below n.
     cells
-        Of the whole design.
+        Cells that the whole design has, all its factors crossed.
     """
     df = d * (d + 1) // 2 - 1
     scale = n - 1 - (2 * d**2 + d + 2) / (6 * d)  # ρ times n - 1
