@@ -27,7 +27,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
-from vbraille.devices.base import DeviceInfo
 from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.greeting import greet
 from vbraille.devices.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
@@ -35,6 +34,7 @@ from vbraille.devices.ports import Address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.simulator import split
 from vbraille.devices.wire import Decoder
+from vbraille.display import Display
 from vbraille.engine.loop import Loop
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ PERIOD_US = 1000
 COUNT_MM = 0.005
 # What a line gives at a read, and what it holds of what nobody reads.
 READ_BYTES, HELD_BYTES = 4096, 60_000
-INFO = DeviceInfo(
+INFO = Display(
     name="wired", rows=1, columns=3, column_pitch_mm=1.2, row_pitch_mm=1.8, levels=TOP + 1,
     rest_side="right", travel_mm=10_000.0, counts_per_mm=200.0, rate_hz=1000.0,
 )  # fmt: skip

@@ -184,7 +184,7 @@ def test_a_port_that_is_not_there(text):
 
 # Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
 SHORT = """
-from vbraille.devices.base import Sample
+from vbraille.pose import Pose
 from vbraille.devices.motion import Way
 from vbraille.devices.simulated import SimulatedDevice
 
@@ -203,7 +203,7 @@ class Short(SimulatedDevice):
 
     def read(self):
         sample = super().read()
-        return Sample(sample.time_ns, min(sample.x_mm, 60.0))
+        return Pose(sample.time_ns, min(sample.x_mm, 60.0))
 """
 
 

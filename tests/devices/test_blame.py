@@ -53,7 +53,7 @@ RAISES = {
     "syntax": ("pass", "def mark(:"),
     "open": ("def __init__(self, wanted):\n    raise OSError(5, 'mark')", ""),
     "exit": ("def __init__(self, wanted):\n    sys.exit(3)  # mark", ""),
-    "info": ("@property\ndef info(self):\n    return 1 / 0  # mark", ""),
+    "display": ("@property\ndef display(self):\n    return 1 / 0  # mark", ""),
     "read": ("def read(self):\n    return 1 / 0  # mark", ""),
     "library": ("def read(self):\n    return np.zeros(2).reshape(3)  # mark", ""),
     "python": ("def read(self):\n    return __import__('json').loads('')  # mark", ""),

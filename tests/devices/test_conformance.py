@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import info
-from vbraille.devices import Device, Sample, open_device
+from vbraille.devices import Device, open_device
 from vbraille.devices.conformance import (
     CHECKS,
     check_bad_frames,
@@ -16,6 +16,7 @@ from vbraille.devices.conformance import (
     check_samples,
 )
 from vbraille.devices.simulated import SimulatedDevice
+from vbraille.pose import Pose
 
 
 @pytest.mark.parametrize("check", CHECKS)
@@ -36,12 +37,12 @@ class Scribbling(SimulatedDevice):
 
 class OffTheRail(SimulatedDevice):
     def read(self):
-        return Sample(0, 1e9)
+        return Pose(0, 1e9)
 
 
 class Nowhere(SimulatedDevice):
     def read(self):
-        return Sample(0, math.nan)
+        return Pose(0, math.nan)
 
 
 class Backwards(SimulatedDevice):
@@ -49,7 +50,7 @@ class Backwards(SimulatedDevice):
 
     def read(self):
         self.time_ns -= 1
-        return Sample(self.time_ns, 0.0)
+        return Pose(self.time_ns, 0.0)
 
 
 class CountsInAProperty(SimulatedDevice):
@@ -114,7 +115,7 @@ class Logging(Device):
         self.log = []
 
     @property
-    def info(self):
+    def display(self):
         return info()
 
     def read(self):

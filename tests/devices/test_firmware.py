@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.controllers import ControllerOf20261121
-from vbraille.devices.base import DeviceInfo
 from vbraille.devices.firmware import MARK_MM, Controller, describe
 from vbraille.devices.messages import (
     FAULTY,
@@ -26,6 +25,7 @@ from vbraille.devices.messages import (
     Watchdog,
 )
 from vbraille.devices.wire import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
+from vbraille.display import Display
 
 TOP = 1000  # 10 bits could say more
 INFO = Info(
@@ -545,7 +545,7 @@ def test_unplugged_it_is_silent_and_its_watchdog_goes_on(greeted):
 
 
 def test_a_device_is_described_to_the_host():
-    device = DeviceInfo(
+    device = Display(
         name="simulated STReSS²", rows=6, columns=10, column_pitch_mm=1.2, row_pitch_mm=1.8,
         levels=1024, rest_side="right", travel_mm=300.0, counts_per_mm=200.0, rate_hz=1000.0,
     )  # fmt: skip

@@ -13,7 +13,7 @@ from vbraille.errors import InputError
 def test_the_simulated_device_is_what_the_page_wants(spec):
     with open_device(spec, info(rows=1, columns=12)) as device:
         assert isinstance(device, SimulatedDevice)
-        assert (device.info.rows, device.info.columns) == (1, 12)
+        assert (device.display.rows, device.display.columns) == (1, 12)
 
 
 @pytest.mark.parametrize("spec", ["", ":", "simulated", "/dev/ttyACM0", "serial "])
@@ -38,11 +38,11 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     assert metadata.entry_points(group="vbraille.devices", name="other")
     with open_device("other:bench8", info(columns=8)) as device:
-        assert device.info.name == "bench8"
+        assert device.display.name == "bench8"
     with pytest.raises(InputError, match=r"bench8 has 6 × 8 .*page is for 6 × 10"):
         open_device("other:bench8", info())
     with open_device("other:bench8", info(), fits=False) as device:  # what is wanted is a wish
-        assert device.info.columns == 8
+        assert device.display.columns == 8
     with pytest.raises(InputError, match="made for 1000 frames a second and 2000 are"):
         open_device("other:bench8", info(rate_hz=2000), fits=False)
 
@@ -105,7 +105,7 @@ def test_any_device_will_do_where_none_is_wanted(tmp_path, monkeypatch):
     )
     monkeypatch.syspath_prepend(str(tmp_path))
     with open_device("any:", None) as device:
-        assert device.info.columns == 3
+        assert device.display.columns == 3
 
 
 def test_serial_devices_are_of_the_registry():

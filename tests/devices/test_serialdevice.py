@@ -17,7 +17,7 @@ from cobs import cobs
 
 from tests.controllers import ControllerOf20261121
 from tests.engine.test_loop import info
-from vbraille.devices.base import Placing, Sample
+from vbraille.devices.base import Placing
 from vbraille.devices.conformance import CHECKS
 from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.messages import (
@@ -34,6 +34,7 @@ from vbraille.devices.openserial import open_serial
 from vbraille.devices.simulator import split
 from vbraille.devices.wire import Decoder, Levels, encode, enframe
 from vbraille.errors import DeviceError, InputError
+from vbraille.pose import Pose
 
 SPAN_MM = 10.8
 HALF = np.full((6, 10), 0.5)
@@ -125,7 +126,7 @@ class Bench:
             look_s=0.0005,
         )
 
-    def run(self, device, ticks: int, frame=HALF) -> Sample | None:
+    def run(self, device, ticks: int, frame=HALF) -> Pose | None:
         """Tick as the loop does; the last sample."""
         last = None
         for _ in range(ticks):
@@ -143,7 +144,7 @@ class Bench:
         assert device.taking
         self.run(device, 3, frame)
 
-    def back(self, device) -> Sample:
+    def back(self, device) -> Pose:
         """Let whoever looks for it find it; the first sample."""
         self.find()
         for _ in range(300):
@@ -192,7 +193,7 @@ def test_it_conforms(bench, check):
         return device
 
     check(opened)
-    assert isinstance(samples[0], Sample)
+    assert isinstance(samples[0], Pose)
 
 
 def test_the_handshake(bench):
@@ -208,7 +209,7 @@ def test_the_handshake(bench):
     with open_serial(str(made.link), info(), now_ns=made.now_ns, pause=pause) as device:
         assert made.controller.dropped == 1  # the zero ended what was old
         assert made.controller.greetings == 2  # the first INFO came behind what was old
-        assert device.info == info()
+        assert device.display == info()
         assert device.placing is Placing.DONE
         assert made.run(device, 50).x_mm == pytest.approx(5.0 - SPAN_MM)
         assert made.controller.frames > 10

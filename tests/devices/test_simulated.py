@@ -86,9 +86,9 @@ def test_a_motion_goes_on_by_another_clock(clock, device):
     other = ManualClock()
     device.go_by(other.now_ns)
     clock.advance_ns(500_000_000)
-    assert device.read() == (0, pytest.approx(-SPAN_MM + 5))
+    assert device.read()[:2] == (0, pytest.approx(-SPAN_MM + 5))
     other.advance_ns(250_000_000)
-    assert device.read() == (250_000_000, pytest.approx(-SPAN_MM + 7.5))
+    assert device.read()[:2] == (250_000_000, pytest.approx(-SPAN_MM + 7.5))
 
 
 def test_levels_are_as_coarse_as_it_says():

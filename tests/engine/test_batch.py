@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import straight
-from vbraille.devices import DeviceInfo
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.simulated import SimulatedDevice
+from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
@@ -26,7 +26,7 @@ EXACT += ("flags", "x_mm", "share")
 
 def device(model, hand, now_ns=time.monotonic_ns):
     array = model.array
-    info = DeviceInfo(
+    info = Display(
         name="test",
         rows=array.rows,
         columns=array.columns,
@@ -223,7 +223,7 @@ def test_a_device_that_rests_by_itself_is_the_loop_s(poll_ticks):
     script = [(0, show(full(SHEARED), 1)), (40, rest(True)), (80, rest(False))]
     script += [(120, rest(True)), (160, rest(False)), (160, show(full(SHEARED), 2))]
     script += [(200, pause(True)), (240, rest(True)), (280, rest(False)), (320, pause(False))]
-    info = device(SHEARED, None).info
+    info = device(SHEARED, None).display
     moving = Resting(info, time.monotonic_ns, parse_hand("sweep:5", 7))
     got = run(BatchEngine(moving, 200, poll_ticks), script, 600)
     clock = ManualClock()
@@ -300,7 +300,7 @@ def test_it_says_what_a_host_says():
         engine.show(full(), 1, LINE_MM)
         ticks = engine.poll()
         engine.set_zero()
-    assert engine.info.columns == 10
+    assert engine.display.columns == 10
     assert (engine.lost, engine.counts, list(engine.take_notes())) == (0, {}, [])
     assert engine.newest is not None
     assert engine.newest["tick"] == ticks["tick"][-1]

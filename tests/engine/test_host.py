@@ -47,7 +47,7 @@ def test_a_life():
         line = picture(mapping="sheared")
         host.show(line, 7, 100.0)
         ticks = until(host, lasting(400))
-        assert host.info == info()
+        assert host.display == info()
         assert ticks["tick"].tolist() == list(range(ticks.size))
         assert host.lost == 0
         assert ticks["line"][-1] == 7
@@ -102,7 +102,7 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
     host = Host("sim:?hand=sweep:100", info(travel_mm=123.0))
     try:
         assert host.open() == info(travel_mm=123.0)
-        host.fit(host.info, 7)
+        host.fit(host.display, 7)
         host.start()
         host.show(picture((63,) * 7, mapping="sheared"), 1, 60.0)
         until(host, lambda new: new.size and new["frame"][-1].any())

@@ -58,7 +58,7 @@ def read(self):
     )
     with Host("other:", info(), 26) as host:
         until(host, lasting(300))
-        assert host.info == info()
+        assert host.display == info()
     said = capfd.readouterr()
     for part in ("while it is loaded\n", "a print", "a write\n", "a program\n"):
         assert part in said.err

@@ -139,5 +139,5 @@ def test_a_picture_that_does_not_fit_is_refused(bench):
 
 
 def test_warming_up_leaves_nothing_behind(bench):
-    warm_up(bench.device.info, EXTENT)
+    warm_up(bench.device.display, EXTENT)
     assert bench.mailbox.published == 0

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from vbraille.devices import DeviceInfo, Sample
 from vbraille.devices.hand import Hand
 from vbraille.devices.motion import Motion
 from vbraille.devices.simulated import SimulatedDevice
+from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Flag, Ring
 from vbraille.errors import DeviceError
+from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
 from vbraille.render.renderer import Renderer
 
@@ -18,7 +19,7 @@ MS = 1_000_000
 SPAN_MM = 10.8
 
 
-def info(**changes) -> DeviceInfo:
+def info(**changes) -> Display:
     fields = {
         "name": "test",
         "rows": 6,
@@ -31,7 +32,7 @@ def info(**changes) -> DeviceInfo:
         "counts_per_mm": 200.0,
         "rate_hz": 1000.0,
     }
-    return DeviceInfo(**fields | changes)
+    return Display(**fields | changes)
 
 
 class Recording(SimulatedDevice):
@@ -43,10 +44,10 @@ class Recording(SimulatedDevice):
         self.silent = False
         self.shift_mm = 0.0
 
-    def read(self) -> Sample | None:
+    def read(self) -> Pose | None:
         sample = super().read()
         assert sample is not None
-        return None if self.silent else Sample(sample.time_ns, sample.x_mm + self.shift_mm)
+        return None if self.silent else Pose(sample.time_ns, sample.x_mm + self.shift_mm)
 
     def _send(self, frame):
         super()._send(frame)
@@ -287,7 +288,7 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
 
 
 def test_a_place_that_is_no_number_is_a_fault(clock, device):
-    device.read = lambda: Sample(0, float("nan"))
+    device.read = lambda: Pose(0, float("nan"))
     with pytest.raises(DeviceError, match="nan"):
         Loop(device, clock).tick()
 

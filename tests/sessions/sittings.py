@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from vbraille.devices import open_device
-from vbraille.devices.base import DeviceInfo
+from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
@@ -116,7 +116,7 @@ class Session:
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
             array = model.array
-            info = DeviceInfo(
+            info = Display(
                 "test", array.rows, array.columns, array.column_pitch_mm, array.row_pitch_mm,
                 1024, model.rest_side, 300.0, 200.0, 1000.0,
             )  # fmt: skip

@@ -106,7 +106,7 @@ class _Check:
         return but + (f", without {off} of its actuators, which are disabled" if off else "")
 
     def _actuators(self) -> list[str]:
-        told, info = self._device.particulars, self._device.info
+        told, info = self._device.particulars, self._device.display
         all_off = told is not None and len(told.disabled) == info.rows * info.columns
         return ["every one of its actuators is disabled"] if all_off else []
 
@@ -123,13 +123,13 @@ class _Check:
                 self._say("place: move the carriage over its mark")
                 minutes += 1
             if passed_s > (1 + minutes) * _MARK_S:
-                raise DeviceError(f"{device.info.name} gives no place; look at its encoder")
+                raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)
 
     def _rate(self, rate: Rate) -> list[str]:
         due = rate.ticks + rate.late
         share = rate.late / due
-        self._say(f"rate: {self._device.info.rate_hz:g} Hz, {rate.late} of {due} ticks late")
+        self._say(f"rate: {self._device.display.rate_hz:g} Hz, {rate.late} of {due} ticks late")
         self._say(f"work: median {rate.work_us[0]:.0f} µs, 99 % under {rate.work_us[1]:.0f} µs")
         return [f"{share:.1%} of the ticks come late"] if share > _MOST_LATE else []
 
@@ -153,7 +153,7 @@ class _Check:
         if math.isnan(rate.x_mm[0]):
             self._say("place: none was told")
             return []
-        info = self._device.info
+        info = self._device.display
         low_mm, high_mm = (round(x_mm + info.span_mm, 1) + 0.0 for x_mm in rate.x_mm)
         self._say(
             f"place: {low_mm:.1f} to {high_mm:.1f} mm from the left stop, of "
@@ -195,7 +195,7 @@ class _Check:
             self._say("watchdog: no trip was reported")
             return ["its watchdog does not trip in time when no frame comes; nobody may read on it"]
         median = float(np.median(tripped))
-        promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.info.rate_hz
+        promised_ms = WATCHDOG_MS + RAMP_MS + 1000 / self._device.display.rate_hz
         self._say(
             f"watchdog: tripped {len(tripped)} of {_TRIPS} times, median {median:.1f} ms after "
             f"the last frame, and so at rest after {median + RAMP_MS:.1f} ms with a ramp of "

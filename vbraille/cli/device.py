@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Sequence
 
-    from vbraille.devices import Device, DeviceInfo
+    from vbraille.devices import Device
+    from vbraille.display import Display
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -52,7 +53,7 @@ def _list() -> int:
     return 0
 
 
-def _wanted(arguments: argparse.Namespace) -> DeviceInfo | None:
+def _wanted(arguments: argparse.Namespace) -> Display | None:
     if arguments.model is None:
         return None
     model = MODELS[arguments.model]
@@ -60,7 +61,7 @@ def _wanted(arguments: argparse.Namespace) -> DeviceInfo | None:
 
 
 def _describe(device: Device) -> None:
-    info, told = device.info, device.particulars
+    info, told = device.display, device.particulars
     _say(f"name: {info.name}")
     _say(f"actuators: {info.rows} row{'s' * (info.rows > 1)} of {info.columns}")
     _say(f"pitch: {info.column_pitch_mm:g} mm along the line, {info.row_pitch_mm:g} mm across")
@@ -78,7 +79,7 @@ def _describe(device: Device) -> None:
     _say(f"inverted actuators: {_places(told.inverted, info)}")
 
 
-def _places(actuators: Sequence[tuple[int, int]], info: DeviceInfo) -> str:
+def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
     if not actuators:
         return "none"
     if len(actuators) == info.rows * info.columns:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable
 
-    from vbraille.devices import DeviceInfo
+    from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan, Stimulus
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
@@ -67,7 +67,7 @@ class Sitting:
         if self._engine is not None and not self._opened:
             self._engine.start()
             self._opened = True
-            check_room(self._engine.info, self._protocol, self._plan)
+            check_room(self._engine.display, self._protocol, self._plan)
 
     def run(self, record: Record, answers: Answers, *, why: str) -> int:
         """Conduct the session until its end, or until it is stopped."""
@@ -169,9 +169,7 @@ class Sitting:
             self._engine.close()
 
 
-def _build(
-    spec: str, wanted: DeviceInfo, protocol: Protocol, plan: Plan, *, fast: bool
-) -> RunEngine:
+def _build(spec: str, wanted: Display, protocol: Protocol, plan: Plan, *, fast: bool) -> RunEngine:
     """The engine: in a process of its own, or on a clock turned by hand."""
     if fast:
         from vbraille.engine.batch import BatchEngine
@@ -181,7 +179,7 @@ def _build(
     return Host(spec, wanted, most)
 
 
-def check_room(info: DeviceInfo, protocol: Protocol, plan: Plan) -> None:
+def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
     """Raise InputError if a device's carriage does not take its whole array over every stimulus."""
     extent_mm = max(
         stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
-from vbraille.devices import DeviceInfo
 from vbraille.devices.registry import check_actuators
+from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
 
@@ -21,10 +21,10 @@ TRAVEL_TOLERANCE_MM = 0.01
 COUNTS_PER_MM = 200.0  # 5 µm a count: at full texture 4 % of the swing
 
 
-def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
+def device_info(model: Model, geometry: Geometry, rate_hz: float) -> Display:
     """Device that the page is laid out for; a simulated one is just so."""
     array = model.array
-    return DeviceInfo(
+    return Display(
         name=f"simulated {model.title}",
         rows=array.rows,
         columns=array.columns,
@@ -38,7 +38,7 @@ def device_info(model: Model, geometry: Geometry, rate_hz: float) -> DeviceInfo:
     )
 
 
-def model_of(info: DeviceInfo, name: str | None) -> Model:
+def model_of(info: Display, name: str | None) -> Model:
     """The model that a device is, with the device's own pitches.
 
     Parameters
@@ -75,7 +75,7 @@ def model_of(info: DeviceInfo, name: str | None) -> Model:
     )
 
 
-def check_travel(info: DeviceInfo, travel_mm: float) -> None:
+def check_travel(info: Display, travel_mm: float) -> None:
     """Raise InputError if a page needs more travel than a device's carriage has."""
     # Counts and micrometres are rounded on their way here.
     if travel_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:

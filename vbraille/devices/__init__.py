@@ -1,6 +1,8 @@
-"""A frame out, a carriage sample in: the devices, and the interface they keep."""
+"""A frame out, a pose of the carriage in: the devices, and the interface they keep."""
 
-from vbraille.devices.base import Device, DeviceInfo, Sample
+from vbraille.devices.base import Device
 from vbraille.devices.registry import open_device, opened_device
+from vbraille.display import Display
+from vbraille.pose import Pose
 
-__all__ = ["Device", "DeviceInfo", "Sample", "open_device", "opened_device"]
+__all__ = ["Device", "Display", "Pose", "open_device", "opened_device"]

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -17,83 +17,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
+    from vbraille.pose import Pose
+
 _DOUBLE = np.dtype(np.float64)
 _ONE = int(np.array(1.0).view(np.uint64))
 _largest = np.maximum.reduce
-
-
-@dataclass(frozen=True, slots=True)
-class DeviceInfo:
-    """What a device says of itself.
-
-    Parameters
-    ----------
-    name
-        For people.
-    rows, columns
-        Of its actuators.
-    column_pitch_mm, row_pitch_mm
-        Between neighbouring columns and rows.
-    levels
-        Deflections it can tell apart, at least 2: 1024 for 10 bits.
-    rest_side
-        "left" or "right": where an actuator at deflection 0 stands.
-    travel_mm
-        How far its carriage goes.
-    counts_per_mm
-        Resolution of its encoder.
-    rate_hz
-        Frames a second that it is made for.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range.
-    """
-
-    name: str
-    rows: int
-    columns: int
-    column_pitch_mm: float
-    row_pitch_mm: float
-    levels: int
-    rest_side: str
-    travel_mm: float
-    counts_per_mm: float
-    rate_hz: float
-
-    def __post_init__(self) -> None:
-        if self.levels < 2:
-            raise ValueError(f"a device of {self.levels} levels is not possible; it has 2 or more")
-        if self.rest_side not in ("left", "right"):
-            raise ValueError(f"rest side is {self.rest_side!r}; it must be left or right")
-        for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
-        for name in ("travel_mm", "counts_per_mm", "rate_hz"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
-
-    @property
-    def span_mm(self) -> float:
-        """From its left column to its right one."""
-        return (self.columns - 1) * self.column_pitch_mm
-
-
-class Sample(NamedTuple):
-    """Where the carriage is.
-
-    Parameters
-    ----------
-    time_ns
-        When it was there, by the device's clock.
-    x_mm
-        The array's left column on the surface. At the left stop the whole array
-        stands before the line: x = -(columns - 1) · pitch.
-    """
-
-    time_ns: int
-    x_mm: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,11 +99,11 @@ class Device(ABC):
 
     @property
     @abstractmethod
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself; the same at every call."""
 
     @abstractmethod
-    def read(self) -> Sample | None:
+    def read(self) -> Pose | None:
         """Newest sample since the last call, or None; never waits.
 
         Raises
@@ -225,10 +154,10 @@ class Device(ABC):
             another shape, or the device is closed or gone. Nothing is sent then.
         """
         if self._closed:
-            raise DeviceError(f"{self.info.name} is closed")
+            raise DeviceError(f"{self.display.name} is closed")
         if frame.shape != self._shape:
             raise DeviceError(
-                f"{self.info.name} has {self.info.rows} × {self.info.columns} actuators; "
+                f"{self.display.name} has {self.display.rows} × {self.display.columns} actuators; "
                 f"the frame has shape {frame.shape}"
             )
         if not _in_range(frame):
@@ -237,7 +166,7 @@ class Device(ABC):
 
     @cached_property
     def _shape(self) -> tuple[int, int]:
-        return self.info.rows, self.info.columns
+        return self.display.rows, self.display.columns
 
     def rest(self) -> None:
         """Send every actuator to rest at once."""

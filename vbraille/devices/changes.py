@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from vbraille.devices.messages import Encoder
 
 if TYPE_CHECKING:
-    from vbraille.devices.base import DeviceInfo
     from vbraille.devices.messages import Info
+    from vbraille.display import Display
 
 
-def differences(was: DeviceInfo, now: DeviceInfo) -> list[str]:
+def differences(was: Display, now: Display) -> list[str]:
     """What of a device is another than a page and a loop were made for; nothing of its name.
 
     A count is no part of it: places are in millimetres.
@@ -33,7 +33,7 @@ def differences(was: DeviceInfo, now: DeviceInfo) -> list[str]:
     ]
 
 
-def another(was: DeviceInfo, now: DeviceInfo, others: list[str]) -> str:
+def another(was: Display, now: Display, others: list[str]) -> str:
     """What to say of a device in the place of the one that reading began on."""
     if now.name != was.name:
         return (

@@ -16,14 +16,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.base import Device, DeviceInfo, Sample
 from vbraille.devices.interface import misfits, wrong_values
+from vbraille.display import Display
 from vbraille.errors import DeviceError
+from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+
+    from vbraille.devices.base import Device
 
     Open = Callable[[], Device]
 
@@ -31,9 +34,9 @@ if TYPE_CHECKING:
 def check_info(open_device: Open) -> None:
     """The device says what it is, and says the same again."""
     with open_device() as device:
-        assert isinstance(device.info, DeviceInfo), "info must be a DeviceInfo"
-        assert device.info == device.info, "info must stay the same"
-        assert device.info.name.strip(), "a device has a name"
+        assert isinstance(device.display, Display), "display must be a Display"
+        assert device.display == device.display, "display must stay the same"
+        assert device.display.name.strip(), "a device has a name"
 
 
 def check_members(open_device: Open) -> None:
@@ -48,12 +51,12 @@ def check_members(open_device: Open) -> None:
 def check_samples(open_device: Open) -> None:
     """Samples have finite places within the travel, and times that never go back."""
     with open_device() as device:
-        info, last_ns = device.info, None
+        info, last_ns = device.display, None
         for _ in range(100):
             sample = device.read()
             if sample is None:
                 continue
-            assert isinstance(sample, Sample), "read gives a Sample or None"
+            assert isinstance(sample, Pose), "read gives a Pose or None"
             assert math.isfinite(sample.x_mm), "a place is a number"
             slack = 1 / info.counts_per_mm
             assert -info.span_mm - slack <= sample.x_mm, "the left stop is at -span"
@@ -78,7 +81,9 @@ def check_bad_frames(open_device: Open) -> None:
             frame = _frame(device, 0.5)
             frame[-1, -1] = bad
             _refused(device, frame, f"a deflection of {bad}")
-        _refused(device, np.zeros((device.info.rows + 1, device.info.columns)), "another shape")
+        _refused(
+            device, np.zeros((device.display.rows + 1, device.display.columns)), "another shape"
+        )
         device.write(_frame(device, 0.5))
 
 
@@ -102,7 +107,7 @@ CHECKS = (
 
 
 def _frame(device: Device, share: float) -> NDArray[np.float64]:
-    return np.full((device.info.rows, device.info.columns), share)
+    return np.full((device.display.rows, device.display.columns), share)
 
 
 def _refused(device: Device, frame: NDArray[np.float64], what: str) -> None:

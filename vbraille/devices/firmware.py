@@ -37,8 +37,8 @@ from vbraille.devices.wire import Decoder, Levels, encode
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import DeviceInfo
     from vbraille.devices.wire import Event
+    from vbraille.display import Display
 
 WATCHDOG_US: Final = WATCHDOG_MS * 1000
 RAMP_US: Final = RAMP_MS * 1000
@@ -51,7 +51,7 @@ BEFORE_WRAP: Final = 20_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 
 
-def describe(info: DeviceInfo, encoder: Encoder) -> Info:
+def describe(info: Display, encoder: Encoder) -> Info:
     """INFO of a device whose actuators are all alike, and whose encoder wraps on the way.
 
     Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import DeviceInfo, Particulars
+from vbraille.devices.base import Particulars
 from vbraille.devices.messages import (
     ANSWER_MS,
     HELLO_PERIOD_MS,
@@ -19,6 +19,7 @@ from vbraille.devices.messages import (
 )
 from vbraille.devices.ports import BAUD
 from vbraille.devices.wire import DELIMITER, Decoder, OtherVersion, encode
+from vbraille.display import Display
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -132,9 +133,9 @@ def _cannot_be(fault: str, address: Address) -> DeviceError:
     )
 
 
-def info_of(info: Info) -> DeviceInfo:
+def info_of(info: Info) -> Display:
     """What a device says of itself, in mm."""
-    return DeviceInfo(
+    return Display(
         name=info.name,
         rows=info.rows,
         columns=info.columns,

@@ -49,7 +49,7 @@ def misfits(device: Device) -> Iterator[str]:
         elif not _takes(method, _given(device, name)):
             given = ", ".join(["self", *["value"] * _ARGUMENTS.get(name, 0)])
             yield f"{name} must be a method that can be called as {name}({given})"
-    for name in ("info", *_VALUES):
+    for name in ("display", *_VALUES):
         if callable(_plain(inspect.getattr_static(device, name))):
             yield f"{name} must be a property or a value, and is a method"
 

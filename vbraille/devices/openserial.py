@@ -18,9 +18,9 @@ from vbraille.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.base import DeviceInfo
     from vbraille.devices.messages import Info
     from vbraille.devices.ports import Address
+    from vbraille.display import Display
 
 # A start bit and a stop bit with each byte.
 _BITS_PER_BYTE = 10
@@ -31,7 +31,7 @@ LOWEST_RATE_HZ: Final = 40
 
 def open_serial(
     address: str,
-    wanted: DeviceInfo | None,
+    wanted: Display | None,
     *,
     now_ns: Callable[[], int] = time.monotonic_ns,
     pause: Callable[[float], None] = time.sleep,

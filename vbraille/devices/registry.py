@@ -1,7 +1,7 @@
 """Device specs, ``KIND:ADDRESS``, to devices.
 
 A kind is an entry point in the group ``vbraille.devices``: a function that takes
-the address and the `DeviceInfo` that the page was laid out for, or None, and gives an
+the address and the `Display` that the page was laid out for, or None, and gives an
 opened `vbraille.devices.Device`. Packages of other builders join the same way.
 """
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from importlib.metadata import EntryPoint
 
-    from vbraille.devices.base import DeviceInfo
+    from vbraille.display import Display
 
 GROUP = "vbraille.devices"
 # By how much a device's pitch may differ from the page's.
 PITCH_TOLERANCE = 0.01
 
 
-def open_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> Device:
+def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Device:
     """Open the device of a spec.
 
     Parameters
@@ -53,8 +53,8 @@ def open_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> D
         if wanted is not None:
             try:
                 if fits:
-                    check_actuators(device.info, wanted)
-                _check_rate(device.info, wanted.rate_hz)
+                    check_actuators(device.display, wanted)
+                _check_rate(device.display, wanted.rate_hz)
             except InputError:
                 device.close()
                 raise
@@ -62,7 +62,7 @@ def open_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> D
 
 
 @contextmanager
-def opened_device(spec: str, wanted: DeviceInfo | None, *, fits: bool = True) -> Iterator[Device]:
+def opened_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Iterator[Device]:
     """Open the device of a spec, and close it in the end.
 
     Whatever somebody else's driver raises in between names the driver, its file and its line.
@@ -102,7 +102,7 @@ def _check_device(driver: EntryPoint, device: object) -> None:
         )
 
 
-def check_actuators(info: DeviceInfo, wanted: DeviceInfo) -> None:
+def check_actuators(info: Display, wanted: Display) -> None:
     """Raise InputError if a device has other actuators than a page is for."""
     if (info.rows, info.columns) != (wanted.rows, wanted.columns):
         raise InputError(
@@ -121,7 +121,7 @@ def check_actuators(info: DeviceInfo, wanted: DeviceInfo) -> None:
             )
 
 
-def _check_rate(info: DeviceInfo, rate_hz: float) -> None:
+def _check_rate(info: Display, rate_hz: float) -> None:
     """Raise InputError if a device is too slow for the loop."""
     if info.rate_hz < rate_hz:
         raise InputError(

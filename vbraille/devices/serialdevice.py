@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.devices.base import Device, Sample
+from vbraille.devices.base import Device
 from vbraille.devices.changes import another, changes, differences, to_do
 from vbraille.devices.delivery import Delivery
 from vbraille.devices.drive import Drive
@@ -34,16 +34,17 @@ from vbraille.devices.place import DeviceTime, Place
 from vbraille.devices.serialport import DRAIN_MS
 from vbraille.devices.wire import DELIMITER, OtherVersion, encode, unwrap
 from vbraille.errors import DeviceError
+from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import DeviceInfo
     from vbraille.devices.greeting import Greeted
     from vbraille.devices.serialport import SerialPort
     from vbraille.devices.wire import Event
+    from vbraille.display import Display
 
 # Frames without anything to feel for so long, and there is nothing to show: no gap between words.
 IDLE_MS: Final = 5000
@@ -108,7 +109,7 @@ class SerialDevice(Device):
         self._tell_taking()
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device said of itself first."""
         return self._info
 
@@ -137,7 +138,7 @@ class SerialDevice(Device):
             **{str(kind): number for kind, number in self._decoder.dropped.items()},
         }
 
-    def read(self) -> Sample | None:
+    def read(self) -> Pose | None:
         """Newest sample since the last call, or None; never waits.
 
         Raises
@@ -167,7 +168,7 @@ class SerialDevice(Device):
         self._tell_taking()
         return sample
 
-    def _take(self, events: Sequence[Event], now_ns: int) -> Sample | None:
+    def _take(self, events: Sequence[Event], now_ns: int) -> Pose | None:
         sample = None
         for event in events:
             if isinstance(event, State):
@@ -191,7 +192,7 @@ class SerialDevice(Device):
             self._decoder.bad_info = ""
         return sample
 
-    def _take_state(self, state: State, now_ns: int) -> Sample | None:
+    def _take_state(self, state: State, now_ns: int) -> Pose | None:
         self._heard_ns = now_ns
         if self._link is _Link.SILENT:
             self._link = _Link.LIVE
@@ -218,7 +219,7 @@ class SerialDevice(Device):
         x_mm = self._place.x_mm(state)
         self.placing = self._place.placing
         time_ns = self._time.ns(state.time_us, now_ns)
-        return None if x_mm is None else Sample(time_ns, x_mm)
+        return None if x_mm is None else Pose(time_ns, x_mm)
 
     def _take_info(self, info: Info | OtherVersion, now_ns: int) -> None:
         if isinstance(info, OtherVersion):

@@ -8,10 +8,11 @@ from urllib.parse import parse_qsl
 
 import numpy as np
 
-from vbraille.devices.base import Device, DeviceInfo, Sample
+from vbraille.devices.base import Device
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded
 from vbraille.errors import InputError
+from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.hand import Hand
     from vbraille.devices.motion import Motion
+    from vbraille.display import Display
 
 NS_PER_S = 1_000_000_000
 # How a hand goes to where its next motion begins.
@@ -51,7 +53,7 @@ class SimulatedDevice(Device):
 
     def __init__(
         self,
-        info: DeviceInfo,
+        info: Display,
         now_ns: Callable[[], int] = time.monotonic_ns,
         hand: Hand | Recorded | None = None,
     ) -> None:
@@ -67,7 +69,7 @@ class SimulatedDevice(Device):
         self._x_mm: NDArray[np.float64] = np.full(1, home)
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself."""
         return self._info
 
@@ -116,13 +118,13 @@ class SimulatedDevice(Device):
         else:
             self._t_s, self._x_mm = motion.t_s, motion.x_mm
 
-    def read(self) -> Sample | None:
-        """Sample of the carriage now, to the nearest count of the encoder."""
+    def read(self) -> Pose | None:
+        """Pose of the carriage now, to the nearest count of the encoder."""
         now_ns = self._now_ns()
         info = self._info
         way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
-        return Sample(now_ns, counts / info.counts_per_mm - info.span_mm)
+        return Pose(now_ns, counts / info.counts_per_mm - info.span_mm)
 
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Where `read` finds it at times of its clock if nothing comes between; float64[n]."""
@@ -143,7 +145,7 @@ class SimulatedDevice(Device):
         """Nothing to let go."""
 
 
-def open_simulated(address: str, wanted: DeviceInfo | None) -> SimulatedDevice:
+def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     """Open ``sim:?hand=HAND&seed=N``: a device as the page wants it.
 
     Raises

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.devices import Device, DeviceInfo
+    from vbraille.devices import Device
+    from vbraille.display import Display
     from vbraille.render.renderer import Renderer
 
 _FADE_NS = int(FADE_S * NS_PER_S)
@@ -89,7 +90,7 @@ class BatchEngine:
         device.go_by(self._clock.now_ns)
         self._poll_ticks = poll_ticks
         self._period_ns = round(NS_PER_S / rate_hz)
-        shape = device.info.rows, device.info.columns
+        shape = device.display.rows, device.display.columns
         self._dtype = tick_dtype(shape)
         self._picture: Renderer | None = None
         self._line = 0
@@ -107,9 +108,9 @@ class BatchEngine:
         self._velocities = np.zeros(MEAN - 1)
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself."""
-        return self.device.info
+        return self.device.display
 
     @property
     def x_mm(self) -> float | None:

@@ -64,7 +64,7 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
     DeviceError
         If the device is gone.
     """
-    info = device.info
+    info = device.display
     steps = round(SWING_S * info.rate_hz)
     frame = np.zeros((info.rows, info.columns))
     told = device.particulars
@@ -115,7 +115,7 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     DeviceError
         If the device is gone.
     """
-    rate_hz = device.info.rate_hz
+    rate_hz = device.display.rate_hz
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
     engine.loop.show(_Breath(rate_hz))
     engine.loop.restart_clock()
@@ -166,7 +166,7 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
     DeviceError
         If the device is gone.
     """
-    frame = np.zeros((device.info.rows, device.info.columns))
+    frame = np.zeros((device.display.rows, device.display.columns))
     taken = []
     for _ in range(count):
         _begin(device, clock, frame)
@@ -197,7 +197,7 @@ def trip_ms(device: Device, clock: Clock) -> float | None:
     DeviceError
         If the device is gone.
     """
-    _begin(device, clock, np.zeros((device.info.rows, device.info.columns)))
+    _begin(device, clock, np.zeros((device.display.rows, device.display.columns)))
     _move(device, clock, 0.0, _HELD)
     _move(device, clock, _HELD, _HELD)
     trips, last_ns = device.watchdog_trips, clock.now_ns()
@@ -215,7 +215,7 @@ def trip_ms(device: Device, clock: Clock) -> float | None:
 
 def _move(device: Device, clock: Clock, from_: float, to: float) -> None:
     """Move all actuators from one deflection to another, at the device's rate."""
-    info = device.info
+    info = device.display
     steps = round(_HOLD_S * info.rate_hz)
     frame = np.empty((info.rows, info.columns))
     due_ns = clock.now_ns()
@@ -232,5 +232,5 @@ def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
     give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
     while not device.taking and clock.now_ns() < give_up_ns:
         device.write(frame)
-        clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.info.rate_hz))
+        clock.sleep_until_ns(clock.now_ns() + round(NS_PER_S / device.display.rate_hz))
         device.read()

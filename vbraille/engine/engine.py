@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.devices import DeviceInfo
+    from vbraille.display import Display
     from vbraille.engine.tally import Tally
     from vbraille.render.renderer import Renderer
 
@@ -23,7 +23,7 @@ class Engine(Protocol):
     """A loop with its device, for those who give it lines and watch it."""
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself."""
         ...
 

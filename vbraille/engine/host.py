@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.devices import DeviceInfo
+from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
 from vbraille.engine.tally import Tally
@@ -61,15 +61,15 @@ class Host:
         Ticks that were never polled: the parent was away for too long.
     """
 
-    def __init__(self, device: str, wanted: DeviceInfo, cells: int | None = None) -> None:
+    def __init__(self, device: str, wanted: Display, cells: int | None = None) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self._device = device
         self._wanted = wanted
         self._cells = cells
-        self._info: DeviceInfo | None = None
-        self._first: DeviceInfo | None = None  # what the device was at the first start
+        self._info: Display | None = None
+        self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None  # of memory that nobody has a view of yet
         self._mailbox: Mailbox | None = None
@@ -83,7 +83,7 @@ class Host:
         self._paused = False
         self._launched = self._ready = False
 
-    def open(self) -> DeviceInfo:
+    def open(self) -> Display:
         """Start the process, and wait until it has opened the device: what that is like.
 
         The device is read, and sent nothing, until `start`.
@@ -101,7 +101,7 @@ class Host:
             raise InputError(f"{self._info.name} is another device than before; start anew with it")
         return self._info
 
-    def fit(self, info: DeviceInfo, cells: int) -> None:
+    def fit(self, info: Display, cells: int) -> None:
         """Have lines of so many cells at most, for a device that is as this says."""
         self._wanted = replace(info, rate_hz=self._wanted.rate_hz)
         self._cells = cells
@@ -185,7 +185,7 @@ class Host:
         return None if self._process is None else self._process.pid
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself; known once started."""
         if self._info is None:
             raise DeviceError("no device is open; start the host first")
@@ -317,7 +317,7 @@ class Host:
 
     def _take(self, answer: dict[str, Any]) -> None:
         if "opened" in answer:
-            self._info = DeviceInfo(**answer["opened"])
+            self._info = Display(**answer["opened"])
         self._ready = self._ready or "ready" in answer
         if answer.get("note"):
             self._notes.append(answer["note"])

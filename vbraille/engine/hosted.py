@@ -22,10 +22,11 @@ from dataclasses import asdict
 from io import FileIO
 from typing import TYPE_CHECKING, Any
 
-from vbraille.devices import DeviceInfo, opened_device
+from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
 from vbraille.devices.notices import EVERY_NS, Notices
 from vbraille.devices.simulated import SimulatedDevice
+from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
@@ -135,7 +136,7 @@ class Hosted:
         loop.tick()
 
 
-def warm_up(info: DeviceInfo, extent: shared.Extent) -> None:
+def warm_up(info: Display, extent: shared.Extent) -> None:
     """Compile and run once all that a tick calls, on a device and a clock of no consequence."""
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
@@ -190,11 +191,11 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         If the device cannot be opened, or fails.
     """
     config = json.loads(orders.readline())
-    wanted = DeviceInfo(**config["wanted"])
+    wanted = Display(**config["wanted"])
     end_after(config["parent"])
     warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 1, _WARM_TICKS))
     with opened_device(config["device"], wanted, fits=config["fits"]) as device:
-        channel.say(opened=asdict(device.info))
+        channel.say(opened=asdict(device.display))
         told = wait_for_line(orders, device, wanted.rate_hz)
         if not told:
             return  # nobody wants it any more

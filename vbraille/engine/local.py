@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.devices import Device, DeviceInfo
+    from vbraille.devices import Device
+    from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.tally import Tally
     from vbraille.render.renderer import Renderer
@@ -37,7 +38,7 @@ class LocalEngine:
     def __init__(
         self, device: Device, clock: Clock, *, rate_hz: float = 1000.0, poll_ticks: int = 1
     ) -> None:
-        shape = device.info.rows, device.info.columns
+        shape = device.display.rows, device.display.columns
         size = poll_ticks + 1
         self._ring = Ring(memoryview(bytearray(Ring.bytes_needed(shape, size))), shape, size)
         self.loop = Loop(device, clock, rate_hz=rate_hz, ring=self._ring)
@@ -45,9 +46,9 @@ class LocalEngine:
         self._line = 0
 
     @property
-    def info(self) -> DeviceInfo:
+    def display(self) -> Display:
         """What the device says of itself."""
-        return self.loop.device.info
+        return self.loop.device.display
 
     @property
     def tally(self) -> Tally:

@@ -103,7 +103,7 @@ class Loop:
         self.velocity = Velocity()
         self.tally = Tally()
         self._ring = ring
-        shape = device.info.rows, device.info.columns
+        shape = device.display.rows, device.display.columns
         self.output = np.zeros(shape)
         self._target = np.zeros(shape)
         self._held = np.zeros(shape)
@@ -265,9 +265,9 @@ class Loop:
         x_mm = sample.x_mm
         if not -1e6 < x_mm < 1e6:
             raise DeviceError(
-                f"{self.device.info.name} says that its carriage is at {x_mm} mm, where it cannot "
-                f"be; switch it off and on, and if it says so again, look at its encoder and at "
-                f"the counts that its INFO tells, with 'vbraille device check'"
+                f"{self.device.display.name} says that its carriage is at {x_mm} mm, where it "
+                f"cannot be; switch it off and on, and if it says so again, look at its encoder "
+                f"and at the counts that its INFO tells, with 'vbraille device check'"
             )
         if self.x_mm is None:
             self._moved_mm, self._moved_ns = x_mm, now_ns

@@ -153,7 +153,7 @@ class Course:
         display = self.display
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
-            started |= {"trace": trace, "device": asdict(display.engine.info)}
+            started |= {"trace": trace, "device": asdict(display.engine.display)}
             while not display.now_ns:  # its clock is the session's
                 display.poll()
                 self.sleep()

@@ -1,0 +1,121 @@
+"""What a laterotactile display is: its actuators, and the carriage that they stand on.
+
+A device offers its `Display`; pages are laid out for it, and pictures are compiled for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# What the protocol and the kernels have room for.
+MOST_ROWS, MOST_COLUMNS = 16, 64
+REST_SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """The hardware, as a value. Row 0 is far from the reader, column 0 is the left one.
+
+    Parameters
+    ----------
+    name
+        What people call it.
+    rows, columns
+        How many actuators there are, at least 1 each.
+    column_pitch_mm, row_pitch_mm
+        Between neighbouring columns (along x) and rows (along y); with one row the row pitch has
+        no meaning.
+    levels
+        Deflections that an actuator can tell apart, at least 2: 1024 for 10 bits.
+    rest_side
+        "left" or "right": where an actuator at deflection 0 stands.
+    travel_mm
+        How far the carriage goes along x.
+    counts_per_mm
+        Resolution of the carriage's encoders.
+    rate_hz
+        Frames a second that the display is made for.
+    height_mm
+        How far the carriage goes along y; 0 if it has one axis only.
+    turns
+        Whether the carriage measures which way the array is turned.
+    contactor_mm
+        Width and height of what touches the skin; None if that is not known.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    name: str
+    rows: int
+    columns: int
+    column_pitch_mm: float
+    row_pitch_mm: float
+    levels: int
+    rest_side: str
+    travel_mm: float
+    counts_per_mm: float
+    rate_hz: float
+    height_mm: float = 0.0
+    turns: bool = False
+    contactor_mm: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if not (1 <= self.rows <= MOST_ROWS and 1 <= self.columns <= MOST_COLUMNS):
+            raise ValueError(
+                f"an array of {self.rows} × {self.columns} actuators is not possible; "
+                f"it must be 1 to {MOST_ROWS} rows × 1 to {MOST_COLUMNS} columns"
+            )
+        for name in ("column_pitch_mm", "row_pitch_mm"):
+            if not 0.05 <= getattr(self, name) <= 50:
+                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0.05 to 50 mm")
+        if self.levels < 2:
+            raise ValueError(f"a display of {self.levels} levels is not possible; it has 2 or more")
+        if self.rest_side not in REST_SIDES:
+            raise ValueError(f"rest side is {self.rest_side!r}; it must be left or right")
+        for name in ("travel_mm", "counts_per_mm", "rate_hz"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be above 0")
+        if not self.height_mm >= 0:
+            raise ValueError(f"height_mm is {self.height_mm}; it must be 0 or more")
+        if self.contactor_mm is not None:
+            width, height = self.contactor_mm  # JSON has lists
+            object.__setattr__(self, "contactor_mm", (width, height))
+            if not (width > 0 and height > 0):
+                raise ValueError(f"contactors are {width} × {height} mm; they must be above 0")
+
+    @property
+    def span_mm(self) -> float:
+        """From the left column to the right one: S = (columns - 1) · pitch."""
+        return (self.columns - 1) * self.column_pitch_mm
+
+    @property
+    def depth_mm(self) -> float:
+        """From row 0 to the row nearest to the reader."""
+        return (self.rows - 1) * self.row_pitch_mm
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape of a frame: rows, columns."""
+        return self.rows, self.columns
+
+    @property
+    def axes(self) -> str:
+        """What the carriage measures: "x", "xy", or either with "θ"."""
+        return "x" + "y" * (self.height_mm > 0) + "θ" * self.turns
+
+    def column_offsets_mm(self) -> NDArray[np.float64]:
+        """Where each column is, right of the left one; float64[columns]."""
+        return np.arange(self.columns, dtype=np.float64) * self.column_pitch_mm
+
+    def row_offsets_mm(self) -> NDArray[np.float64]:
+        """Where each row is, towards the reader from row 0; float64[rows]."""
+        return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
