@@ -59,11 +59,11 @@ class Display:
     columns: int
     column_pitch_mm: float
     row_pitch_mm: float
-    levels: int
-    rest_side: str
-    travel_mm: float
-    counts_per_mm: float
-    rate_hz: float
+    levels: int = 1024
+    rest_side: str = "right"
+    travel_mm: float = 300.0
+    counts_per_mm: float = 200.0
+    rate_hz: float = 1000.0
     height_mm: float = 0.0
     turns: bool = False
     contactor_mm: tuple[float, float] | None = None

@@ -26,11 +26,8 @@ if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
     from numpy.typing import NDArray
 
-    from vbraille.geometry import Geometry
-    from vbraille.render.arrays import ActuatorArray
-    from vbraille.render.mappings import Mapping
+    from vbraille.display import Display
     from vbraille.render.models import Model
-    from vbraille.render.tuning import Tuning
 
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
@@ -43,15 +40,15 @@ class Recorder:
     ----------
     file
         Of `new_file`.
-    array
-        The actuators.
+    display
+        The hardware.
     width
         Cells a line.
     """
 
-    def __init__(self, file: NewFile, array: ActuatorArray, width: int) -> None:
+    def __init__(self, file: NewFile, display: Display, width: int) -> None:
         self._file = file
-        rows, columns = array.shape
+        rows, columns = display.shape
 
         def growing(name: str, dtype: str, *shape: int, chunk: int = CHUNK_FRAMES) -> h5py.Dataset:
             # The filters that every HDF5 library has. Bytes of frames are shared out by their
@@ -73,17 +70,14 @@ class Recorder:
         self._frames = growing("frames", "f4", rows, columns)
         self._cells = growing("page/cells", "u1", width, chunk=_CHUNK_LINES)
         self._length = growing("page/length", "i8", chunk=_CHUNK_LINES)
-        file.attrs["column_offset_mm"] = array.column_offsets_mm()
-        file.attrs["row_offset_mm"] = array.row_offsets_mm()
+        file.attrs["column_offset_mm"] = display.column_offsets_mm()
+        file.attrs["row_offset_mm"] = display.row_offsets_mm()
         file.attrs["vbraille_version"] = __version__
 
     def describe(
         self,
         *,
         model: Model,
-        mapping: Mapping,
-        geometry: Geometry,
-        tuning: Tuning,
         rate_hz: float,
         first_line: int,
         source: str,
@@ -92,9 +86,9 @@ class Recorder:
         """Write what was rendered, and how, as attributes."""
         self._file.attrs.update(
             model=model.name,
-            mapping=mapping.name,
-            geometry=json.dumps(asdict(geometry)),
-            tuning=json.dumps(asdict(tuning)),
+            mapping=model.style.mapping.name,
+            geometry=json.dumps(asdict(model.style.geometry)),
+            tuning=json.dumps(asdict(model.style.tuning)),
             rate_hz=rate_hz,
             first_line=first_line,
             source=source,

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
-from vbraille.geometry import PRESETS, Geometry
+from vbraille.geometry import PRESETS
 from vbraille.page import Layout
-from vbraille.render import MAPPINGS, MODELS, Mapping, Model, Tuning, single_row
+from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
 from vbraille.wording import printable
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A text laid out for a model.
+    """A text laid out for a display and a style.
 
     Parameters
     ----------
     layout
         Its lines.
-    model, geometry
+    model
         What they are laid out for.
     first, last
         Lines asked for.
@@ -39,7 +39,6 @@ class Page:
 
     layout: Layout
     model: Model
-    geometry: Geometry
     first: int
     last: int | None
     unknown: Unknown
@@ -89,17 +88,26 @@ class Page:
             print(printable(sentence), file=sys.stderr, flush=True)
 
 
-def build_geometry(
+def build_lengths(
     arguments: argparse.Namespace, model: Model, travel_mm: float | None = None
-) -> Geometry:
-    """Distances on a model's page, within a travel where the options give none.
+) -> Model:
+    """A display and its style with the distances of the options.
+
+    Parameters
+    ----------
+    arguments
+        Of the command.
+    model
+        What they change.
+    travel_mm
+        How far the carriage goes where the options do not say.
 
     Raises
     ------
     InputError
         If a length is out of range.
     """
-    geometry = PRESETS[arguments.geometry] if arguments.geometry else model.geometry
+    geometry = PRESETS[arguments.geometry] if arguments.geometry else model.style.geometry
     given = {
         f"{name}_mm": getattr(arguments, name)
         for name in ("dot_width", "dot_spacing", "cell_gap", "line_pitch", "travel")
@@ -108,9 +116,10 @@ def build_geometry(
     if travel_mm is not None:
         given.setdefault("travel_mm", travel_mm)
     try:
-        return replace(geometry, **given)
+        geometry = replace(geometry, **given)
     except ValueError as error:
         raise InputError(str(error)) from None
+    return replace(model, style=replace(model.style, geometry=geometry))
 
 
 def build_table(arguments: argparse.Namespace) -> Table:
@@ -157,8 +166,8 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     return Book(document, table)
 
 
-def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: Geometry) -> Page:
-    """Page of a text for a model, whose width is said on stderr.
+def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
+    """Page of a text for a display and a style, whose width is said on stderr.
 
     Raises
     ------
@@ -166,7 +175,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: G
         If there is no room for a cell, or the text ends before the lines asked for.
     """
     try:
-        width = geometry.cells_per_line(model.array.span_mm)
+        width = model.style.geometry.cells_per_line(model.display.span_mm)
     except ValueError as error:
         raise InputError(str(error)) from None
     first, last = arguments.lines
@@ -180,7 +189,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model, geometry: G
     cells = "1 cell" if width == 1 else f"{width} cells"
     print(f"line width: {cells}, table {printable(book.table.name)}", file=sys.stderr, flush=True)
     unknown = Unknown(book.table, Undefined(arguments.undefined))
-    return Page(layout, model, geometry, first, last, unknown)
+    return Page(layout, model, first, last, unknown)
 
 
 def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
@@ -193,9 +202,8 @@ def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page
     InputError
         If an option or the text cannot be used.
     """
-    model = MODELS[arguments.model]
-    geometry = build_geometry(arguments, model)
-    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model, geometry)
+    model = build_lengths(arguments, MODELS[arguments.model])
+    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model)
 
 
 def _eight_dots(table: Table) -> str:
@@ -209,21 +217,22 @@ def _eight_dots(table: Table) -> str:
     )
 
 
-def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tuning]:
-    """How the lines are shown.
+def build_show(arguments: argparse.Namespace, model: Model) -> Model:
+    """A display and its style with the mapping and the tuning of the options.
 
     Raises
     ------
     InputError
-        If an option is out of range or not the model's.
+        If an option is out of range or not the display's.
     """
-    if model.array.rows == 1:
+    style = model.style
+    if style.mapping.rows == 1:
         if arguments.mapping is not None:
             raise InputError(f"the {model.title} has one row of actuators; --dot-row chooses dots")
-        if arguments.texture_cycles is not None:
-            raise InputError(f"the texture of the {model.title} has a fixed wavelength")
     elif arguments.dot_row is not None:
         raise InputError(f"the {model.title} shows all dot rows; --mapping chooses how")
+    if style.profile is Profile.HALF_SINE and arguments.texture_cycles is not None:
+        raise InputError(f"the texture of the {model.title} has a fixed wavelength")
     given = {
         name: value
         for name, value in (
@@ -234,20 +243,22 @@ def build_show(arguments: argparse.Namespace, model: Model) -> tuple[Mapping, Tu
         if value is not None
     }
     try:
-        mapping = model.mapping
+        mapping = style.mapping
         if arguments.dot_row is not None:
             mapping = single_row(arguments.dot_row)
         elif arguments.mapping is not None:
             mapping = MAPPINGS[arguments.mapping]
-        return mapping, replace(model.tuning, **given)
+        style = replace(style, mapping=mapping, tuning=replace(style.tuning, **given))
+        style.rows_on(model.display)
     except ValueError as error:
         raise InputError(str(error)) from None
+    return replace(model, style=style)
 
 
-def note_unseen_dots(page: Page, mapping: Mapping) -> None:
+def note_unseen_dots(page: Page) -> None:
     """Say on stderr if the table writes dots that the display does not show."""
     info = page.layout.book.table.info
-    if info is not None and info.dots == 8 and mapping.rows > 1:
+    if info is not None and info.dots == 8 and page.model.style.mapping.rows > 1:
         print(
             f"table {info.name} has eight dots; the {page.model.title} shows six, "
             f"so that dots 7 and 8 are not felt",

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.checking import check
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info
 from vbraille.devices import opened_device
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
@@ -56,8 +55,7 @@ def _list() -> int:
 def _wanted(arguments: argparse.Namespace) -> Display | None:
     if arguments.model is None:
         return None
-    model = MODELS[arguments.model]
-    return device_info(model, model.geometry, 1000.0)
+    return MODELS[arguments.model].display
 
 
 def _describe(device: Device) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille import pictures
-from vbraille.cli.build import build_geometry, build_page, build_show, build_table
+from vbraille.cli.build import build_book, build_lengths, build_show, build_table, lay_out
 from vbraille.errors import InputError
 from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
@@ -62,30 +62,28 @@ def _table(arguments: argparse.Namespace) -> Table:
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
     model = MODELS[arguments.model]
-    geometry = build_geometry(arguments, model)
-    mapping, tuning = build_show(arguments, model)
+    shown = build_show(arguments, build_lengths(arguments, model))
+    style = shown.style
     match arguments.kind:
         case "profile":
-            return pictures.profile(model, geometry, tuning)
+            return pictures.profile(shown)
         case "wave":
-            return pictures.wave(model, geometry, tuning)
+            return pictures.wave(shown)
         case "strain":
             if model is not VBD:
                 raise InputError("the strain figure is of the VBD; leave --model out or give vbd")
-            return pictures.strain(geometry, tuning)
+            return pictures.strain(style.geometry, style.tuning)
         case "mapping":
             if model is VBD:
                 raise InputError("the VBD has one row; the mappings are of stress2")
-            return pictures.mapping(geometry, tuning, **_letter(arguments))
+            return pictures.mapping(style, **_letter(arguments))
     if not math.isfinite(arguments.at):
         raise InputError(f"--at is {arguments.at}; it must be a number of mm")
-    page = build_page(arguments)
+    page = lay_out(arguments, build_book(arguments), shown)
     lines = list(islice(page.lines(), None if page.last else _LINES))
     page.say_note()
     page.say_unknown()
-    return pictures.page(
-        lines, model=model, mapping=mapping, geometry=geometry, tuning=tuning, x_mm=arguments.at
-    )
+    return pictures.page(lines, shown, x_mm=arguments.at)
 
 
 def _letter(arguments: argparse.Namespace) -> dict:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.build import (
     build_book,
-    build_geometry,
+    build_lengths,
     build_show,
     lay_out,
     note_unseen_dots,
@@ -17,15 +17,14 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import (
     check_rate,
     check_travel,
-    device_info,
     device_spec,
     is_simulated,
-    model_of,
     refuse_hand,
 )
 from vbraille.devices.base import Placing
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded
+from vbraille.devices.registry import check_actuators
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.ring import Flag
@@ -34,7 +33,7 @@ from vbraille.errors import DeviceError, InputError
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
-from vbraille.render import MODELS
+from vbraille.render import MODELS, model_of
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -62,8 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     seed = 1 if arguments.seed is None else arguments.seed
     once = isinstance(parse_hand(hand, seed), Recorded)
     # What the options ask for: a simulated device is just so, a real one is what it is.
-    asked = MODELS[arguments.model or "stress2"]
-    wanted = device_info(asked, build_geometry(arguments, asked), rate_hz)
+    asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
+    wanted = asked.on(asked.style.geometry, rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     host = Host(device_spec(arguments.device, hand, seed), wanted)
@@ -72,23 +71,21 @@ def run(arguments: argparse.Namespace) -> int:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
         try:
             book = build_book(arguments)
-            info = wanted if is_simulated(arguments.device) else host.open()
-            model = model_of(info, arguments.model)
-            mapping, tuning = build_show(arguments, model)
+            display = wanted if is_simulated(arguments.device) else host.open()
+            if arguments.model is not None:
+                check_actuators(display, wanted)
+            model = build_show(arguments, model_of(display))
             if arguments.travel is not None:
-                check_travel(info, arguments.travel)
-            geometry = build_geometry(arguments, model, info.travel_mm)
-            page = lay_out(arguments, book, model, geometry)
-            note_unseen_dots(page, mapping)
-            host.fit(info, page.layout.width)
+                check_travel(display, arguments.travel)
+            model = build_lengths(arguments, model, display.travel_mm)
+            page = lay_out(arguments, book, model)
+            note_unseen_dots(page)
+            host.fit(display, model.style.room(display, page.layout.width))
             host.start()
             reader = Reader(
                 page.layout,
                 host,
                 model=page.model,
-                geometry=page.geometry,
-                mapping=mapping,
-                tuning=tuning,
                 say=_say,
                 first=page.first,
                 last=page.last,

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from vbraille.cli.build import (
-    build_page,
+    build_book,
+    build_lengths,
     build_show,
+    lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.renderers import build_renderer
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
 from vbraille.devices.hand import Recorded, parse_hand
@@ -46,13 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the frames of every line asked for, and say how many."""
     if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
         raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
-    mapping, tuning = build_show(arguments, MODELS[arguments.model])
+    model = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
-    page = build_page(arguments)
-    note_unseen_dots(page, mapping)
+    model = build_lengths(arguments, model)
+    page = lay_out(arguments, build_book(arguments), model)
+    style, display = model.style, model.display
+    note_unseen_dots(page)
     with EAR.at_once():  # numba compiles
-        build_renderer(np.zeros(1, np.uint8), page, mapping, tuning).path(np.zeros(1))
+        style.render(np.zeros(1, np.uint8), display).path(np.zeros(1))
     lines = frames = 0
     estimate = _Estimate(rate_hz)
     too_fast: str | None = None
@@ -61,12 +64,9 @@ def run(arguments: argparse.Namespace) -> int:
         new_file(arguments.out, replace=arguments.force) as file,
         _Progress(plain=arguments.plain) as progress,
     ):
-        recorder = Recorder(file, page.model.array, page.layout.width)
+        recorder = Recorder(file, display, page.layout.width)
         recorder.describe(
-            model=page.model,
-            mapping=mapping,
-            geometry=page.geometry,
-            tuning=tuning,
+            model=model,
             rate_hz=rate_hz,
             first_line=page.first,
             source=page.document.name,
@@ -75,17 +75,15 @@ def run(arguments: argparse.Namespace) -> int:
         for line, xs in _walk(page, hand, rate_hz):
             estimate.before(page.share_before(line), frames, recorder)
             row = recorder.add_line(line.masks)
-            renderer = build_renderer(line.masks, page, mapping, tuning)
+            program = style.render(line.masks, display)
             for start in range(0, xs.size, _BLOCK_FRAMES):
                 x_mm = xs[start : start + _BLOCK_FRAMES]
                 t_s = (frames + np.arange(x_mm.size)) / rate_hz
-                recorder.add_frames(t_s, x_mm, row, renderer.path(x_mm))
+                recorder.add_frames(t_s, x_mm, row, program.path(x_mm))
                 frames += x_mm.size
                 EAR.heed()
             lines += 1
-            too_fast = too_fast or too_fast_note(
-                _fastest(xs, rate_hz), page.model, page.geometry, tuning
-            )
+            too_fast = too_fast or too_fast_note(_fastest(xs, rate_hz), style)
             progress.at(page.progress(line))
     if too_fast is not None:
         print(too_fast, file=sys.stderr)
@@ -102,10 +100,10 @@ def _walk(
     page: Page, hand: Hand | Recorded, rate_hz: float
 ) -> Iterator[tuple[Line, NDArray[np.float64]]]:
     """Lines, each with the places of the array's left column while it is under the hand."""
-    span_mm = page.model.array.span_mm
+    span_mm = page.model.display.span_mm
     recorded = hand.motion().sample(rate_hz) if isinstance(hand, Recorded) else None
     for line in page.lines():
-        end_mm = page.geometry.extent_mm(len(line))
+        end_mm = page.model.style.geometry.extent_mm(len(line))
         if recorded is None:
             assert not isinstance(hand, Recorded)
             yield line, hand.read_line(-span_mm, end_mm).sample(rate_hz)

@@ -94,7 +94,10 @@ def _run(arguments: argparse.Namespace) -> int:
         "seed": plan.seed,
         "order": plan.order,
         "model": protocol.model.name,
-        "array": asdict(protocol.model.array),
+        "array": {
+            name: getattr(protocol.model.display, name)
+            for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm")
+        },
         "mapping": protocol.mapping.name,
         "geometry": asdict(protocol.geometry),
         "fields": fields,

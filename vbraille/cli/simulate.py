@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import device_info
 from vbraille.devices.firmware import describe
 from vbraille.devices.hand import parse_hand
 from vbraille.devices.messages import Encoder
@@ -62,13 +61,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _info(arguments: argparse.Namespace) -> Info:
     model = MODELS[arguments.model]
-    geometry = model.geometry
+    geometry = model.style.geometry
     if not (50 <= arguments.rate <= 10_000 and arguments.rate == int(arguments.rate)):
         raise InputError(f"rate is {arguments.rate:g} Hz; it must be 50 to 10000 Hz, and whole")
     try:
         if arguments.travel is not None:
             geometry = replace(geometry, travel_mm=arguments.travel)
-        device = device_info(model, geometry, arguments.rate)
+        device = model.on(geometry, arguments.rate)
         return describe(device, Encoder[arguments.encoder.upper()])
     except ValueError as error:
         raise InputError(str(error)) from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_info, device_spec
+from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
@@ -54,7 +54,7 @@ class Sitting:
         if arguments.fast and not spec.startswith("sim:"):
             raise InputError("--fast is for the simulated device; leave out --device")
         if protocol.medium == "device":
-            wanted = device_info(protocol.model, protocol.geometry, rate_hz)
+            wanted = protocol.model.on(protocol.geometry, rate_hz)
             self._engine = _build(spec, wanted, protocol, plan, fast=arguments.fast)
 
     def check(self, answers: Answers) -> None:
@@ -176,7 +176,7 @@ def _build(spec: str, wanted: Display, protocol: Protocol, plan: Plan, *, fast: 
 
         return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
     most = max(len(protocol.line(stimulus.masks)) for stimulus in _stimuli(plan))
-    return Host(spec, wanted, most)
+    return Host(spec, wanted, protocol.model.style.room(wanted, most))
 
 
 def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:

@@ -2,86 +2,24 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
-from vbraille.devices.registry import check_actuators
-from vbraille.display import Display
 from vbraille.errors import InputError
-from vbraille.render.models import MODELS
 
 if TYPE_CHECKING:
-    from vbraille.geometry import Geometry
-    from vbraille.render.models import Model
+    from vbraille.display import Display
 
-LEVELS = 1024  # 10 bits, as the source's devices take
 TRAVEL_TOLERANCE_MM = 0.01
-COUNTS_PER_MM = 200.0  # 5 µm a count: at full texture 4 % of the swing
 
 
-def device_info(model: Model, geometry: Geometry, rate_hz: float) -> Display:
-    """Device that the page is laid out for; a simulated one is just so."""
-    array = model.array
-    return Display(
-        name=f"simulated {model.title}",
-        rows=array.rows,
-        columns=array.columns,
-        column_pitch_mm=array.column_pitch_mm,
-        row_pitch_mm=array.row_pitch_mm,
-        levels=LEVELS,
-        rest_side=model.rest_side,
-        travel_mm=geometry.travel_mm,
-        counts_per_mm=COUNTS_PER_MM,
-        rate_hz=rate_hz,
-    )
-
-
-def model_of(info: Display, name: str | None) -> Model:
-    """The model that a device is, with the device's own pitches.
-
-    Parameters
-    ----------
-    info
-        What the device says of itself.
-    name
-        Of the model that it must be; None if any will do.
-
-    Raises
-    ------
-    InputError
-        If it is none, or not this one.
-    """
-    if name is not None:
-        check_actuators(info, device_info(MODELS[name], MODELS[name].geometry, info.rate_hz))
-    for model in MODELS.values():
-        with suppress(InputError):
-            check_actuators(info, device_info(model, model.geometry, info.rate_hz))
-            array = replace(
-                model.array,
-                column_pitch_mm=info.column_pitch_mm,
-                row_pitch_mm=info.row_pitch_mm,
-            )
-            return replace(model, array=array)
-    known = " and ".join(
-        f"{model.array.rows} × {model.array.columns} {model.array.column_pitch_mm:g} mm apart "
-        f"({model.title})"
-        for model in MODELS.values()
-    )
-    raise InputError(
-        f"{info.name} has {info.rows} × {info.columns} actuators {info.column_pitch_mm:g} mm "
-        f"apart, and pages are laid out for {known} only; choose another --device"
-    )
-
-
-def check_travel(info: Display, travel_mm: float) -> None:
+def check_travel(display: Display, travel_mm: float) -> None:
     """Raise InputError if a page needs more travel than a device's carriage has."""
     # Counts and micrometres are rounded on their way here.
-    if travel_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:
+    if travel_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
         raise InputError(
-            f"the carriage of {info.name} goes {info.travel_mm:g} mm and --travel asks for "
-            f"{travel_mm:g} mm; leave --travel out, or give {info.travel_mm:g} or less"
+            f"the carriage of {display.name} goes {display.travel_mm:g} mm and --travel asks for "
+            f"{travel_mm:g} mm; leave --travel out, or give {display.travel_mm:g} or less"
         )
 
 

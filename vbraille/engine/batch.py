@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices import Device
     from vbraille.display import Display
-    from vbraille.render.renderer import Renderer
+    from vbraille.render.program import Program
 
 _FADE_NS = int(FADE_S * NS_PER_S)
 _PAUSE_FADE_NS = int(PAUSE_FADE_S * NS_PER_S)
@@ -92,12 +92,12 @@ class BatchEngine:
         self._period_ns = round(NS_PER_S / rate_hz)
         shape = device.display.rows, device.display.columns
         self._dtype = tick_dtype(shape)
-        self._picture: Renderer | None = None
+        self._picture: Program | None = None
         self._line = 0
         self._paused = False
         self._followed = False
         self._rested = device.rested
-        self._shown: Renderer | None = None  # what was last under the hand; None at rest
+        self._shown: Program | None = None  # what was last under the hand; None at rest
         self._output = np.zeros(shape, np.float32)
         self._held = self._output
         self._fading_ns = _FADE_NS
@@ -127,7 +127,7 @@ class BatchEngine:
         self._paused = paused
         self._moved_ns = self._clock.now_ns()
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self._picture = picture
         if line != self._line:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.tally import Tally
-    from vbraille.render.renderer import Renderer
+    from vbraille.render.program import Program
 
 
 class Engine(Protocol):
@@ -45,7 +45,7 @@ class Engine(Protocol):
     @paused.setter
     def paused(self, paused: bool) -> None: ...
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand.
 
         Parameters

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from vbraille.engine.mailbox import Mailbox
     from vbraille.engine.ring import Ring
-    from vbraille.render.renderer import Renderer
+    from vbraille.render.program import Program
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
 _END_S = 5.0
@@ -47,9 +47,9 @@ class Host:
     wanted
         The actuators, travel and rate that the page was laid out for. With no cells given they are
         a wish, which a simulated device fulfils; a real one is what it is.
-    cells
-        Most cells of a line; None if lines are laid out for the device that is found: `open` it,
-        then tell `fit`, then `start`.
+    room
+        Bytes of the largest picture; None if pictures are made for the device that is found:
+        `open` it, then tell `fit`, then `start`.
 
     Attributes
     ----------
@@ -61,20 +61,20 @@ class Host:
         Ticks that were never polled: the parent was away for too long.
     """
 
-    def __init__(self, device: str, wanted: Display, cells: int | None = None) -> None:
+    def __init__(self, device: str, wanted: Display, room: int | None = None) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self._device = device
         self._wanted = wanted
-        self._cells = cells
+        self._room = room
         self._info: Display | None = None
         self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None  # of memory that nobody has a view of yet
         self._mailbox: Mailbox | None = None
         self._ring: Ring | None = None
-        self._shown: tuple[Renderer, int, float] | None = None
+        self._shown: tuple[Program, int, float] | None = None
         self._notes: list[str] = []
         self._heard = b""
         self._fault: VbrailleError | None = None
@@ -101,10 +101,10 @@ class Host:
             raise InputError(f"{self._info.name} is another device than before; start anew with it")
         return self._info
 
-    def fit(self, info: Display, cells: int) -> None:
-        """Have lines of so many cells at most, for a device that is as this says."""
-        self._wanted = replace(info, rate_hz=self._wanted.rate_hz)
-        self._cells = cells
+    def fit(self, display: Display, room: int) -> None:
+        """Have pictures of so many bytes at most, for a device that is as this says."""
+        self._wanted = replace(display, rate_hz=self._wanted.rate_hz)
+        self._room = room
         if self._launched:
             self._share()
 
@@ -121,7 +121,7 @@ class Host:
             self._wait()
         self._launched = False
         if self._shown is not None:
-            self._posted.post(*self._shown)
+            self._posted.post(*self._shown[:2])
 
     def launch(self) -> None:
         """Start the process and wait for nothing: `start` does, when there is no more to do.
@@ -146,19 +146,19 @@ class Host:
         self._tell(
             device=self._device,
             wanted=asdict(self._wanted),
-            fits=self._cells is not None,
+            fits=self._room is not None,
             parent=os.getpid(),
         )
-        if self._cells is not None:
+        if self._room is not None:
             self._share()
 
     def _share(self) -> None:
         """Share memory for lines and records, now that it is known how much."""
         assert self._descriptor is not None
-        assert self._cells is not None
+        assert self._room is not None
         wanted = self._wanted
         ticks = round(shared.RING_S * wanted.rate_hz)
-        extent = shared.Extent(wanted.rows, wanted.columns, self._cells, ticks)
+        extent = shared.Extent(wanted.rows, wanted.columns, self._room, ticks)
         memory = shared.attach(self._descriptor, extent)
         self._forget_memory()
         self._mailbox, self._ring = shared.divide(memory, extent)
@@ -210,10 +210,10 @@ class Host:
     def paused(self, paused: bool) -> None:
         self._paused = self._posted.paused = paused
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self._shown = picture, line, end_mm
-        self._posted.post(picture, line, end_mm)
+        self._posted.post(picture, line)
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

@@ -30,7 +30,6 @@ from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
-from vbraille.engine.posted import PostedPicture
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
 
@@ -104,8 +103,6 @@ class Hosted:
         self._zeroed = 0
         self._taken = 0
         self._line = 0
-        # The one under the hand, and the one that comes next.
-        self._pictures = [PostedPicture(extent.shape, extent.cells) for _ in range(2)]
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
         """Take a signal: end after this tick."""
@@ -120,14 +117,13 @@ class Hosted:
         """Do what is new in the mailbox, then a tick."""
         mailbox, loop = self._mailbox, self.loop
         if mailbox.published != self._taken:
-            picture = self._pictures[0]
-            if mailbox.take(picture):
-                self._pictures.reverse()
-                self._taken = picture.number
-                loop.show(picture, picture.line)
-                if picture.line != self._line:
-                    self._line = picture.line
-                    loop.device.follow(picture.end_mm)
+            posted = mailbox.take()
+            if posted is not None:
+                self._taken = posted.number
+                loop.show(posted.program, posted.line)
+                if posted.line != self._line:
+                    self._line = posted.line
+                    loop.device.follow(0.0)
         if mailbox.paused != loop.paused:
             loop.paused = mailbox.paused
         if mailbox.zeroed != self._zeroed:

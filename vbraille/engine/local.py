@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.tally import Tally
-    from vbraille.render.renderer import Renderer
+    from vbraille.render.program import Program
 
 
 class LocalEngine:
@@ -69,7 +69,7 @@ class LocalEngine:
     def paused(self, paused: bool) -> None:
         self.loop.paused = paused
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int, end_mm: float) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self.loop.show(picture, line)
         if line != self._line:

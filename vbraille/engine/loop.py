@@ -1,55 +1,34 @@
-"""The loop: read the carriage, render, write the frame.
-
-Whatever changes without the hand's doing - a new line, a tuning, a jump, the
-start, a pause, rest - fades from the frame last sent.
-"""
+"""The loop: read the carriage, make the frame, write it."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.ring import Flag
+from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
+from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
+from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, tick_dtype
+from vbraille.engine.ring import Ring
+from vbraille.engine.state import State
 from vbraille.engine.tally import Tally
-from vbraille.engine.velocity import Velocity
 from vbraille.errors import DeviceError
-from vbraille.render.kernels import blend
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.base import Device
     from vbraille.engine.clock import Clock
-    from vbraille.engine.ring import Ring
+    from vbraille.render.program import Program
 
-NS_PER_S = 1_000_000_000
-FADE_S = 0.1
-PAUSE_FADE_S = 0.02
-IDLE_S = 5.0
-# A hand that moved less than this is at rest: some counts of a fine encoder.
-STILL_MM = 0.05
-# No hand moves 5 m/s: a carriage that is further within a tick was lost and found again.
-JUMP_MM_S = 5_000.0
-SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
-_PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
-_RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
 _HELD = int(Flag.HELD)
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
-class Picture(Protocol):
-    """What is under the hand: a frame for every place."""
-
-    def frame(self, x_mm: float, out: NDArray[np.float64], /) -> None:
-        """Fill the frame for the array's left column at x."""
-        ...
-
-
 class Loop:
-    """Drive a device.
+    """Drive a device, tick by tick, in plain Python but for what `State.advance` does.
 
     Parameters
     ----------
@@ -65,18 +44,15 @@ class Loop:
     idle_s
         How long without motion before the array goes to rest.
     ring
-        Where to record every tick.
+        Where to record every tick; one of the last tick alone if it is not given.
 
     Attributes
     ----------
-    x_mm : float or None
-        Where the array's left column is; None before the first sample.
-    velocity : Velocity
-        Of the hand.
-    output : float64[rows, columns]
-        The frame last sent.
-    tally : Tally
-        What happened so far.
+    state : State
+        What a tick knows from those before it.
+    late, overruns : int
+        Deadlines that passed before their tick could begin, and ticks whose own work took longer
+        than a period.
 
     Raises
     ------
@@ -94,53 +70,61 @@ class Loop:
         idle_s: float = IDLE_S,
         ring: Ring | None = None,
     ) -> None:
-        if not 1 <= rate_hz <= 10_000:
-            raise ValueError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
         self.device = device
         self.clock = clock
         self.rate_hz = rate_hz
-        self.x_mm: float | None = None
-        self.velocity = Velocity()
-        self.tally = Tally()
-        self._ring = ring
-        shape = device.display.rows, device.display.columns
-        self.output = np.zeros(shape)
-        self._target = np.zeros(shape)
-        self._held = np.zeros(shape)
-        self._rest = np.zeros(shape)
-        self._picture: Picture | None = None
-        self._line = 0
-        self._paused = False
-        self._rested = device.rested
-        self._shown: Picture | None = None  # what the target is of; None at rest
+        display = device.display
+        self.state = State(
+            display,
+            rate_hz,
+            clock.now_ns(),
+            fade_s=fade_s,
+            idle_s=idle_s,
+            rested=device.rested,
+        )
+        self.ring = ring or Ring.alone(display.shape, 2)
+        self.late = self.overruns = 0
+        self._times_ns = np.zeros((1, 2), np.int64)
+        self._poses = np.zeros((1, 4))
         self._fade_ns = int(fade_s * NS_PER_S)
-        # How long this fade takes, and how far it has come: by ticks, since a loop that was
-        # held up would jump if it took the time that it lost for time in which it faded.
-        self._fading_ns = self._faded_ns = self._fade_ns
-        self._ticked_ns = clock.now_ns()
-        self._share = 1.0
-        self._happened = 0  # flags of what this tick began with
-        self._idle_ns = int(idle_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
-        self._moved_ns = self._sampled_ns = self._deadline_ns
-        self._device_ns = 0
-        self._moved_mm = 0.0
 
-    def show(self, picture: Picture | None, line: int = 0) -> None:
+    def show(self, program: Program | None, line: int = 0) -> None:
         """Put something else under the hand; it fades in. None is rest. Records tell the line."""
-        self._picture = picture
-        self._line = line
+        self.state.want(program, line)
+
+    @property
+    def output(self) -> NDArray[np.float64]:
+        """The frame last sent, float64[rows, columns]."""
+        return self.state.output
+
+    @property
+    def x_mm(self) -> float | None:
+        """Where the array's centre is along x; None before the first pose."""
+        now = self.state.now
+        return float(now["x_mm"]) if now["placed"] else None
+
+    @property
+    def tally(self) -> Tally:
+        """What happened so far."""
+        now = self.state.now
+        return Tally(
+            ticks=int(now["tick"]),
+            late=self.late,
+            overruns=self.overruns,
+            forward_mm=float(now["forward_mm"]),
+            forward_s=float(now["forward_s"]),
+        )
 
     @property
     def paused(self) -> bool:
         """Whether the array rests until told otherwise; setting it takes effect at once."""
-        return self._paused
+        return self.state.paused
 
     @paused.setter
     def paused(self, paused: bool) -> None:
-        self._paused = paused
-        self._moved_ns = self.clock.now_ns()
+        self.state.pause(paused, self.clock.now_ns())
 
     @property
     def resting(self) -> bool:
@@ -148,56 +132,58 @@ class Loop:
         return not self.output.any()
 
     def tick(self) -> None:
-        """Wait for the next deadline; then read, render and write.
+        """Wait for the next deadline; then read, make the frame and write it.
 
         Raises
         ------
         DeviceError
-            If the device is gone.
+            If the device is gone, or says that its carriage is where none can be.
         """
         self.clock.sleep_until_ns(self._deadline_ns)
         now_ns = self.clock.now_ns()
         busy_ns = self.clock.busy_ns()
         lateness_ns = now_ns - self._deadline_ns
-        followed = self.device.followed  # asked before the place, which is then the last one
-        self._happened = 0
-        self._faded_ns += min(now_ns - self._ticked_ns, self._period_ns)
-        self._ticked_ns = now_ns
-        self._read(now_ns)
-        if self.device.rested != self._rested:
-            self._rested = self.device.rested
-            self.output.fill(0.0)
-            self._happened |= _RESTED
-            self._change(self._shown, self._fade_ns)
-        if not self.device.taking:
-            self.output.fill(0.0)
-            self._shown = None
-            self._faded_ns = self._fading_ns
-        picture = self._wanted(now_ns)
-        if picture is not self._shown:
-            fade_ns = int(PAUSE_FADE_S * NS_PER_S) if self._paused else self._fade_ns
-            self._change(picture, fade_ns)
-        self._write(picture)
-        self.tally.ticks += 1
+        device, ring = self.device, self.ring
+        times_ns, pose = self._times_ns, self._poses[0]
+        times_ns[0, 0] = now_ns
+        sample = device.read()
+        if sample is None:
+            pose[POSED] = 0.0
+        else:
+            times_ns[0, 1], pose[POSE_X], pose[POSE_Y], pose[POSE_THETA] = sample
+            pose[POSED] = 1.0
+        slot = ring.begin()
+        done = self.state.advance(
+            times_ns, self._poses, device.rested, device.taking, ring.columns, slot
+        )
+        if not done:
+            raise DeviceError(
+                f"{device.display.name} says that its carriage is at {pose[POSE_X]} mm, where it "
+                f"cannot be; switch it off and on, and if it says so again, look at its encoder "
+                f"and at the counts that its INFO tells, with 'vbraille device check'"
+            )
+        device.write(self.state.output)
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
         done_ns = self.clock.now_ns()
         work_ns = done_ns - now_ns
         if work_ns > self._period_ns and self.clock.busy_ns() - busy_ns > self._period_ns:
-            self.tally.overruns += 1
+            self.overruns += 1
         behind_ns = done_ns - self._deadline_ns
         if behind_ns >= self._period_ns:
             missed = behind_ns // self._period_ns
-            self.tally.late += missed
+            self.late += missed
             self._deadline_ns += missed * self._period_ns
-        if self._ring is not None:
-            self._record(self._ring, now_ns, lateness_ns, work_ns, followed)
+        whole = ring.columns[0][slot]
+        whole[LATENESS], whole[WORK] = lateness_ns, work_ns
+        whole[LATE], whole[OVERRUNS] = self.late, self.overruns
+        held = 0 if device.taking else _HELD
+        whole[FLAGS] = (int(whole[FLAGS]) & ~_HELD) | held | _PLACING[device.placing]
+        ring.end()
 
     def warm_up(self) -> None:
         """Compile what a tick calls, so that the first is no slower than the others."""
-        blend(self._held, self._target, 0.0, self._held)
-        if self._picture is not None:
-            self._picture.frame(0.0, self._target)
+        self.state.warm_up()
 
     def restart_clock(self) -> None:
         """Let the next tick be due now: the time before it was not the loop's."""
@@ -214,107 +200,13 @@ class Loop:
             If the device is gone.
         """
         self.show(None)
-        np.copyto(self._held, self.output)
+        self.state.hold()
         self._deadline_ns = self.clock.now_ns()
         faded_ns = 0
         while not self.resting:
             self._deadline_ns = max(self._deadline_ns + self._period_ns, self.clock.now_ns())
             self.clock.sleep_until_ns(self._deadline_ns)
             faded_ns += self._period_ns
-            share = faded_ns / self._fade_ns if faded_ns < self._fade_ns else 1.0
-            blend(self._held, self._rest, share, self.output)
+            self.state.fade(faded_ns / self._fade_ns if faded_ns < self._fade_ns else 1.0)
             self.device.write(self.output)
-        self._shown = None
-
-    def _record(
-        self, ring: Ring, now_ns: int, lateness_ns: int, work_ns: int, followed: bool
-    ) -> None:
-        flags = _PLACING[self.device.placing] | self._happened
-        if self._shown is None:
-            flags |= _RESTING
-        if self._paused:
-            flags |= _PAUSED
-        if self._silent(now_ns):
-            flags |= _SILENT
-        if followed:
-            flags |= _FOLLOWED
-        if not self.device.taking:
-            flags |= _HELD
-        tally = self.tally
-        ring.append(
-            self.output,
-            now_ns,
-            self._device_ns,
-            lateness_ns,
-            work_ns,
-            tally.late,
-            tally.overruns,
-            self._line,
-            flags,
-            math.nan if self.x_mm is None else self.x_mm,
-            self.velocity.mm_s,
-            tally.forward_mm,
-            tally.forward_s,
-            self._share,
-        )
-
-    def _read(self, now_ns: int) -> None:
-        sample = self.device.read()
-        if sample is None:
-            return
-        x_mm = sample.x_mm
-        if not -1e6 < x_mm < 1e6:
-            raise DeviceError(
-                f"{self.device.display.name} says that its carriage is at {x_mm} mm, where it "
-                f"cannot be; switch it off and on, and if it says so again, look at its encoder "
-                f"and at the counts that its INFO tells, with 'vbraille device check'"
-            )
-        if self.x_mm is None:
-            self._moved_mm, self._moved_ns = x_mm, now_ns
-        else:
-            step_mm = x_mm - self.x_mm
-            elapsed_s = max(now_ns - self._sampled_ns, self._period_ns) / NS_PER_S
-            if abs(step_mm) > JUMP_MM_S * elapsed_s:
-                self.velocity.reset()
-                self._change(self._shown, self._fade_ns)
-            elif step_mm > 0:
-                self.tally.forward_mm += step_mm
-                self.tally.forward_s += elapsed_s
-        self.velocity.add(sample.time_ns, x_mm)
-        self._device_ns = sample.time_ns
-        self.x_mm = x_mm
-        self._sampled_ns = now_ns
-        if abs(x_mm - self._moved_mm) > STILL_MM:
-            self._moved_mm, self._moved_ns = x_mm, now_ns
-
-    def _silent(self, now_ns: int) -> bool:
-        return now_ns - self._sampled_ns > SILENCE_S * NS_PER_S
-
-    def _wanted(self, now_ns: int) -> Picture | None:
-        """What belongs under the hand now."""
-        idle = now_ns - self._moved_ns > self._idle_ns
-        if self._paused or idle or self._silent(now_ns) or self.x_mm is None:
-            return None
-        if not self.device.taking:
-            return None
-        return self._picture
-
-    def _change(self, picture: Picture | None, fade_ns: int) -> None:
-        np.copyto(self._held, self.output)
-        self._shown = picture
-        self._happened |= _CHANGED
-        self._fading_ns = fade_ns
-        self._faded_ns = 0
-
-    def _write(self, picture: Picture | None) -> None:
-        # The first tick of a change still sends what was there, the last one all of the new.
-        fading = self._faded_ns < self._fading_ns
-        out = self._target if fading else self.output
-        if picture is not None and self.x_mm is not None:
-            picture.frame(self.x_mm, out)
-        else:
-            out.fill(0.0)
-        self._share = self._faded_ns / self._fading_ns if fading else 1.0
-        if fading:
-            blend(self._held, out, self._share, self.output)
-        self.device.write(self.output)
+        self.state.restart()

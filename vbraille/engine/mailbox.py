@@ -1,27 +1,45 @@
 """What the loop is to do, in memory that another process writes.
 
-One side posts, the other looks each tick; neither waits for the other. Pictures
-go into two slots in turn, each with a checksum: a picture that is in the
-writing, or seen in the wrong order, is left for the next tick.
+One side posts, the other looks each tick; neither waits for the other. Programs
+go into two slots in turn, each with a checksum: one that is in the writing, or
+seen in the wrong order, is left for the next tick.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from zlib import crc32
 
 import numpy as np
 
-from vbraille.render import work
+from vbraille.render.program import Program
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.engine.posted import PostedPicture
-    from vbraille.render.renderer import Renderer
-
 _PUBLISHED, _PAUSED, _ZEROED, _STOPPED = range(4)
 _HEADER_BYTES = 64
+# Of a slot, as words of 8 bytes; then come the program's numbers, and its table.
+_CHECKSUM, _NUMBER, _LINE, _NUMBERS, _WORDS = range(5)
+_SLOT_WORDS = 5
+
+
+class Posted(NamedTuple):
+    """A picture out of the mailbox, in memory of its own.
+
+    Parameters
+    ----------
+    number
+        How many were posted with it.
+    line
+        What records call it.
+    program
+        What it compiles to.
+    """
+
+    number: int
+    line: int
+    program: Program
 
 
 class Mailbox:
@@ -31,61 +49,62 @@ class Mailbox:
     ----------
     buffer
         Zeroed memory of `bytes_needed`, shared.
-    shape
-        Rows and columns of the array.
-    cells
-        Most cells of a line.
+    room
+        Bytes of the largest program; see `Program.nbytes`.
     """
 
-    def __init__(self, buffer: memoryview, shape: tuple[int, int], cells: int) -> None:
-        self._words = buffer[:_HEADER_BYTES].cast(
-            "q"
-        )  # a view of numpy's takes three times as long
-        self._slots = np.frombuffer(buffer, slot_dtype(shape, cells), 2, _HEADER_BYTES)
+    def __init__(self, buffer: memoryview, room: int) -> None:
+        # A view of numpy's takes three times as long to look at.
+        self._words = buffer[:_HEADER_BYTES].cast("q")
+        slot_bytes = _slot_bytes(room)
+        starts = (_HEADER_BYTES, _HEADER_BYTES + slot_bytes)
+        self._slots = [np.frombuffer(buffer, np.uint8, slot_bytes, start) for start in starts]
+        self._room = slot_bytes - _SLOT_WORDS * 8
 
     @staticmethod
-    def bytes_needed(shape: tuple[int, int], cells: int) -> int:
+    def bytes_needed(room: int) -> int:
         """Size of the buffer, a multiple of 8."""
-        return _HEADER_BYTES + 2 * slot_dtype(shape, cells).itemsize
+        return _HEADER_BYTES + 2 * _slot_bytes(room)
 
     @property
     def published(self) -> int:
         """Number of the last picture posted; 0 before the first."""
         return self._words[_PUBLISHED]
 
-    def post(self, picture: Renderer, line: int, end_mm: float) -> None:
-        """Post a picture of a line, and where its last dot ends.
+    def post(self, program: Program, line: int) -> None:
+        """Post a picture, under the number that records call it by.
 
         Raises
         ------
         ValueError
-            If it has more cells, or another array, than the mailbox was made for.
+            If it is larger than the mailbox was made for.
         """
+        if program.nbytes > self._room:
+            raise ValueError(
+                f"a picture of {program.nbytes} bytes does not go into {self._room} bytes"
+            )
         number = self.published + 1
         slot = self._slots[number % 2]
-        gains = slot["gains"]
-        used = picture.gains.shape[1]
-        if picture.gains.shape[0] != gains.shape[0] or used > gains.shape[1]:
-            raise ValueError(
-                f"a line of {picture.gains.shape} gains does not go into {gains.shape}"
-            )
-        slot["number"] = number
-        slot["line"] = line
-        slot["end_mm"] = end_mm
-        slot["parameters"] = picture.parameters
-        gains[:, :used] = picture.gains
-        gains[:, used:] = 0.0
-        slot["checksum"] = _checksum(self._slots[number % 2 : number % 2 + 1])
+        words = slot[: _SLOT_WORDS * 8].view(np.int64)
+        words[_NUMBER], words[_LINE] = number, line
+        words[_NUMBERS], words[_WORDS] = program.numbers.size, program.table.size
+        numbers, table = _parts(slot, program.numbers.size, program.table.size)
+        numbers[:], table[:] = program.numbers, program.table
+        words[_CHECKSUM] = _checksum(slot, program.nbytes)
         self._words[_PUBLISHED] = number
 
-    def take(self, out: PostedPicture) -> bool:
-        """Copy the last picture posted; False if it is not whole, and to be tried again."""
+    def take(self) -> Posted | None:
+        """Copy of the last picture posted; None if it is not whole, and to be tried again."""
         number = self.published
-        np.copyto(out.slot, self._slots[number % 2])
-        if out.number != number or out.slot["checksum"] != _checksum(out.slot.reshape(1)):
-            return False
-        out.update()
-        return True
+        slot = self._slots[number % 2].copy()
+        words = slot[: _SLOT_WORDS * 8].view(np.int64)
+        numbers, table = int(words[_NUMBERS]), int(words[_WORDS])
+        size = numbers * 8 + table * 2
+        if words[_NUMBER] != number or numbers < 0 or table < 0 or size > self._room:
+            return None
+        if words[_CHECKSUM] != _checksum(slot, size):
+            return None
+        return Posted(number, int(words[_LINE]), Program(*_parts(slot, numbers, table)))
 
     @property
     def paused(self) -> bool:
@@ -114,22 +133,25 @@ class Mailbox:
         """End the loop."""
         self._words[_STOPPED] = 1
 
-
-def slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
-    """One slot: what the kernels know of a line of so many cells at most."""
-    rows, _ = shape
-    return np.dtype(
-        [
-            ("checksum", "<i8"),
-            ("number", "<i8"),
-            ("line", "<i8"),
-            ("end_mm", "<f8"),
-            ("parameters", "<f8", (work.IDLE + rows,)),
-            ("gains", "<f8", (rows, 2 * (cells + 2))),
-        ]
-    )
+    @property
+    def orders(self) -> NDArray[np.int64]:
+        """All that is not a program, as words that the compiled tick compares; int64[8]."""
+        return np.frombuffer(self._words, np.int64)
 
 
-def _checksum(slots: NDArray[np.void]) -> int:
-    """Of the one slot in an array, but for its own place."""
-    return crc32(slots.view(np.uint8)[8:].tobytes())
+def _slot_bytes(room: int) -> int:
+    return _SLOT_WORDS * 8 + -(-room // 8) * 8
+
+
+def _parts(
+    slot: NDArray[np.uint8], numbers: int, table: int
+) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
+    """Numbers and table of the program in a slot."""
+    start = _SLOT_WORDS * 8
+    middle = start + numbers * 8
+    return slot[start:middle].view(np.float64), slot[middle : middle + table * 2].view(np.uint16)
+
+
+def _checksum(slot: NDArray[np.uint8], size: int) -> int:
+    """Of a slot whose program has so many bytes, but for the checksum's own place."""
+    return crc32(slot[8 : _SLOT_WORDS * 8 + size])

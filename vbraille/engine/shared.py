@@ -24,15 +24,15 @@ class Extent:
     ----------
     rows, columns
         Of the array.
-    cells
-        Most cells of a line.
+    room
+        Bytes of the largest picture.
     ticks
         That the ring holds.
     """
 
     rows: int
     columns: int
-    cells: int
+    room: int
     ticks: int
 
     @property
@@ -43,7 +43,7 @@ class Extent:
     @property
     def mailbox_bytes(self) -> int:
         """Where the ring begins."""
-        return Mailbox.bytes_needed(self.shape, self.cells)
+        return Mailbox.bytes_needed(self.room)
 
     @property
     def total_bytes(self) -> int:
@@ -65,5 +65,5 @@ def attach(descriptor: int, extent: Extent) -> memoryview:
 
 def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
     """The two that are in it."""
-    mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.shape, extent.cells)
+    mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
     return mailbox, Ring(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.pictures.table import Table, contrast_words, tuning_words
-from vbraille.render.arrays import STRESS2_ARRAY, VBD_ARRAY
 from vbraille.render.mappings import MAPPINGS
-from vbraille.render.models import STRESS2, VBD, Profile
+from vbraille.render.models import STRESS2, VBD
+from vbraille.render.profiles import Profile
 from vbraille.render.reference import SWINGS, deflections
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from vbraille.geometry import Geometry
     from vbraille.render.mappings import Mapping
     from vbraille.render.models import Model
+    from vbraille.render.style import BrailleStyle
     from vbraille.render.tuning import Tuning
 
 # Lévesque 2009, fig. 4.3, and the VBD's nominal and textured dots of 3.2.
@@ -36,7 +37,7 @@ STRAIN_WIDTHS_MM = (0.5, 1.0, 2.0)
 LETTER = np.array([0b110101], np.uint8)
 
 
-def profile(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
+def profile(model: Model) -> Table:
     """Deflection across one dot, at each texture level of the source's.
 
     Lévesque 2009, fig. 4.3 (STReSS²) and 3.2 (VBD).
@@ -44,11 +45,8 @@ def profile(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
     Parameters
     ----------
     model
-        Whose dots.
-    geometry
-        Gives their width.
-    tuning
-        Contrast and cycles; its texture level is added if it is not there yet.
+        Its style gives the dots' width, their contrast and the texture's cycles; its texture
+        level is added if it is not there yet.
 
     Returns
     -------
@@ -56,21 +54,21 @@ def profile(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
         ``u_mm``, the distance from the dot's left edge, and of each level T a
         column ``deflection_T<percent>``.
     """
-    width = geometry.dot_width_mm
+    style, tuning = model.style, model.style.tuning
+    width = style.geometry.dot_width_mm
     u = width * np.arange(-80, 481) / 400  # edges and centre are on the grid
     columns: dict[str, NDArray] = {"u_mm": u}
-    for level in sorted({*LEVELS[model.profile], tuning.texture}):
+    for level in sorted({*LEVELS[style.profile], tuning.texture}):
         columns[f"deflection_T{100 * level:g}"] = _swing(
-            u, width, model.profile, replace(tuning, texture=level)
+            u, width, style.profile, replace(tuning, texture=level)
         )
-    cycles = f", k = {tuning.cycles}" if model.profile is Profile.RAISED_COSINE else ""
+    cycles = f", k = {tuning.cycles}" if style.profile is Profile.RAISED_COSINE else ""
     title = f"{model.title}: profile of a dot {width:g} mm wide{cycles}{contrast_words(tuning)}"
     return Table("profile", title, columns)
 
 
 def mapping(
-    geometry: Geometry,
-    tuning: Tuning,
+    style: BrailleStyle,
     masks: NDArray[np.uint8] = LETTER,
     methods: Sequence[Mapping] = tuple(MAPPINGS.values()),
 ) -> Table:
@@ -91,19 +89,12 @@ def mapping(
         ``method``, ``x_mm`` (of the actuator) and ``deflection_row_0`` … ``_5``.
     """
     # All columns sample the same function (eq. 3.1): one of them shows it.
-    array = replace(STRESS2_ARRAY, columns=1)
+    column = replace(STRESS2.display, columns=1)
+    geometry, tuning = style.geometry, style.tuning
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
     frames = [
-        deflections(
-            x,
-            masks,
-            array=array,
-            profile=STRESS2.profile,
-            mapping=method,
-            geometry=geometry,
-            tuning=tuning,
-        )[:, :, 0]
+        deflections(x, masks, replace(style, mapping=method), column)[:, :, 0]
         for method in methods
     ]
     columns = {
@@ -116,7 +107,7 @@ def mapping(
     return Table("mapping", title, columns)
 
 
-def wave(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
+def wave(model: Model) -> Table:
     """Deflection of each column while the array passes one dot.
 
     Lévesque 2009, eq. 3.1 and figs. 3.8-3.9.
@@ -124,9 +115,7 @@ def wave(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
     Parameters
     ----------
     model
-        Whose array and dots.
-    geometry
-        Gives the width of the dot; its left edge is at 0.
+        Whose array and dots; the dot's left edge is at 0.
 
     Returns
     -------
@@ -134,10 +123,11 @@ def wave(model: Model, geometry: Geometry, tuning: Tuning) -> Table:
         ``x_mm``, the carriage's position, which is the left column's, and
         ``deflection_column_0`` and on.
     """
-    array, width = model.array, geometry.dot_width_mm
+    array, style = model.display, model.style
+    width, tuning = style.geometry.dot_width_mm, style.tuning
     x = _grid(-array.span_mm - width / 4, width * 5 / 4, _step_mm(width))
     surface = x + array.column_offsets_mm()[:, None]  # eq. 3.1
-    swing = _swing(surface, width, model.profile, tuning)
+    swing = _swing(surface, width, style.profile, tuning)
     title = f"{model.title}: the array passes a dot {width:g} mm wide{tuning_words(tuning)}"
     return Table("wave", title, {"x_mm": x, **_numbered("deflection_column_", swing)})
 
@@ -159,13 +149,13 @@ def strain(geometry: Geometry, tuning: Tuning) -> Table:
         dot's left edge is at 0), ``deflection_left``, ``deflection_right`` and
         ``strain_per_mm`` (full swings per mm; positive is expansion).
     """
-    pitch = VBD_ARRAY.column_pitch_mm
+    pitch = VBD.display.column_pitch_mm
     widths = sorted({*STRAIN_WIDTHS_MM, geometry.dot_width_mm})
     parts = []
     for width in widths:
         x = _grid(-pitch - 0.5, max(widths) + 0.5, _step_mm(width))
-        left = _swing(x, width, VBD.profile, tuning)
-        right = _swing(x + pitch, width, VBD.profile, tuning)
+        left = _swing(x, width, VBD.style.profile, tuning)
+        right = _swing(x + pitch, width, VBD.style.profile, tuning)
         constant = np.full(x.size, width), np.full(x.size, pitch)
         parts.append((*constant, x, left, right, (right - left) / pitch))
     names = (

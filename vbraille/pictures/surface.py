@@ -17,18 +17,13 @@ if TYPE_CHECKING:
 
     from vbraille.geometry import Geometry
     from vbraille.page import Line
-    from vbraille.render.mappings import Mapping
     from vbraille.render.models import Model
-    from vbraille.render.tuning import Tuning
 
 
 def page(
     lines: Sequence[Line],
-    *,
     model: Model,
-    mapping: Mapping,
-    geometry: Geometry,
-    tuning: Tuning,
+    *,
     x_mm: float,
     line_index: int = 0,
 ) -> Table:
@@ -38,8 +33,8 @@ def page(
     ----------
     lines
         From the top; the first dot row of the first is at y = 0.
-    model, mapping, geometry, tuning
-        What they are shown with and how.
+    model
+        What they are shown on, and how.
     x_mm
         Place of the array's left column.
     line_index
@@ -61,20 +56,18 @@ def page(
     """
     if not 0 <= line_index < len(lines):
         raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
+    style, geometry = model.style, model.style.geometry
     six = not any((line.masks > 0x3F).any() for line in lines)
     parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
-    line, array = lines[line_index], model.array
+    line, array = lines[line_index], model.display
     row, column = (grid.ravel() for grid in np.indices(array.shape))
     frame = deflections(
         x_mm,
         line.masks,
-        array=array,
-        profile=model.profile,
-        mapping=mapping,
-        geometry=geometry,
-        tuning=tuning,
+        style,
+        array,
     )
-    top = line_index * geometry.line_pitch_mm + _first_row_mm(model, mapping, geometry)
+    top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
     parts.append(
         {
             "what": np.full(row.size, "actuator"),
@@ -94,7 +87,7 @@ def page(
     }
     title = (
         f"{model.title}: line {line.number}, left column at {x_mm:g} mm, "
-        f"{mapping.name}{tuning_words(tuning)}"
+        f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return Table("page", title, columns)
 
@@ -118,9 +111,11 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
     }
 
 
-def _first_row_mm(model: Model, mapping: Mapping, geometry: Geometry) -> float:
+def _first_row_mm(model: Model) -> float:
     """Where actuator row 0 is when the first row that shows dots is upon the row it shows."""
-    pairs = zip(mapping.left, mapping.right, strict=True)
-    shown = ((row, dot_row) for row, pair in enumerate(pairs) for dot_row in pair)
+    style = model.style
+    first = style.rows_on(model.display).start
+    pairs = zip(style.mapping.left, style.mapping.right, strict=True)
+    shown = ((row, dot_row) for row, pair in enumerate(pairs, first) for dot_row in pair)
     row, dot_row = next((place for place in shown if place[1] != NONE), (0, 0))
-    return dot_row * geometry.row_spacing_mm - row * model.array.row_pitch_mm
+    return dot_row * style.geometry.row_spacing_mm - row * model.display.row_pitch_mm

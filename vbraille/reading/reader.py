@@ -12,7 +12,6 @@ from vbraille.page import locate
 from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.reading.keys import PASTE
 from vbraille.reading.waiting import Waiting
-from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,11 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.engine.engine import Engine
-    from vbraille.geometry import Geometry
     from vbraille.page import Layout, Line
-    from vbraille.render.mappings import Mapping
-    from vbraille.render.models import Model
-    from vbraille.render.tuning import Tuning
+    from vbraille.render import BrailleStyle, Model
 
 STEP = 0.1
 # Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
@@ -50,8 +46,8 @@ class Reader:
         The book.
     engine
         Drives the device.
-    model, geometry, mapping, tuning
-        How lines are shown.
+    model
+        The display, and how lines are shown on it.
     first, last
         Lines to read, from 1, both included; None for the end.
     advance
@@ -77,9 +73,6 @@ class Reader:
         engine: Engine,
         *,
         model: Model,
-        geometry: Geometry,
-        mapping: Mapping,
-        tuning: Tuning,
         say: Callable[[str], None],
         first: int = 1,
         last: int | None = None,
@@ -89,12 +82,10 @@ class Reader:
     ) -> None:
         self.layout = layout
         self.engine = engine
-        self.tuning = tuning
+        self.style = model.style
         self.lines = 0
         self.done = False
         self._model = model
-        self._geometry = geometry
-        self._mapping = mapping
         self._say = say
         self._first, self._last = first, last
         self._advance = advance
@@ -175,7 +166,7 @@ class Reader:
         line, x_mm = self._line, self.engine.x_mm
         cell = None
         if line is not None and x_mm is not None:
-            cell = locate(line, self._geometry, x_mm + self._model.array.span_mm / 2)
+            cell = locate(line, self.style.geometry, x_mm + self._model.display.span_mm / 2)
         word = line.word(cell) if line is not None and cell is not None else ""
         self._say(f"word: {word}" if word else "word: none here")
 
@@ -238,26 +229,19 @@ class Reader:
         self.lines += 1
         self._finished = False
         self._prefetched = False
-        end_mm = self._geometry.extent_mm(len(line))
-        self._end = EndOfLine(self._model.array.span_mm, end_mm)
+        end_mm = self.style.geometry.extent_mm(len(line))
+        self._end = EndOfLine(self._model.display.span_mm, end_mm)
         self._waiting = Waiting(
-            self._model.array.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
+            self._model.display.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
         )
         self._picture(line)
         self._say_line(line)
 
     def _picture(self, line: Line) -> None:
         self.engine.show(
-            Renderer(
-                line.masks,
-                array=self._model.array,
-                profile=self._model.profile,
-                mapping=self._mapping,
-                geometry=self._geometry,
-                tuning=self.tuning,
-            ),
+            self.style.render(line.masks, self._model.display),
             line.number,
-            self._geometry.extent_mm(len(line)),
+            self.style.geometry.extent_mm(len(line)),
         )
 
     def _say_line(self, line: Line) -> None:
@@ -270,11 +254,12 @@ class Reader:
             self._say(f"text: {line.text.strip()}")
 
     def _turn(self, name: str, step: float) -> None:
-        value = round(min(max(getattr(self.tuning, name) + step, 0.0), 1.0), 6)
-        if value == getattr(self.tuning, name):
+        tuning = self.style.tuning
+        value = round(min(max(getattr(tuning, name) + step, 0.0), 1.0), 6)
+        if value == getattr(tuning, name):
             self._say(f"{name}: {value:g}, the {'most' if step > 0 else 'least'}")
             return
-        self.tuning = replace(self.tuning, **{name: value})
+        self.style = replace(self.style, tuning=replace(tuning, **{name: value}))
         self._too_fast_said = False
         self._say(f"{name}: {value:g}")
         if self._line is not None:
@@ -283,19 +268,17 @@ class Reader:
     def _watch_speed(self, speed_mm_s: float) -> None:
         if self._too_fast_said or self._end.reached:
             return
-        note = too_fast_note(speed_mm_s, self._model, self._geometry, self.tuning)
+        note = too_fast_note(speed_mm_s, self.style)
         if note is not None:
             self._too_fast_said = True
             self._say(note)
 
 
-def too_fast_note(
-    speed_mm_s: float, model: Model, geometry: Geometry, tuning: Tuning
-) -> str | None:
+def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:
     """What to say of a hand so fast that texture passes the filters; None if it is not."""
-    if not tuning.texture:
+    if not style.tuning.texture:
         return None
-    period_mm = model.profile.texture_period_mm(geometry.dot_width_mm, tuning.cycles)
+    period_mm = style.profile.texture_period_mm(style.geometry.dot_width_mm, style.tuning.cycles)
     if speed_mm_s / period_mm <= FILTER_HZ:
         return None
     return (

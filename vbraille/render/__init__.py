@@ -1,26 +1,25 @@
-"""A line of cells and a carriage position become deflections.
+"""A picture and a pose of the array become deflections.
 
-Knows no file, no device and no clock. The kernels are compiled when a
-`Renderer` is first made, not when this is imported.
+Knows no file, no device and no clock. The kernels are compiled when a `Program` is first made,
+not when this is imported.
 """
 
-from vbraille.render.arrays import LATERO, STRESS2_ARRAY, VBD_ARRAY, ActuatorArray
 from vbraille.render.mappings import MAPPINGS, Mapping, single_row
-from vbraille.render.models import MODELS, STRESS2, VBD, Model, Profile
+from vbraille.render.models import MODELS, STRESS2, VBD, Model, model_of
+from vbraille.render.profiles import Profile
+from vbraille.render.style import BrailleStyle
 from vbraille.render.tuning import Tuning
 
 __all__ = [
-    "LATERO",
     "MAPPINGS",
     "MODELS",
     "STRESS2",
-    "STRESS2_ARRAY",
     "VBD",
-    "VBD_ARRAY",
-    "ActuatorArray",
+    "BrailleStyle",
     "Mapping",
     "Model",
     "Profile",
     "Tuning",
+    "model_of",
     "single_row",
 ]

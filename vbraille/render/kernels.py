@@ -1,18 +1,17 @@
-"""The compiled inner loops, and nothing else.
+"""The compiled inner loops of rendering, and nothing else.
 
-They fill ``out`` and allocate nothing. `vbraille.render.renderer` packs what
-they need into two arrays, since each further argument costs a call from Python;
-`vbraille.render.reference` is the same in plain numpy.
+They fill ``out`` and allocate nothing. `vbraille.render.style` compiles what they need into two
+arrays, ``numbers`` and ``table`` (see `vbraille.render.work`); `vbraille.render.reference` is the
+same in plain numpy.
 
-``work`` is float64[3, n]: in its first row the parameters, in the others room
-for the swing under each column of a block of positions, and for the slot each
-column is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1
-right), with an empty cell before the line's first and one after its last.
-``gains`` is float64[rows, slots]: how far each actuator row goes from its idle
-end, and which way, when the swing of that slot is full.
+``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
+the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
+with an empty cell before a line's first and one after its last. The table has a word for each slot
+of each line, whose bit r is set if actuator row r shows a dot there; a page has an empty line
+before its first and one after its last.
 
-The loops over a block are flat and without calls, so that they become vector
-instructions: hence polynomials instead of the library's sine, good to 1e-14.
+The loops over a block are flat and without calls, so that they become vector instructions: hence
+polynomials instead of the library's sine, good to 1e-14.
 """
 
 import math
@@ -21,27 +20,43 @@ from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.render.work import (
+    AMPLITUDE,
+    ANCHOR,
     CELL_PITCH,
     CELLS_PER_MM,
     COLUMN_PITCH,
     COLUMNS,
     DOT_SPACING,
     DOTS_PER_MM,
+    FREQUENCY,
+    HYSTERESIS,
     IDLE,
+    KIND,
+    LINE_PITCH,
+    LINES,
+    NO_PART,
     OVERLAP,
     PROFILE,
+    ROW_PITCH,
+    ROWS,
     SHAPE,
     SLOT,
+    SLOTS,
     SWING,
+    THETA,
+    TIME,
+    X,
 )
 
+VIBRATION = 2.0  # the kind; the others are braille
+_PAGE = 1.0
 _HALF_SINE = 0.0
 _C = [(-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(11)]
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8, _C9, _C10 = _C
 _S = [(-1) ** n * math.pi ** (2 * n + 1) / math.factorial(2 * n + 1) for n in range(10)]
 _T0, _T1, _T2, _T3, _T4, _T5, _T6, _T7, _T8, _T9 = _S
 
-_compiled = njit(cache=keep_compiled(), error_model="numpy", fastmath={"contract"})
+_compiled = njit(cache=keep_compiled(), error_model="numpy", fastmath={"contract"}, nogil=True)
 _inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
 
 
@@ -60,24 +75,25 @@ def _sin_pi(d, q):
 
 
 @_inlined
-def _swings(work, count, cells, which):
-    """Replace the places on the surface in ``work[SWING]`` by the swings there; fill the slots.
+def _swings(numbers, scratch, count, which):
+    """Replace the places on the surface in ``scratch[SWING]`` by the swings there; fill the slots.
 
     ``which`` dot column of the cell: 0 left, 1 right, 2 the right one of the
     cell before, 3 the only one that can be there.
     """
-    cells_per_mm = work[0, CELLS_PER_MM]
-    pitch = work[0, CELL_PITCH]
-    spacing = work[0, DOT_SPACING]
-    dots_per_mm = work[0, DOTS_PER_MM]
-    e0, e1, e2 = work[0, SHAPE], work[0, SHAPE + 1], work[0, SHAPE + 2]
-    e3, e4, e5 = work[0, SHAPE + 3], work[0, SHAPE + 4], work[0, SHAPE + 5]
-    half_sine = work[0, PROFILE] == _HALF_SINE
+    cells = int(numbers[SLOTS]) // 2 - 2
+    cells_per_mm = numbers[CELLS_PER_MM]
+    pitch = numbers[CELL_PITCH]
+    spacing = numbers[DOT_SPACING]
+    dots_per_mm = numbers[DOTS_PER_MM]
+    e0, e1, e2 = numbers[SHAPE], numbers[SHAPE + 1], numbers[SHAPE + 2]
+    e3, e4, e5 = numbers[SHAPE + 3], numbers[SHAPE + 4], numbers[SHAPE + 5]
+    half_sine = numbers[PROFILE] == _HALF_SINE
     before = 1.0 if which == 2 else 0.0
     is_right = 1.0 if which in (1, 2) else 0.0
     choose = which == 3
     for n in range(count):
-        u = work[SWING, n]
+        u = scratch[SWING, n]
         # Written so that a NaN, too, goes to the empty cell before the line.
         cell = u * cells_per_mm
         cell = cell if cell > -1.0 else -1.0
@@ -102,80 +118,146 @@ def _swings(work, count, cells, which):
             value = 0.5 + c * (e0 + z * (e1 + z * (e2 + z * (e3 + z * (e4 + z * e5)))))
         value = value if value > 0.0 else 0.0
         value = value if value < 1.0 else 1.0
-        work[SWING, n] = value if q < 0.25 else 0.0
+        scratch[SWING, n] = value if q < 0.25 else 0.0
         slot = 2.0 * (cell + 1.0 - before) + right
-        work[SLOT, n] = slot if slot > 0.0 else 0.0
+        scratch[SLOT, n] = slot if slot > 0.0 else 0.0
 
 
 @_inlined
-def _places(work, x_mm, first, columns):
+def _places(scratch, left_mm, first, columns, pitch):
     """Where on the surface each column is (eq. 3.1: all sample one and the same)."""
-    pitch = work[0, COLUMN_PITCH]
     for column in range(columns):
-        work[SWING, first + column] = x_mm + column * pitch
+        scratch[SWING, first + column] = left_mm + column * pitch
 
 
 @_inlined
-def _write(work, gains, first, out):
+def _write(numbers, table, base, scratch, first, out, above, below):
+    """Fill rows of a frame with the swings of a block."""
     rows, columns = out.shape
-    for row in range(rows):
-        idle = work[0, IDLE + row]
+    for row in range(above, below):
+        idle = numbers[IDLE + row]
+        gain = numbers[IDLE + rows + row]
         for column in range(columns):
-            slot = int(work[SLOT, first + column])
-            out[row, column] = idle + gains[row, slot] * work[SWING, first + column]
+            shown = table[base + int(scratch[SLOT, first + column])] >> row & 1
+            out[row, column] = idle + gain * shown * scratch[SWING, first + column]
 
 
 @_inlined
-def _write_larger(work, gains, first, out):
+def _write_larger(numbers, table, base, scratch, first, out, above, below):
     """Of dots that overlap, the one with the larger swing."""
     rows, columns = out.shape
-    for row in range(rows):
-        idle = work[0, IDLE + row]
+    for row in range(above, below):
+        idle = numbers[IDLE + row]
+        gain = numbers[IDLE + rows + row]
         for column in range(columns):
-            slot = int(work[SLOT, first + column])
-            swing = gains[row, slot] * work[SWING, first + column]
+            shown = table[base + int(scratch[SLOT, first + column])] >> row & 1
+            swing = gain * shown * scratch[SWING, first + column]
             if abs(swing) > abs(out[row, column] - idle):
                 out[row, column] = idle + swing
 
 
-@_compiled
-def frame(work, gains, x_mm, out):
-    """Fill one frame, float[rows, columns], for the left column at x."""
-    rows, columns = out.shape
-    # Compiled, nothing else would stop it from reading beyond the gains.
-    if rows != gains.shape[0] or columns != work[0, COLUMNS]:
-        raise ValueError("the frame has not the shape of the array")
-    cells = gains.shape[1] // 2 - 2
-    _places(work, x_mm, 0, columns)
-    if work[0, OVERLAP] == 0.0:
-        _swings(work, columns, cells, 3)
-        _write(work, gains, 0, out)
+@_inlined
+def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
+    """Fill rows of a frame that all have their left column at one place."""
+    columns = out.shape[1]
+    _places(scratch, left_mm, 0, columns, pitch)
+    if numbers[OVERLAP] == 0.0:
+        _swings(numbers, scratch, columns, 3)
+        _write(numbers, table, base, scratch, 0, out, above, below)
         return
-    _swings(work, columns, cells, 0)
-    _write(work, gains, 0, out)
+    _swings(numbers, scratch, columns, 0)
+    _write(numbers, table, base, scratch, 0, out, above, below)
     for which in range(1, 3):
-        _places(work, x_mm, 0, columns)
-        _swings(work, columns, cells, which)
-        _write_larger(work, gains, 0, out)
+        _places(scratch, left_mm, 0, columns, pitch)
+        _swings(numbers, scratch, columns, which)
+        _write_larger(numbers, table, base, scratch, 0, out, above, below)
+
+
+@_inlined
+def _base(numbers, part):
+    """Where the table has the slots of a part; those of no line are empty."""
+    if numbers[KIND] != _PAGE:
+        return 0
+    lines = int(numbers[LINES])
+    line = part if -1 <= part <= lines else -1
+    return (line + 1) * int(numbers[SLOTS])
 
 
 @_compiled
-def path(work, gains, x_mm, out):
-    """Fill a frame for each position of a path; out is float[n, rows, columns]."""
-    columns = out.shape[2]
-    cells = gains.shape[1] // 2 - 2
-    if work[0, OVERLAP] != 0.0:
-        for n in range(x_mm.size):
-            frame(work, gains, x_mm[n], out[n])
+def part_of(numbers, y_mm, before):
+    """Which part of a picture belongs under the array: of a page, the line nearest its centre.
+
+    A line that was there stays until the centre is beyond its edge by half of the hysteresis.
+    Above and below the page are the parts -1 and LINES, which show nothing. A picture of one
+    part has part 0.
+    """
+    if numbers[KIND] != _PAGE:
+        return 0
+    at = y_mm / numbers[LINE_PITCH]
+    if before != NO_PART and abs(at - before - 0.5) <= 0.5 + numbers[HYSTERESIS] / 2:
+        return before
+    lines = numbers[LINES]
+    at = at if at > -1.0 else -1.0  # a NaN, too
+    return int(math.floor(at if at < lines else lines))
+
+
+@_compiled
+def frame(numbers, table, scratch, part, at, out):
+    """Fill one frame, float[rows, columns], of a part of a picture.
+
+    ``at`` is what it is evaluated at, float64[6]: pose, time and velocity, by `work`.
+    """
+    rows, columns = out.shape
+    # Compiled, nothing else would stop it from reading beyond the numbers.
+    if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
+        raise ValueError("the frame has not the shape of the array")
+    if numbers[KIND] == VIBRATION:
+        # Lévesque 2009, eqs. 8.1 and 8.2: neighbours swing against each other.
+        phase = math.sin(2.0 * math.pi * numbers[FREQUENCY] * at[TIME])
+        for row in range(rows):
+            for column in range(columns):
+                sign = 1.0 - 2.0 * ((row + column) & 1)
+                out[row, column] = numbers[AMPLITUDE] * (0.5 + 0.5 * sign * phase)
         return
-    block = work.shape[1] // columns
+    base = _base(numbers, part)
+    theta = at[THETA]
+    if theta == 0.0:
+        left_mm = at[X] - numbers[ANCHOR]
+        _rows(numbers, table, base, scratch, left_mm, numbers[COLUMN_PITCH], out, 0, rows)
+        return
+    cosine, sine = math.cos(theta), math.sin(theta)
+    for row in range(rows):
+        down_mm = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
+        left_mm = at[X] - numbers[ANCHOR] * cosine + down_mm * sine
+        pitch = numbers[COLUMN_PITCH] * cosine
+        _rows(numbers, table, base, scratch, left_mm, pitch, out, row, row + 1)
+
+
+@_compiled
+def path(numbers, table, scratch, x_mm, out):
+    """Fill a frame of a line for each place of a way along it; out is float[n, rows, columns].
+
+    All the places of a block become vector instructions, which makes it several times as fast
+    as `frame` for each.
+    """
+    rows, columns = out.shape[1:]
+    if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
+        raise ValueError("the frames have not the shape of the array")
+    pitch = numbers[COLUMN_PITCH]
+    if numbers[OVERLAP] != 0.0:
+        for n in range(x_mm.size):
+            left_mm = x_mm[n] - numbers[ANCHOR]
+            _rows(numbers, table, 0, scratch, left_mm, pitch, out[n], 0, rows)
+        return
+    block = scratch.shape[1] // columns
     for first in range(0, x_mm.size, block):
         count = min(block, x_mm.size - first)
         for n in range(count):
-            _places(work, x_mm[first + n], n * columns, columns)
-        _swings(work, count * columns, cells, 3)
+            left_mm = x_mm[first + n] - numbers[ANCHOR]
+            _places(scratch, left_mm, n * columns, columns, pitch)
+        _swings(numbers, scratch, count * columns, 3)
         for n in range(count):
-            _write(work, gains, n * columns, out[first + n])
+            _write(numbers, table, 0, scratch, n * columns, out[first + n], 0, rows)
 
 
 @_compiled

@@ -110,6 +110,8 @@ MAPPINGS = {
         Mapping("row-sheared", _PAIRS, _PAIRS, (False, False, True, True, False, False)),
         # Dot rows one actuator row apart (later code, not in fig. 4.5).
         Mapping("compact", _TOP, _TOP, _NO),
+        # The same on any array of three rows or more, in its middle (ours).
+        Mapping("three-rows", (0, 1, 2), (0, 1, 2), (False,) * 3),
     )
 }
 

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render.models import Profile
+from vbraille.render.profiles import Profile, half_sine_peak
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from vbraille.geometry import Geometry
-    from vbraille.render.arrays import ActuatorArray
-    from vbraille.render.mappings import Mapping
+    from vbraille.display import Display
+    from vbraille.render.style import BrailleStyle
     from vbraille.render.tuning import Tuning
 
 
@@ -40,17 +39,6 @@ def raised_cosine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[n
     return (delta + 1) / 2
 
 
-def half_sine_peak(level: float) -> float:
-    """M(a): the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
-    a = level / 8
-    theta = np.linspace(0, np.pi, 4097)
-    best = theta[np.argmax(np.sin(theta) + a * np.sin(8 * theta))]
-    for _ in range(4):  # Newton, on the derivative
-        slope = np.cos(best) + 8 * a * np.cos(8 * best)
-        best -= slope / (-np.sin(best) - 64 * a * np.sin(8 * best))
-    return float(np.sin(best) + a * np.sin(8 * best))
-
-
 def half_sine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[np.float64]:
     """Swing of a VBD dot in [0, 1]; u is the distance from its left edge.
 
@@ -69,25 +57,18 @@ SWINGS = {Profile.HALF_SINE: half_sine, Profile.RAISED_COSINE: raised_cosine}
 
 
 def deflections(
-    x_mm: ArrayLike,
-    masks: NDArray[np.uint8],
-    *,
-    array: ActuatorArray,
-    profile: Profile,
-    mapping: Mapping,
-    geometry: Geometry,
-    tuning: Tuning,
+    x_mm: ArrayLike, masks: NDArray[np.uint8], style: BrailleStyle, display: Display
 ) -> NDArray[np.float64]:
-    """Frames of a line for positions of the left column.
+    """Frames of a line for places of the array's left column.
 
     Parameters
     ----------
     x_mm : float64[n]
-        Positions.
+        Places.
     masks : uint8[cells]
         The line.
-    array, profile, mapping, geometry, tuning
-        What it is shown with and how.
+    style, display
+        How it is shown, and on what.
 
     Returns
     -------
@@ -95,19 +76,21 @@ def deflections(
         Deflections, 0 … 1.
     """
     x = np.atleast_1d(np.asarray(x_mm, np.float64))
-    surface = x[:, None] + array.column_offsets_mm()  # eq. 3.1
-    swing = np.zeros((x.size, array.rows, array.columns))
+    geometry, mapping, tuning = style.geometry, style.mapping, style.tuning
+    surface = x[:, None] + display.column_offsets_mm()  # eq. 3.1
+    swing = np.zeros((x.size, display.rows, display.columns))
+    own = style.rows_on(display)
     for cell, mask in enumerate(masks):
         for dot in range(8):
             if not mask >> dot & 1:
                 continue
             dot_row, right = (dot % 3, dot >= 3) if dot < 6 else (3, dot == 7)
             edge = cell * geometry.cell_pitch_mm + right * geometry.dot_spacing_mm
-            bump_mm = SWINGS[profile](surface - edge, geometry.dot_width_mm, tuning)
-            for row, shown in enumerate(mapping.right if right else mapping.left):
+            bump_mm = SWINGS[style.profile](surface - edge, geometry.dot_width_mm, tuning)
+            for row, shown in enumerate(mapping.right if right else mapping.left, own.start):
                 if shown == dot_row:
                     swing[:, row] = np.maximum(swing[:, row], bump_mm)
-    idle = np.zeros(array.rows)
-    idle[: mapping.rows] = mapping.idle()
+    idle = np.zeros(display.rows)
+    idle[own] = mapping.idle()
     sign = 1 - 2 * idle
     return idle[:, None] + sign[:, None] * tuning.contrast * swing

@@ -1,11 +1,43 @@
-"""Where the kernels find what: places in the rows of their array of work."""
+"""Where the kernels find what: places in a program's numbers, and in what they are told each tick.
 
-# Places in the row of parameters.
+A program is two plain arrays: ``numbers``, float64[n], and ``table``, uint16[m]. The numbers of
+every kind begin with the same head; what follows is the kind's own.
+"""
+
+from enum import IntEnum
+
+
+class Kind(IntEnum):
+    """What a program is of; only the kernels look at it."""
+
+    LINE = 0
+    PAGE = 1
+    VIBRATION = 2
+
+
+# The head, which the engine knows.
 (
+    KIND,  # of `Kind`
+    OWN_Y,  # y of the array on a carriage that has no such axis, mm
+    FREQUENCY,  # at which a picture moves by itself, Hz; 0 if it does not
+    AMPLITUDE,  # how far it moves an actuator by itself at most, of the swing
+    EXPOSURE,  # how long it may move by itself before it fades, s
+    ROWS,  # of the display that it was compiled for
+    COLUMNS,
+    OWN,  # first of the kind's own
+) = range(8)
+
+# Braille: a line, or a page of lines.
+(
+    ANCHOR,  # from the left column to the point of the array that x tells, mm
+    COLUMN_PITCH,
+    ROW_PITCH,
+    LINES,  # of the page; 0 for a line alone
+    LINE_PITCH,
+    HYSTERESIS,  # between going to the next line and coming back, in line pitches
+    SLOTS,  # of a line: 2 · (cells + 2)
     CELLS_PER_MM,
     CELL_PITCH,
-    COLUMN_PITCH,
-    COLUMNS,
     DOTS_PER_MM,
     DOT_SPACING,
     PROFILE,
@@ -16,6 +48,13 @@
     _S3,
     _S4,
     _S5,
-    IDLE,  # deflection of each row off the dots
-) = range(15)
-SWING, SLOT = 1, 2  # further rows of work
+    IDLE,  # deflection of each row off the dots, then how far and which way a dot swings it
+) = range(OWN, OWN + 20)
+
+# What a frame is evaluated at: pose, the picture's own time, velocity.
+X, Y, THETA, TIME, VX, VY = range(6)
+
+# Rows of the kernels' scratch: the swing under each column, and the slot that it is over.
+SWING, SLOT = range(2)
+# A part that is none: nothing of a page was under the array yet.
+NO_PART = -2

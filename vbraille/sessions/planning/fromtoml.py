@@ -7,7 +7,7 @@ from itertools import permutations
 from typing import TYPE_CHECKING
 
 from vbraille.geometry import BOUNDS_MM
-from vbraille.render import MAPPINGS, Mapping, Model, single_row
+from vbraille.render import MAPPINGS, Mapping, Model, Profile, single_row
 from vbraille.sessions.planning.conduct import Field, SessionPace, Sound, Tone, TrialPace
 from vbraille.sessions.planning.design import (
     PARAMETERS,
@@ -53,21 +53,21 @@ def read_display(root: Section, model: Model) -> tuple[Mapping, Geometry, int, T
     """What ``[display]`` has, and for what it leaves out the model's own."""
     known = (*_TUNING, "dot_row", "mapping", "lead_cells", *BOUNDS_MM)
     display = root.table("display", known)
-    mapping = model.mapping
+    mapping = model.style.mapping
     if "dot_row" in display:
-        if model.array.rows > 1:
+        if model.style.mapping.rows > 1:
             display.fail(f"dot_row is of the VBD; the {model.title} shows all, leave dot_row out")
         with display.checking():
             mapping = single_row(display.whole("dot_row"))
     if "mapping" in display:
-        if model.array.rows == 1:
+        if model.style.mapping.rows == 1:
             display.fail(f"mapping is of the STReSS²; for the {model.title} give dot_row")
         mapping = MAPPINGS[display.one_of("mapping", MAPPINGS)]
     lengths = {name: display.number(name) for name in BOUNDS_MM if name in display}
     with display.checking():
-        geometry = replace(model.geometry, **lengths)
+        geometry = replace(model.style.geometry, **lengths)
         lead_cells = display.whole("lead_cells", LEAD_CELLS)
-        return mapping, geometry, lead_cells, _tuning(display, model, model.tuning)
+        return mapping, geometry, lead_cells, _tuning(display, model, model.style.tuning)
 
 
 def read_keys(root: Section) -> dict[str, int]:
@@ -191,7 +191,7 @@ def read_fields(root: Section) -> tuple[Field, ...]:
 
 
 def _tuning(table: Section, model: Model, tuning: Tuning) -> Tuning:
-    if "texture_cycles" in table and model.array.rows == 1:
+    if "texture_cycles" in table and model.style.profile is Profile.HALF_SINE:
         table.fail(
             f"texture_cycles is of the STReSS²; the texture of the {model.title} has a fixed "
             f"wavelength, leave it out"

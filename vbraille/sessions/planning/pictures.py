@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render.renderer import Renderer
-
 if TYPE_CHECKING:
+    from vbraille.render.program import Program
     from vbraille.render.tuning import Tuning
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Stimulus
 
 
-def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Renderer:
+def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Program:
     """Picture of a stimulus."""
-    return Renderer(
-        np.array(protocol.line(stimulus.masks), np.uint8),
-        array=protocol.model.array,
-        profile=protocol.model.profile,
-        mapping=protocol.mapping,
-        geometry=stimulus.geometry,
-        tuning=tuning,
+    style = replace(
+        protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry, tuning=tuning
     )
+    return style.render(np.array(protocol.line(stimulus.masks), np.uint8), protocol.model.display)

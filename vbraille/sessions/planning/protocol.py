@@ -194,7 +194,7 @@ class Protocol:
         for value in (*values, *sorted(self.practice.values(self.design))):
             at = "" if value is None else f" at a value of {value:g} mm"
             try:
-                room = self.geometry_at(value).cells_per_line(self.model.array.span_mm)
+                room = self.geometry_at(value).cells_per_line(self.model.display.span_mm)
             except ValueError as error:
                 raise ValueError(f"[design]{at}: {error}") from None
             cells = self.lead_cells + longest

@@ -307,7 +307,7 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
     felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
     ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
     x_mm, time_ns = ticks["x_mm"].copy(), ticks["time_ns"].copy()
-    span_mm = protocol.model.array.span_mm
+    span_mm = protocol.model.display.span_mm
 
     def moved() -> NDArray[np.bool_]:
         # Few sessions need it, and numba takes its time to be imported.

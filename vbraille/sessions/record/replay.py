@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.renderer import Renderer
+    from vbraille.render.program import Program
     from vbraille.sessions.record.folder import Record
 
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
@@ -41,7 +41,7 @@ class Replay:
         Rows and columns of the array, which is at rest before the first tick.
     """
 
-    def __init__(self, picture_of: Callable[[int], Renderer], shape: tuple[int, int]) -> None:
+    def __init__(self, picture_of: Callable[[int], Program], shape: tuple[int, int]) -> None:
         self._picture_of = picture_of
         self._shape = shape
         self._before = np.zeros(shape)
@@ -114,7 +114,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
         if "trace" not in run:
             continue
         ticks = read_trace(record.folder / run["trace"]).ticks
-        replay = Replay(pictures.of, record.protocol.model.array.shape)
+        replay = Replay(pictures.of, record.protocol.model.display.shape)
         ends = np.flatnonzero(np.diff(ticks["line"])) + 1
         for part in np.split(ticks, ends):
             if part.size:
@@ -132,7 +132,7 @@ class _Pictures:
             for showing in progress.told(trial).showings
         }
 
-    def of(self, line: int) -> Renderer:
+    def of(self, line: int) -> Program:
         """Picture of a line number."""
         stimulus, tuning = self._shown[line]
         return render(self._protocol, stimulus, replace(stimulus.tuning, **tuning))

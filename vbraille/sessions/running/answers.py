@@ -193,7 +193,7 @@ class Simulated:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
         model: Model = protocol.model
         mapping: Mapping = protocol.mapping
-        self._observer = Observer(model.array, mapping, protocol.geometry, noise=noise)
+        self._observer = Observer(model.display, mapping, protocol.geometry, noise=noise)
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"

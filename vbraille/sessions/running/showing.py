@@ -119,7 +119,7 @@ class OnDevice:
         self.engine = engine
         self.line = 0
         self._protocol = protocol
-        self._span_mm = protocol.model.array.span_mm
+        self._span_mm = protocol.model.display.span_mm
         self._folder = folder
         self._keeps = keeps
         self._tie = tie

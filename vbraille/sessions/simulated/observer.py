@@ -63,8 +63,8 @@ from vbraille.sessions.simulated.skin import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
     from vbraille.geometry import Geometry
-    from vbraille.render.arrays import ActuatorArray
     from vbraille.render.mappings import Mapping
 
 Parameter = Literal["dot width", "gap"]
@@ -130,7 +130,7 @@ class Observer:
     __slots__ = ("_channels", "_pairs", "_steps", "_swings", "array", "geometry", "noise")
 
     def __init__(
-        self, array: ActuatorArray, mapping: Mapping, geometry: Geometry, *, noise: float = 0.0
+        self, array: Display, mapping: Mapping, geometry: Geometry, *, noise: float = 0.0
     ) -> None:
         if array.columns < 2:
             raise ValueError("the array has 1 column; it must have 2 or more")

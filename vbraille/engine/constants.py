@@ -1,0 +1,19 @@
+"""What the engine goes by: fades, rest, and what counts as motion."""
+
+from typing import Final
+
+NS_PER_S: Final = 1_000_000_000
+FADE_S: Final = 0.1
+PAUSE_FADE_S: Final = 0.02
+IDLE_S: Final = 5.0
+SILENCE_S: Final = 0.1
+# A hand that moved less than this is at rest: some counts of a fine encoder.
+STILL_MM: Final = 0.05
+# No hand moves 5 m/s: a carriage that is further within a tick was lost and found again.
+JUMP_MM_S: Final = 5_000.0
+# How far from its centre an array's actuators are, about: turning it moves them so.
+REACH_MM: Final = 10.0
+# Of the velocity, Lévesque 2009, eqs. 9.4 and 9.5: N poses and M velocities, which remembers 59.
+DIFFERENCE: Final = 10
+MEAN: Final = 50
+GAP_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement

@@ -1,0 +1,362 @@
+"""What a tick does, compiled: the one place that says so, for the loop, for blocks and for replay.
+
+`advance` takes where the array is and what is wanted, decides what belongs under the hand, makes
+the frame and fills the tick's record; `replay` makes the frames again from records. Both show a
+tick by the same function, so that what is replayed is what was sent, bit for bit.
+
+Whatever changes without the hand's doing - a new line, a tuning, a jump, the start, a pause,
+rest, a page's next line - fades from the frame last sent. A fade goes by ticks: a loop that was
+held up would jump if it took the time that it lost for time in which it faded. So does the time
+of a picture that moves by itself.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from vbraille.caching import keep_compiled
+from vbraille.engine.record import (
+    DEVICE,
+    FLAGS,
+    FORWARD_MM,
+    FORWARD_S,
+    LINE,
+    PART,
+    SHARE,
+    SHOWN,
+    THETA,
+    TICK,
+    TIME,
+    VX,
+    VY,
+    Flag,
+    X,
+    Y,
+)
+from vbraille.engine.constants import (
+    DIFFERENCE,
+    GAP_NS,
+    JUMP_MM_S,
+    MEAN,
+    NS_PER_S,
+    REACH_MM,
+    STILL_MM,
+)
+from vbraille.render import work
+from vbraille.render.kernels import blend, frame, part_of
+
+_PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
+_CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
+_EXPOSED = int(Flag.EXPOSED)
+# What a tick is given, a row of float64 each; times are whole and fit.
+(POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
+_NOWHERE_MM = 1e6
+
+_compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+
+
+@_compiled
+def add_velocity(state, window_ns, window_mm, velocities, time_ns, x_mm, y_mm):
+    """Take one more pose into the velocity: Lévesque 2009, eqs. 9.4 and 9.5.
+
+    Differences over 10 poses, and their mean over the last 50, of each component. Before the
+    first pose, and before a gap or a step back in time, the hand is taken to have stood still.
+    """
+    now = state[0]
+    if now["samples"] > 0:
+        step_ns = time_ns - now["last_ns"]
+        if step_ns == 0:
+            return
+        if not 0 < step_ns < GAP_NS:
+            forget_velocity(state, velocities)
+    at = now["samples"] % DIFFERENCE
+    if now["samples"] >= DIFFERENCE:
+        row = now["samples"] % MEAN
+        elapsed_ns = time_ns - window_ns[at]
+        velocities[row, 0] = (x_mm - window_mm[at, 0]) / elapsed_ns * NS_PER_S
+        velocities[row, 1] = (y_mm - window_mm[at, 1]) / elapsed_ns * NS_PER_S
+        vx = 0.0
+        vy = 0.0
+        for n in range(MEAN):
+            vx += velocities[n, 0]
+            vy += velocities[n, 1]
+        now["vx_mm_s"] = vx / MEAN
+        now["vy_mm_s"] = vy / MEAN
+    window_ns[at] = time_ns
+    window_mm[at, 0] = x_mm
+    window_mm[at, 1] = y_mm
+    now["last_ns"] = time_ns
+    now["samples"] += 1
+
+
+@_compiled
+def forget_velocity(state, velocities):
+    """Forget how the hand moved."""
+    now = state[0]
+    now["samples"] = 0
+    now["vx_mm_s"] = 0.0
+    now["vy_mm_s"] = 0.0
+    velocities[:] = 0.0
+
+
+@_compiled
+def _change(state, fade_ns, output, held):
+    """Begin to fade from the frame last sent."""
+    now = state[0]
+    held[:] = output
+    now["flags"] |= _CHANGED
+    now["fading_ns"] = fade_ns
+    now["faded_ns"] = 0
+
+
+@_compiled
+def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose, output, held):
+    """Take where the array is; whether it can be there."""
+    now = state[0]
+    x, theta = pose[POSE_X], pose[POSE_THETA]
+    y = pose[POSE_Y] if now["free_y"] != 0 else 0.0  # a slider's is the picture's own
+    furthest = max(abs(x), abs(y), REACH_MM * abs(theta))
+    if not furthest < _NOWHERE_MM:  # a NaN, too
+        return False
+    if now["placed"] == 0:
+        now["placed"] = 1
+        now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
+        now["moved_ns"] = now_ns
+    else:
+        step = x - now["x_mm"]
+        elapsed_s = max(now_ns - now["sampled_ns"], now["period_ns"]) / NS_PER_S
+        turn_mm = REACH_MM * abs(theta - now["theta_rad"])
+        if max(abs(step), abs(y - now["y_mm"]), turn_mm) > JUMP_MM_S * elapsed_s:
+            # No hand is so fast: a carriage that was lost and found again.
+            forget_velocity(state, velocities)
+            _change(state, now["fade_ns"], output, held)
+        elif step > 0:
+            now["forward_mm"] += step
+            now["forward_s"] += elapsed_s
+    add_velocity(state, window_ns, window_mm, velocities, device_ns, x, y)
+    now["device_ns"] = device_ns
+    now["x_mm"], now["y_mm"], now["theta_rad"] = x, y, theta
+    now["sampled_ns"] = now_ns
+    far_mm = max(abs(x - now["moved_x_mm"]), abs(y - now["moved_y_mm"]))
+    if max(far_mm, REACH_MM * abs(theta - now["moved_theta"])) > STILL_MM:
+        now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
+        now["moved_ns"] = now_ns
+    return True
+
+
+@_compiled
+def _wanted(state, now_ns, taking, numbers):
+    """Serial number of the picture that belongs under the hand now; 0 is rest."""
+    now = state[0]
+    if now["paused"] or now["placed"] == 0 or not taking or now["serial"] == 0:
+        return 0
+    if now_ns - now["sampled_ns"] > now["silence_ns"]:
+        return 0
+    if now["exhausted"] == now["serial"]:
+        return 0
+    # A picture that moves by itself is felt without moving the hand.
+    if numbers[work.FREQUENCY] == 0.0 and now_ns - now["moved_ns"] > now["idle_ns"]:
+        return 0
+    return now["serial"]
+
+
+@_compiled
+def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
+    """What is shown in this tick, and how far it has faded in."""
+    now = state[0]
+    if rested != now["rested"]:
+        now["rested"] = rested
+        output[:] = 0.0
+        now["flags"] |= _RESTED
+        _change(state, now["fade_ns"], output, held)
+    if not taking:
+        output[:] = 0.0
+        now["shown"] = 0
+        now["faded_ns"] = now["fading_ns"]
+    if now["shown"] != 0 and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
+        now["exhausted"] = now["serial"]
+    wanted = _wanted(state, now_ns, taking, numbers)
+    same = now["shown"] != 0 and now["shown"] == wanted
+    part = part_of(numbers, y_mm, now["part"] if same else work.NO_PART)
+    if wanted != now["shown"]:
+        if wanted != now["begun"] and wanted != 0:
+            now["begun"] = wanted
+            now["shown_ns"] = 0
+        now["shown"] = wanted
+        _change(state, now["pause_ns"] if now["paused"] else now["fade_ns"], output, held)
+    elif wanted != 0 and part != now["part"]:
+        _change(state, now["fade_ns"], output, held)
+    now["part"] = part
+    fading = now["faded_ns"] < now["fading_ns"]
+    now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
+
+
+@_compiled
+def _show(flags, share, part, numbers, table, scratch, at, output, held, target):
+    """Make the frame of a tick from the one before it.
+
+    The first tick of a change still sends what was there, the last one all of the new.
+    """
+    if flags & _RESTED:
+        output[:] = 0.0
+    if flags & _CHANGED:
+        held[:] = output
+    if flags & _RESTING:
+        target[:] = 0.0
+    else:
+        frame(numbers, table, scratch, part, at, target)
+    if share < 1.0:
+        blend(held, target, share, output)
+    else:
+        output[:] = target
+
+
+@_compiled
+def advance(
+    state,
+    window_ns,
+    window_mm,
+    velocities,
+    output,
+    held,
+    target,
+    at,
+    numbers,
+    table,
+    scratch,
+    times_ns,
+    poses,
+    rested,
+    taking,
+    ints,
+    floats,
+    frames,
+    first,
+):
+    """Do ticks; how many were done. It stops before one whose pose cannot be.
+
+    Parameters
+    ----------
+    state, window_ns, window_mm, velocities, output, held, target, at
+        Of `vbraille.engine.state.State`.
+    numbers, table, scratch
+        The program that is wanted under the hand.
+    times_ns : int64[n, 2]
+        When each tick woke, and the device's time of its pose.
+    poses : float64[n, 4]
+        1 where there is a pose, its x, y and θ.
+    rested : int
+        How often the device has gone to rest by itself.
+    taking : bool
+        Whether frames reach the actuators.
+    ints, floats, frames
+        Records, by `vbraille.engine.record`.
+    first : int
+        The record of the first of these ticks; those after the last go on from the first record.
+    """
+    now = state[0]
+    size = ints.shape[0]
+    rows, columns = output.shape
+    for n in range(times_ns.shape[0]):
+        now_ns = times_ns[n, 0]
+        now["flags"] = 0
+        passed_ns = min(now_ns - now["ticked_ns"], now["period_ns"])
+        now["faded_ns"] += passed_ns
+        if now["shown"] != 0:
+            now["shown_ns"] += passed_ns
+        now["ticked_ns"] = now_ns
+        if poses[n, POSED] != 0.0:
+            possible = _take_pose(
+                state,
+                window_ns,
+                window_mm,
+                velocities,
+                now_ns,
+                times_ns[n, 1],
+                poses[n],
+                output,
+                held,
+            )
+            if not possible:
+                return n
+        y_mm = now["y_mm"] if now["free_y"] != 0 else numbers[work.OWN_Y]
+        _decide(state, now_ns, y_mm, rested, taking, numbers, output, held)
+        if now["shown"] == 0:
+            now["flags"] |= _RESTING
+        shown_s = now["shown_ns"] / NS_PER_S
+        at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
+        at[work.TIME], at[work.VX], at[work.VY] = shown_s, now["vx_mm_s"], now["vy_mm_s"]
+        # What the flags say was done already; only the frame is to be made.
+        _show(
+            now["flags"] & _RESTING,
+            now["share"],
+            now["part"],
+            numbers,
+            table,
+            scratch,
+            at,
+            output,
+            held,
+            target,
+        )
+        if now["paused"]:
+            now["flags"] |= _PAUSED
+        if now_ns - now["sampled_ns"] > now["silence_ns"]:
+            now["flags"] |= _SILENT
+        if not taking:
+            now["flags"] |= _HELD
+        if now["exhausted"] != 0 and now["exhausted"] == now["serial"]:
+            now["flags"] |= _EXPOSED
+        slot = (first + n) % size
+        ints[slot, TICK] = now["tick"]
+        ints[slot, TIME] = now_ns
+        ints[slot, DEVICE] = now["device_ns"]
+        ints[slot, LINE] = now["line"]
+        ints[slot, PART] = now["part"]
+        ints[slot, FLAGS] = now["flags"]
+        placed = now["placed"] != 0
+        floats[slot, X] = now["x_mm"] if placed else np.nan
+        floats[slot, Y] = y_mm if placed else np.nan
+        floats[slot, THETA] = now["theta_rad"] if placed else np.nan
+        floats[slot, VX] = now["vx_mm_s"]
+        floats[slot, VY] = now["vy_mm_s"]
+        floats[slot, FORWARD_MM] = now["forward_mm"]
+        floats[slot, FORWARD_S] = now["forward_s"]
+        floats[slot, SHOWN] = shown_s
+        floats[slot, SHARE] = now["share"]
+        for row in range(rows):
+            for column in range(columns):
+                frames[slot, row, column] = output[row, column]
+        now["tick"] += 1
+    return times_ns.shape[0]
+
+
+@_compiled
+def replay(numbers, table, scratch, ints, floats, at, output, held, target, frames):
+    """Make the frames of ticks again from their records, all of one picture and without a gap.
+
+    Parameters
+    ----------
+    numbers, table, scratch
+        The program that was wanted under the hand.
+    ints, floats
+        Records; their part, flags, pose, velocity, time and share are looked at.
+    at : float64[6]
+        Room for what a frame is evaluated at.
+    output, held, target : float64[rows, columns]
+        The frame written last, the one that the fade began with, and room for another; they are
+        changed, for the ticks that come next.
+    frames : float64[n, rows, columns]
+        What the actuators did, to fill.
+    """
+    for n in range(ints.shape[0]):
+        at[work.X], at[work.Y], at[work.THETA] = floats[n, X], floats[n, Y], floats[n, THETA]
+        at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
+        flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
+        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
+        if flags & _HELD:  # the loop goes on from what it wrote, and nothing of it was done
+            frames[n] = 0.0
+        else:
+            frames[n] = output
+

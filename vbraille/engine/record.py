@@ -1,0 +1,85 @@
+"""What is recorded of a tick, and where each number of it stands.
+
+A record is the same in the ring's memory, in a block of ticks and in the compiled code: whole
+numbers, then numbers, then the frame. Columns of either kind are told apart by their place, so
+that compiled code serves arrays of any shape.
+"""
+
+from __future__ import annotations
+
+from enum import IntFlag
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+INTS = (
+    "tick",  # from 0
+    "time_ns",  # when the tick woke, by the host's monotonic clock
+    "device_ns",  # of the pose, by the device's clock
+    "lateness_ns",  # from the deadline to the waking
+    "work_ns",  # from waking until the frame was written
+    "late",  # deadlines missed so far
+    "overruns",  # ticks so far whose own work took longer than a period
+    "line",  # number of what is under the hand; 0 before the first
+    "part",  # which part of it, of a picture that has several: a page's line, from 0
+    "flags",  # of `Flag`
+)
+FLOATS = (
+    "x_mm",  # the array's centre on the canvas; NaN before the first pose
+    "y_mm",
+    "theta_rad",
+    "vx_mm_s",  # the hand's velocity
+    "vy_mm_s",
+    "forward_mm",  # way to the right so far, and the time that it took
+    "forward_s",
+    "shown_s",  # the picture's own time, since it was put under the hand
+    "share",  # how much of a change has faded in: 1 is all
+)
+TICK, TIME, DEVICE, LATENESS, WORK, LATE, OVERRUNS, LINE, PART, FLAGS = range(len(INTS))
+X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE = range(len(FLOATS))
+
+
+class Flag(IntFlag):
+    """What else is true of a tick."""
+
+    PAUSED = 1
+    SILENT = 2  # the device has given no pose for a while
+    FOLLOWED = 4  # until 2026-11-21: a simulated hand had come to its end
+    MARK = 8  # the device waits for its mark
+    STOP = 16  # the device waits to be told that it is at the left stop
+    RESTING = 32  # nothing is shown, whatever the line
+    CHANGED = 64  # a fade begins here, from the frame before
+    RESTED = 128  # the device had gone to rest by itself: the frame before was rest
+    HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
+    EXPOSED = 512  # the picture has moved by itself for as long as it may, and rests
+
+
+def tick_dtype(shape: tuple[int, int]) -> np.dtype:
+    """One record: the numbers of a tick, and the frame that it sent, float32[rows, columns]."""
+    numbers = [(name, "<i8") for name in INTS] + [(name, "<f8") for name in FLOATS]
+    return np.dtype([*numbers, ("frame", "<f4", shape)], align=True)
+
+
+def columns_of(
+    records: NDArray[np.void],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]]:
+    """The whole numbers, the numbers and the frames of records, as views for compiled code.
+
+    Returns
+    -------
+    int64[n, INTS], float64[n, FLOATS], float32[n, rows, columns]
+        Of the same memory; one kind of array each, whatever the frame's shape.
+    """
+    step, at = records.itemsize, records.dtype.fields
+    assert at is not None
+
+    def view(dtype: type, names: tuple[str, ...]) -> NDArray:
+        start = at[names[0]][1]
+        return np.ndarray(
+            (records.size, len(names)), dtype, records.data, start, (step, np.dtype(dtype).itemsize)
+        )
+
+    return view(np.int64, INTS), view(np.float64, FLOATS), records["frame"]

@@ -1,0 +1,193 @@
+"""All that a tick knows from those before it, in arrays that compiled code works on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.engine import kernels
+from vbraille.engine.constants import (
+    DIFFERENCE,
+    FADE_S,
+    IDLE_S,
+    MEAN,
+    NS_PER_S,
+    PAUSE_FADE_S,
+    SILENCE_S,
+)
+from vbraille.render.kernels import blend
+from vbraille.render.program import nothing, scratch_for
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.display import Display
+    from vbraille.render.program import Program
+
+_STATE = np.dtype(
+    [
+        (name, "<i8")
+        for name in (
+            "period_ns", "fade_ns", "pause_ns", "idle_ns", "silence_ns",  # which do not change
+            "free_y",  # whether the carriage has an axis y
+            "serial",  # how many pictures were wanted under the hand, and so the last one's number
+            "line",  # what records call it
+            "paused",
+            "tick",  # number of the next one
+            "ticked_ns",  # when the last one woke
+            "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
+            "placed",  # whether it is known where the array is
+            "device_ns", "sampled_ns",  # of the last pose, by the device's clock and by ours
+            "moved_ns",  # when the hand last moved
+            "shown",  # serial number of what is under the hand; 0 at rest
+            "part",  # of what is shown
+            "begun", "shown_ns",  # the picture whose own time goes, and that time
+            "exhausted",  # the picture that has moved by itself for as long as it may
+            "rested",  # how often the device has gone to rest by itself
+            "flags",  # of this tick
+            "samples", "last_ns",  # of the velocity
+        )
+    ]
+    + [
+        (name, "<f8")
+        for name in (
+            "x_mm", "y_mm", "theta_rad", "vx_mm_s", "vy_mm_s",
+            "moved_x_mm", "moved_y_mm", "moved_theta",  # where the hand last moved to
+            "forward_mm", "forward_s", "share",
+        )
+    ]
+)  # fmt: skip
+
+
+class State:
+    """What one loop knows, and the blocks of ticks that are done with it.
+
+    Parameters
+    ----------
+    display
+        What is driven.
+    rate_hz
+        Ticks a second, 1 to 10,000.
+    now_ns
+        When it begins, by the clock of its ticks.
+    fade_s
+        How long a change takes that the hand did not cause.
+    idle_s
+        How long without motion before the array goes to rest.
+    rested
+        How often the device has gone to rest by itself.
+
+    Attributes
+    ----------
+    now : record
+        The numbers.
+    output : float64[rows, columns]
+        The frame last made.
+
+    Raises
+    ------
+    ValueError
+        If the rate is out of range.
+    """
+
+    def __init__(
+        self,
+        display: Display,
+        rate_hz: float,
+        now_ns: int,
+        *,
+        fade_s: float = FADE_S,
+        idle_s: float = IDLE_S,
+        rested: int = 0,
+    ) -> None:
+        if not 1 <= rate_hz <= 10_000:
+            raise ValueError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+        self.shape = display.shape
+        self._numbers = np.zeros(1, _STATE)
+        self.now = now = self._numbers[0]
+        now["period_ns"] = round(NS_PER_S / rate_hz)
+        now["fade_ns"] = now["fading_ns"] = now["faded_ns"] = int(fade_s * NS_PER_S)
+        now["pause_ns"] = int(PAUSE_FADE_S * NS_PER_S)
+        now["idle_ns"] = int(idle_s * NS_PER_S)
+        now["silence_ns"] = int(SILENCE_S * NS_PER_S)
+        now["free_y"] = "y" in display.axes
+        now["ticked_ns"] = now["moved_ns"] = now["sampled_ns"] = now_ns
+        now["rested"] = rested
+        now["share"] = 1.0
+        self._window_ns = np.zeros(DIFFERENCE, np.int64)
+        self._window_mm = np.zeros((DIFFERENCE, 2))
+        self._velocities = np.zeros((MEAN, 2))
+        self.output = np.zeros(display.shape)
+        self._held = np.zeros(display.shape)
+        self._target = np.zeros(display.shape)
+        self._at = np.zeros(6)
+        self._scratch = scratch_for(display.columns)
+        self._program = nothing(display)
+        self._serials = 0
+
+    def want(self, program: Program | None, line: int) -> None:
+        """Have something else under the hand from the next tick on; it fades in. None is rest."""
+        now = self.now
+        now["line"] = line
+        if program is None:
+            now["serial"] = 0
+            return
+        if program.shape != self.shape:
+            raise ValueError(
+                f"the picture is for {program.shape[0]} × {program.shape[1]} actuators; "
+                f"the device has {self.shape[0]} × {self.shape[1]}"
+            )
+        self._serials += 1
+        now["serial"] = self._serials
+        self._program = program
+
+    @property
+    def paused(self) -> bool:
+        """Whether the array rests until told otherwise."""
+        return bool(self.now["paused"])
+
+    def pause(self, paused: bool, now_ns: int) -> None:
+        """Have the array rest, or go on, from the next tick on."""
+        self.now["paused"] = paused
+        self.now["moved_ns"] = now_ns
+        self.now["begun"] = self.now["exhausted"] = 0
+
+    def fade(self, share: float) -> None:
+        """Make a frame on the way from the one that `hold` kept to rest."""
+        self._target.fill(0.0)
+        blend(self._held, self._target, share, self.output)
+
+    def hold(self) -> None:
+        """Keep the frame last made, to fade from it."""
+        self._held[:] = self.output
+
+    def advance(
+        self,
+        times_ns: NDArray[np.int64],
+        poses: NDArray[np.float64],
+        rested: int,
+        taking: bool,
+        columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
+        first: int = 0,
+    ) -> int:
+        """Do ticks; how many were done; see `vbraille.engine.kernels.advance`."""
+        return kernels.advance(
+            self._numbers,
+            self._window_ns,
+            self._window_mm,
+            self._velocities,
+            self.output,
+            self._held,
+            self._target,
+            self._at,
+            self._program.numbers,
+            self._program.table,
+            self._scratch,
+            times_ns,
+            poses,
+            rested,
+            taking,
+            *columns,
+            first,
+        )

@@ -1,0 +1,217 @@
+"""A picture, compiled for the kernels: plain arrays that say what the actuators do at every pose."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.render import kernels, work
+from vbraille.render.work import Kind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.display import Display
+
+_BLOCK = 64  # places whose swings stay in the processor's nearest cache
+# Longest that a picture may move actuators by itself: vibration tires the skin (Lévesque 2009, 8.6).
+EXPOSURE_S = 60.0
+# Twenty samples a period at 1 kHz: Lévesque 2009, 8.3.2.
+MOST_FREQUENCY_HZ = 50.0
+
+
+class Program:
+    """What a picture compiles to. Nothing of it changes once made.
+
+    Whoever shows it needs not know what it is of: it is a kind and plain arrays, which go through
+    memory and files as they are.
+
+    Parameters
+    ----------
+    numbers : float64[n]
+        Places as `vbraille.render.work` tells them; the head is the same for every kind.
+    table : uint16[m]
+        What the kind looks up.
+
+    Attributes
+    ----------
+    shape : tuple[int, int]
+        Rows and columns of the display that it is for.
+    """
+
+    __slots__ = ("_at", "_scratch", "numbers", "shape", "table")
+
+    def __init__(self, numbers: NDArray[np.float64], table: NDArray[np.uint16]) -> None:
+        self.numbers = numbers
+        self.table = table
+        self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
+        self._scratch = scratch_for(self.shape[1], _BLOCK)
+        self._at = np.zeros(6)
+
+    @property
+    def kind(self) -> Kind:
+        """What it is of."""
+        return Kind(int(self.numbers[work.KIND]))
+
+    @property
+    def nbytes(self) -> int:
+        """What it takes in memory."""
+        return self.numbers.nbytes + self.table.nbytes
+
+    @property
+    def own_y_mm(self) -> float:
+        """Where on the canvas an array stands that has no y of its own."""
+        return float(self.numbers[work.OWN_Y])
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves by itself, without the hand."""
+        return bool(self.numbers[work.FREQUENCY] > 0)
+
+    def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
+        """Which part belongs under an array whose centre is at y, after another one or none."""
+        return kernels.part_of(self.numbers, y_mm, before)
+
+    def frame(
+        self,
+        x_mm: float,
+        out: NDArray[np.floating],
+        *,
+        theta_rad: float = 0.0,
+        part: int = 0,
+        time_s: float = 0.0,
+    ) -> None:
+        """Fill one frame.
+
+        Parameters
+        ----------
+        x_mm
+            Where the array's centre is; anything that is not on the picture, NaN
+            among it, gives the idle frame.
+        out : float[rows, columns]
+            Deflections, 0 … 1. It need not be contiguous, but each new kind of
+            array is compiled for, once, in some seconds.
+        theta_rad
+            How far the array is turned.
+        part
+            Which part of the picture; see `part_of`.
+        time_s
+            The picture's own time, since its start.
+
+        Raises
+        ------
+        ValueError
+            If ``out`` has not the shape of the array.
+        """
+        at = self._at
+        at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
+        kernels.frame(self.numbers, self.table, self._scratch, part, at, out)
+
+    def path(
+        self, x_mm: NDArray[np.float64], out: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
+        """Fill the frames of a line for a path of places; much faster than `frame` for each.
+
+        Parameters
+        ----------
+        x_mm : float64[n]
+            Where the array's centre is.
+        out : float32[n, rows, columns], optional
+            Where to put them; made if not given.
+
+        Returns
+        -------
+        float32[n, rows, columns]
+            Deflections, 0 … 1.
+
+        Raises
+        ------
+        ValueError
+            If ``out`` has not that shape, or the picture is no line.
+        """
+        if self.kind is not Kind.LINE:
+            raise ValueError(f"a {self.kind.name.lower()} has no frames along a line")
+        x_mm = np.ascontiguousarray(x_mm, np.float64)
+        shape = (x_mm.size, *self.shape)
+        if out is None:
+            out = np.empty(shape, np.float32)
+        elif out.shape != shape:
+            raise ValueError(f"the frames have shape {out.shape}; it must be {shape}")
+        kernels.path(self.numbers, self.table, self._scratch, x_mm, out)
+        return out
+
+    def with_anchor(self, anchor_mm: float) -> Program:
+        """The same braille for places that tell another point of the array than its centre.
+
+        Parameters
+        ----------
+        anchor_mm
+            How far right of the left column that point is: 0 for the left column itself, which is
+            what recordings told until 2026-11-21.
+        """
+        numbers = self.numbers.copy()
+        numbers[work.ANCHOR] = anchor_mm
+        return Program(numbers, self.table)
+
+
+def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
+    """Room that the kernels need for so many places of the array at once."""
+    return np.zeros((2, places * columns))
+
+
+def head(display: Display, kind: Kind, places: int, own_y_mm: float = 0.0) -> NDArray[np.float64]:
+    """Numbers of a program that does not move by itself, with room for so many in all."""
+    numbers = np.zeros(places)
+    numbers[work.KIND] = kind
+    numbers[work.OWN_Y] = own_y_mm
+    numbers[work.EXPOSURE] = math.inf
+    numbers[work.ROWS], numbers[work.COLUMNS] = display.shape
+    return numbers
+
+
+def nothing(display: Display) -> Program:
+    """A line without a dot, for before there is anything to show."""
+    return Program(head(display, Kind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16))
+
+
+def vibration(
+    display: Display,
+    frequency_hz: float = MOST_FREQUENCY_HZ,
+    amplitude: float = 1.0,
+    exposure_s: float = EXPOSURE_S,
+) -> Program:
+    """Every actuator swings, each against its neighbours, wherever the array is.
+
+    Lévesque 2009, eqs. 8.1 and 8.2.
+
+    Parameters
+    ----------
+    display
+        What it is shown on.
+    frequency_hz
+        How fast, above 0 to 50 Hz.
+    amplitude
+        How far, of the full swing, above 0 to 1.
+    exposure_s
+        How long at a time, above 0; then it fades.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+    if not 0 < frequency_hz <= MOST_FREQUENCY_HZ:
+        raise ValueError(
+            f"the frequency is {frequency_hz:g} Hz; it must be above 0 to {MOST_FREQUENCY_HZ:g} Hz"
+        )
+    if not 0 < amplitude <= 1:
+        raise ValueError(f"the amplitude is {amplitude:g}; it must be above 0 to 1")
+    if not exposure_s > 0:
+        raise ValueError(f"the exposure is {exposure_s:g} s; it must be above 0")
+    numbers = head(display, Kind.VIBRATION, work.OWN)
+    numbers[work.FREQUENCY] = frequency_hz
+    numbers[work.AMPLITUDE] = amplitude
+    numbers[work.EXPOSURE] = exposure_s
+    return Program(numbers, np.zeros(1, np.uint16))
