@@ -16,13 +16,13 @@ from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED
 from tests.sessions.sittings import Session
 from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
-from vbraille.devices.hand import DEVICE, HumanHand
 from vbraille.engine.ring import Flag
 from vbraille.sessions.planning.protocol import builtin_text
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.traces import TRACE, TraceWriter
+from vbraille.simulation.hand import DEVICE, HumanHand
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -80,7 +80,7 @@ def beside(script: str) -> Iterator[None]:
 def lateness_us(busy_parent: bool) -> NDArray[np.float64]:
     """Lateness of the ticks of a host, for one block; float64[n]."""
     with Host("sim:?hand=sweep:60", INFO, 26) as host:
-        host.show(line(), 1, 280.0)
+        host.show(line(), 1)
         time.sleep(0.2)
         host.poll()
         end_s = time.monotonic() + BLOCK_S
@@ -165,7 +165,7 @@ def _round_trip() -> Result:
             assert device.stdout is not None
             device.stdout.readline()
             with Host(f"serial:{link}", round_trip.INFO, 1) as host:
-                host.show(round_trip.dot(), 1, 20.0)
+                host.show(round_trip.dot(), 1)
                 _, median, high = map(float, device.stdout.readline().split())
     return Result(
         "position at the device to the frame for it back at the device, p50 and p99",
@@ -199,7 +199,7 @@ def _long_run() -> Iterator[Result]:
     work = []
     control = subprocess.Popen([sys.executable, "-c", _CONTROL], stdout=subprocess.PIPE, text=True)
     with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, 26) as host:
-        host.show(line(), 1, 280.0)
+        host.show(line(), 1)
         begun_s = time.monotonic()
         settled = None
         while time.monotonic() < begun_s + LONG_S:

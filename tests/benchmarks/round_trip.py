@@ -16,11 +16,11 @@ import numpy as np
 
 from vbraille.cli.simulate import go_real_time
 from vbraille.cli.wanted import device_info
-from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.messages import Encoder
-from vbraille.devices.pty import Link, Port
 from vbraille.render import VBD, Tuning
 from vbraille.render.renderer import Renderer
+from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.pty import Link, Port
 
 GEOMETRY = replace(VBD.geometry, dot_width_mm=20.0, dot_spacing_mm=25.0, cell_gap_mm=25.0)
 INFO = replace(device_info(VBD, GEOMETRY, 1000.0), levels=65_536)

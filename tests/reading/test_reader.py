@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
-from vbraille.devices.hand import Sweep
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.page import Layout
@@ -12,6 +11,7 @@ from vbraille.reading import COMMANDS
 from vbraille.reading.commands import BY_KEY
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import STRESS2, Tuning
+from vbraille.simulation.hand import Sweep
 from vbraille.translate import Book, Document, Table
 
 SPAN_MM = 10.8
@@ -36,6 +36,7 @@ class Bench:
             mapping=STRESS2.mapping,
             tuning=tuning,
             say=self.said.append,
+            steering=self.device.steering,
             **options,
         )
         self.reader.start()

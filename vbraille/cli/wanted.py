@@ -11,6 +11,7 @@ from vbraille.devices.registry import check_actuators
 from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
+from vbraille.simulation.steering import Steering
 
 if TYPE_CHECKING:
     from vbraille.geometry import Geometry
@@ -121,8 +122,15 @@ def refuse_hand(device: str, **given: object) -> None:
             )
 
 
-def device_spec(device: str, hand: str, seed: int) -> str:
-    """Spec of a device; the simulated one is told its hand."""
-    if not is_simulated(device):
+def steering_of(device: str) -> Steering | None:
+    """What steers the hand of a simulated device; None for a device that a person moves."""
+    return Steering() if is_simulated(device) or device.startswith("sim:?") else None
+
+
+def device_spec(device: str, hand: str, seed: int, steering: Steering | None) -> str:
+    """Spec of a device; the simulated one is told its hand, and what steers it."""
+    if steering is None:
         return device
-    return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
+    if is_simulated(device):
+        device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
+    return f"{device}&steering={steering.descriptor}"

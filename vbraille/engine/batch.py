@@ -14,8 +14,6 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from vbraille.devices.recorded import Recorded
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.engine import place_of
 from vbraille.engine.loop import FADE_S, IDLE_S, NS_PER_S, PAUSE_FADE_S, STILL_MM
@@ -23,6 +21,8 @@ from vbraille.engine.ring import Flag, tick_dtype
 from vbraille.engine.tally import Tally
 from vbraille.engine.velocity import DIFFERENCE, GAP_NS, MEAN
 from vbraille.errors import InputError
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,9 +68,9 @@ class BatchEngine:
     Raises
     ------
     InputError
-        If the device has no hand that reads lines.
+        If the device has no hand that reads lines when it is told to.
     ValueError
-        If the rate is not 1 to 10,000 Hz, or a poll does nothing.
+        If the rate is not 1 to 10,000 Hz, a poll does nothing, or the hand is not steered.
     """
 
     def __init__(self, device: Device, rate_hz: float = 1000.0, poll_ticks: int = 1000) -> None:
@@ -81,6 +81,8 @@ class BatchEngine:
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
             raise InputError("--fast needs a hand that reads lines: slow, fluent or sweep:SPEED")
+        if device.steering is None:
+            raise ValueError("nothing steers the hand; a poll would not know when it is done")
         self.newest: np.void | None = None
         self.tally = Tally()
         self.counts: dict[str, int] = {}
@@ -95,7 +97,6 @@ class BatchEngine:
         self._picture: Renderer | None = None
         self._line = 0
         self._paused = False
-        self._followed = False
         self._rested = device.rested
         self._shown: Renderer | None = None  # what was last under the hand; None at rest
         self._output = np.zeros(shape, np.float32)
@@ -127,13 +128,10 @@ class BatchEngine:
         self._paused = paused
         self._moved_ns = self._clock.now_ns()
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Renderer, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self._picture = picture
-        if line != self._line:
-            self._line = line
-            self.device.follow(end_mm)
-            self._followed = False
+        self._line = line
 
     def take_notes(self) -> Sequence[str]:
         """What the device has to say since the last call."""
@@ -147,19 +145,19 @@ class BatchEngine:
         """Do some ticks; their records, `vbraille.engine.ring.tick_dtype`[n]."""
         tick = self.tally.ticks + np.arange(self._poll_ticks)
         times_ns = tick * self._period_ns
-        followed = self.device.followed_at(times_ns)
-        if followed[-1] and not self._followed:
-            count = int(followed.argmax()) + 1
-            tick, times_ns, followed = tick[:count], times_ns[:count], followed[:count]
-        self._followed = bool(followed[-1])
+        self._clock.sleep_until_ns(int(times_ns[0]))
+        self.device.obey()
+        count = self.device.until_done(times_ns)
+        tick, times_ns = tick[:count], times_ns[:count]
         x_mm = self.device.places_mm(times_ns)
         self._clock.sleep_until_ns(int(times_ns[-1]))
+        self.device.read()  # which tells whoever steers the hand that it has come to its end
         ticks = np.zeros(tick.size, self._dtype)
         ticks["tick"] = tick
         ticks["time_ns"] = ticks["device_ns"] = times_ns
         ticks["line"] = self._line
         ticks["x_mm"] = x_mm
-        ticks["flags"] = followed * int(Flag.FOLLOWED) + self._paused * int(Flag.PAUSED)
+        ticks["flags"] = self._paused * int(Flag.PAUSED)
         ticks["flags"] += (not self.device.taking) * int(Flag.HELD)
         ticks["share"] = 1.0
         self._measure(ticks, x_mm)

@@ -45,7 +45,7 @@ class Engine(Protocol):
     @paused.setter
     def paused(self, paused: bool) -> None: ...
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Renderer, line: int) -> None:
         """Put a picture of a line under the hand.
 
         Parameters
@@ -53,10 +53,7 @@ class Engine(Protocol):
         picture
             What to show.
         line
-            The line's number in the records, from 1. With another one than before
-            a simulated hand reads anew.
-        end_mm
-            Where its last dot ends.
+            The line's number in the records, from 1.
         """
         ...
 

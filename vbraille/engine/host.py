@@ -50,6 +50,8 @@ class Host:
     cells
         Most cells of a line; None if lines are laid out for the device that is found: `open` it,
         then tell `fit`, then `start`.
+    pass_fds
+        Descriptors that the process inherits, for its device: the spec names them.
 
     Attributes
     ----------
@@ -61,20 +63,28 @@ class Host:
         Ticks that were never polled: the parent was away for too long.
     """
 
-    def __init__(self, device: str, wanted: Display, cells: int | None = None) -> None:
+    def __init__(
+        self,
+        device: str,
+        wanted: Display,
+        cells: int | None = None,
+        *,
+        pass_fds: Sequence[int] = (),
+    ) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self._device = device
         self._wanted = wanted
         self._cells = cells
+        self._pass_fds = tuple(pass_fds)
         self._info: Display | None = None
         self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None  # of memory that nobody has a view of yet
         self._mailbox: Mailbox | None = None
         self._ring: Ring | None = None
-        self._shown: tuple[Renderer, int, float] | None = None
+        self._shown: tuple[Renderer, int] | None = None
         self._notes: list[str] = []
         self._heard = b""
         self._fault: VbrailleError | None = None
@@ -140,7 +150,7 @@ class Host:
             [sys.executable, "-m", "vbraille.engine.hosted", str(self._descriptor)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            pass_fds=(self._descriptor,),
+            pass_fds=(self._descriptor, *self._pass_fds),
         )
         os.set_blocking(self._answers(), False)
         self._tell(
@@ -210,10 +220,10 @@ class Host:
     def paused(self, paused: bool) -> None:
         self._paused = self._posted.paused = paused
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Renderer, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
-        self._shown = picture, line, end_mm
-        self._posted.post(picture, line, end_mm)
+        self._shown = picture, line
+        self._posted.post(picture, line)
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

@@ -25,7 +25,6 @@ from typing import TYPE_CHECKING, Any
 from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
 from vbraille.devices.notices import EVERY_NS, Notices
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
@@ -33,6 +32,7 @@ from vbraille.engine.loop import Loop
 from vbraille.engine.posted import PostedPicture
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
+from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
     from io import RawIOBase
@@ -103,7 +103,6 @@ class Hosted:
         self._ended = False
         self._zeroed = 0
         self._taken = 0
-        self._line = 0
         # The one under the hand, and the one that comes next.
         self._pictures = [PostedPicture(extent.shape, extent.cells) for _ in range(2)]
 
@@ -125,9 +124,6 @@ class Hosted:
                 self._pictures.reverse()
                 self._taken = picture.number
                 loop.show(picture, picture.line)
-                if picture.line != self._line:
-                    self._line = picture.line
-                    loop.device.follow(picture.end_mm)
         if mailbox.paused != loop.paused:
             loop.paused = mailbox.paused
         if mailbox.zeroed != self._zeroed:

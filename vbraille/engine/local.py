@@ -43,7 +43,6 @@ class LocalEngine:
         self._ring = Ring(memoryview(bytearray(Ring.bytes_needed(shape, size))), shape, size)
         self.loop = Loop(device, clock, rate_hz=rate_hz, ring=self._ring)
         self._poll_ticks = poll_ticks
-        self._line = 0
 
     @property
     def display(self) -> Display:
@@ -69,12 +68,9 @@ class LocalEngine:
     def paused(self, paused: bool) -> None:
         self.loop.paused = paused
 
-    def show(self, picture: Renderer, line: int, end_mm: float) -> None:
+    def show(self, picture: Renderer, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self.loop.show(picture, line)
-        if line != self._line:
-            self._line = line
-            self.loop.device.follow(end_mm)
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; their records."""

@@ -34,7 +34,7 @@ STILL_MM = 0.05
 JUMP_MM_S = 5_000.0
 SILENCE_S = 0.1
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
-_PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
+_PAUSED, _SILENT = int(Flag.PAUSED), int(Flag.SILENT)
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
 _HELD = int(Flag.HELD)
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
@@ -159,7 +159,6 @@ class Loop:
         now_ns = self.clock.now_ns()
         busy_ns = self.clock.busy_ns()
         lateness_ns = now_ns - self._deadline_ns
-        followed = self.device.followed  # asked before the place, which is then the last one
         self._happened = 0
         self._faded_ns += min(now_ns - self._ticked_ns, self._period_ns)
         self._ticked_ns = now_ns
@@ -191,7 +190,7 @@ class Loop:
             self.tally.late += missed
             self._deadline_ns += missed * self._period_ns
         if self._ring is not None:
-            self._record(self._ring, now_ns, lateness_ns, work_ns, followed)
+            self._record(self._ring, now_ns, lateness_ns, work_ns)
 
     def warm_up(self) -> None:
         """Compile what a tick calls, so that the first is no slower than the others."""
@@ -226,9 +225,7 @@ class Loop:
             self.device.write(self.output)
         self._shown = None
 
-    def _record(
-        self, ring: Ring, now_ns: int, lateness_ns: int, work_ns: int, followed: bool
-    ) -> None:
+    def _record(self, ring: Ring, now_ns: int, lateness_ns: int, work_ns: int) -> None:
         flags = _PLACING[self.device.placing] | self._happened
         if self._shown is None:
             flags |= _RESTING
@@ -236,8 +233,6 @@ class Loop:
             flags |= _PAUSED
         if self._silent(now_ns):
             flags |= _SILENT
-        if followed:
-            flags |= _FOLLOWED
         if not self.device.taking:
             flags |= _HELD
         tally = self.tally

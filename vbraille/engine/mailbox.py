@@ -53,8 +53,8 @@ class Mailbox:
         """Number of the last picture posted; 0 before the first."""
         return self._words[_PUBLISHED]
 
-    def post(self, picture: Renderer, line: int, end_mm: float) -> None:
-        """Post a picture of a line, and where its last dot ends.
+    def post(self, picture: Renderer, line: int) -> None:
+        """Post a picture of a line.
 
         Raises
         ------
@@ -71,7 +71,6 @@ class Mailbox:
             )
         slot["number"] = number
         slot["line"] = line
-        slot["end_mm"] = end_mm
         slot["parameters"] = picture.parameters
         gains[:, :used] = picture.gains
         gains[:, used:] = 0.0
@@ -123,7 +122,6 @@ def slot_dtype(shape: tuple[int, int], cells: int) -> np.dtype:
             ("checksum", "<i8"),
             ("number", "<i8"),
             ("line", "<i8"),
-            ("end_mm", "<f8"),
             ("parameters", "<f8", (work.IDLE + rows,)),
             ("gains", "<f8", (rows, 2 * (cells + 2))),
         ]

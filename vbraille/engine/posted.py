@@ -38,11 +38,6 @@ class PostedPicture:
         return int(self.slot["line"])
 
     @property
-    def end_mm(self) -> float:
-        """Where its last dot ends."""
-        return float(self.slot["end_mm"])
-
-    @property
     def number(self) -> int:
         """How many were posted with it."""
         return int(self.slot["number"])

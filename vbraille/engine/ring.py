@@ -43,7 +43,7 @@ class Flag(IntFlag):
 
     PAUSED = 1
     SILENT = 2  # the device has given no sample for a while
-    FOLLOWED = 4  # a simulated hand has come to its end
+    FOLLOWED = 4  # in old traces: a simulated hand has come to its end; never set any more
     MARK = 8  # the device waits for its mark
     STOP = 16  # the device waits to be told that it is at the left stop
     RESTING = 32  # nothing is shown, whatever the line

@@ -13,6 +13,7 @@ from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.reading.keys import PASTE
 from vbraille.reading.waiting import Waiting
 from vbraille.render.renderer import Renderer
+from vbraille.simulation.steering import ReadLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.render.mappings import Mapping
     from vbraille.render.models import Model
     from vbraille.render.tuning import Tuning
+    from vbraille.simulation.steering import Steering
 
 STEP = 0.1
 # Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
@@ -60,6 +62,8 @@ class Reader:
         Whether to wait for keys at the end of the text, instead of being done.
     echo
         What to say of each line.
+    steering
+        Of the simulated hand that reads; None if a person's hand does.
     say
         Where to say it, one thing a call.
 
@@ -86,6 +90,7 @@ class Reader:
         advance: bool = True,
         stay: bool = False,
         echo: Echo = Echo.NONE,
+        steering: Steering | None = None,
     ) -> None:
         self.layout = layout
         self.engine = engine
@@ -100,6 +105,7 @@ class Reader:
         self._advance = advance
         self._stay = stay
         self._echo = echo
+        self._steering = steering
         self._line: Line | None = None
         self._end: EndOfLine
         self._waiting: Waiting
@@ -146,6 +152,15 @@ class Reader:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
                     self._say(sentence)
         self._watch_speed(float(ticks["speed_mm_s"].max()))
+
+    def steer(self) -> None:
+        """Have a simulated hand read the line under it; a person's hand does by itself."""
+        if self._steering is not None and self._line is not None:
+            self._steering.give(ReadLine(self._geometry.extent_mm(len(self._line))))
+
+    def steered_till(self, tick: np.void) -> bool:
+        """Whether a simulated hand had read the line, by the time of a tick; no other ever has."""
+        return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
 
     def go_on(self) -> None:
         """Put the next line under the hand; there is none: the reading is finished."""
@@ -244,6 +259,7 @@ class Reader:
             self._model.array.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
         )
         self._picture(line)
+        self.steer()
         self._say_line(line)
 
     def _picture(self, line: Line) -> None:
@@ -257,7 +273,6 @@ class Reader:
                 tuning=self.tuning,
             ),
             line.number,
-            self._geometry.extent_mm(len(line)),
         )
 
     def _say_line(self, line: Line) -> None:
