@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.firmware import Controller
 from vbraille.devices.messages import TRIPPED
+from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     import numpy as np

@@ -6,8 +6,8 @@ from pathlib import Path
 _MODULE = '''
 import os
 import numpy as np
-from vbraille.devices.hand import Sweep
-from vbraille.devices.simulated import SimulatedDevice
+from vbraille.simulation.hand import Sweep
+from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.errors import DeviceError
 
 class Logged(SimulatedDevice):

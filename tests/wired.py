@@ -27,15 +27,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
-from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.greeting import greet
 from vbraille.devices.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
 from vbraille.devices.ports import Address
 from vbraille.devices.serialdevice import SerialDevice
-from vbraille.devices.simulator import split
 from vbraille.devices.wire import Decoder
 from vbraille.display import Display
 from vbraille.engine.loop import Loop
+from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.simulator import split
 
 if TYPE_CHECKING:
     from collections.abc import Callable

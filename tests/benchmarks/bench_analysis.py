@@ -16,13 +16,13 @@ from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED
 from tests.sessions.sittings import Session
 from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
-from vbraille.devices.hand import DEVICE, HumanHand
 from vbraille.engine.ring import Flag
 from vbraille.sessions.planning.protocol import builtin_text
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.traces import TRACE, TraceWriter
+from vbraille.simulation.hand import DEVICE, HumanHand
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -138,7 +138,7 @@ def _program(what: str, bar: str, most_s: float, most_mb: int | None, arguments:
 
 def _sit(session: Session, random: np.random.Generator) -> None:
     """Fill a session's journal and trace with what a hand did that took its time."""
-    array = session.protocol.model.array
+    array = session.protocol.model.display
     hand = HumanHand(DEVICE, session.plan.seed)
     ticks = 0
     with Journal(session.folder) as journal:

@@ -18,11 +18,11 @@ import numpy as np
 
 from tests.benchmarks import round_trip
 from tests.benchmarks.timing import Result, vbraille
+from tests.shown import rendered
 from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
 from vbraille.engine.realtime import PRIORITY
 from vbraille.render import STRESS2
-from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +43,7 @@ while True:
     list(Layout(Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb")), 26).lines())
 """
 
-INFO = device_info(STRESS2, STRESS2.geometry, 1000.0)
+INFO = device_info(STRESS2, STRESS2.style.geometry, 1000.0)
 
 
 def run() -> Iterator[Result]:
@@ -54,15 +54,15 @@ def run() -> Iterator[Result]:
     yield from _long_run()
 
 
-def line() -> Renderer:
+def line():
     """A line of many dots."""
-    return Renderer(
+    return rendered(
         np.arange(26, dtype=np.uint8) + 30,
-        array=STRESS2.array,
-        profile=STRESS2.profile,
-        mapping=STRESS2.mapping,
-        geometry=STRESS2.geometry,
-        tuning=STRESS2.tuning,
+        array=STRESS2.display,
+        profile=STRESS2.style.profile,
+        mapping=STRESS2.style.mapping,
+        geometry=STRESS2.style.geometry,
+        tuning=STRESS2.style.tuning,
     )
 
 
@@ -80,7 +80,7 @@ def beside(script: str) -> Iterator[None]:
 def lateness_us(busy_parent: bool) -> NDArray[np.float64]:
     """Lateness of the ticks of a host, for one block; float64[n]."""
     with Host("sim:?hand=sweep:60", INFO, 26) as host:
-        host.show(line(), 1, 280.0)
+        host.show(line(), 1)
         time.sleep(0.2)
         host.poll()
         end_s = time.monotonic() + BLOCK_S
@@ -165,7 +165,7 @@ def _round_trip() -> Result:
             assert device.stdout is not None
             device.stdout.readline()
             with Host(f"serial:{link}", round_trip.INFO, 1) as host:
-                host.show(round_trip.dot(), 1, 20.0)
+                host.show(round_trip.dot(), 1)
                 _, median, high = map(float, device.stdout.readline().split())
     return Result(
         "position at the device to the frame for it back at the device, p50 and p99",
@@ -199,7 +199,7 @@ def _long_run() -> Iterator[Result]:
     work = []
     control = subprocess.Popen([sys.executable, "-c", _CONTROL], stdout=subprocess.PIPE, text=True)
     with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, 26) as host:
-        host.show(line(), 1, 280.0)
+        host.show(line(), 1)
         begun_s = time.monotonic()
         settled = None
         while time.monotonic() < begun_s + LONG_S:

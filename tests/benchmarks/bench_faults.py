@@ -36,11 +36,11 @@ _CONTROLLER = """
 import sys
 from tests.benchmarks.bench_engine import INFO
 from vbraille.cli.simulate import go_real_time
-from vbraille.devices.firmware import describe
-from vbraille.devices.hand import Sweep
+from vbraille.simulation.firmware import describe
+from vbraille.simulation.hand import Sweep
 from vbraille.devices.messages import Encoder
-from vbraille.devices.pty import Link, Port
-from vbraille.devices.simulator import Simulator
+from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.simulator import Simulator
 simulator = Simulator(
     describe(INFO, Encoder.ABSOLUTE), Sweep(60.0), Port(Link(sys.argv[1])), say=lambda _: None
 )
@@ -95,7 +95,7 @@ def run() -> Iterator[Result]:
 def reading(spec: str) -> Iterator[Host]:
     """A host with actuators off their rest."""
     with Host(spec, INFO, 26) as host:
-        host.show(line(), 1, 280.0)
+        host.show(line(), 1)
         _until(host, lambda ticks: bool(ticks["frame"][-1].any()) and ticks["tick"][-1] > 300)
         yield host
 

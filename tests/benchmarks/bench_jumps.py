@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tests.benchmarks.timing import Result
 from tests.controllers import ControllerOf20261121
 from tests.wired import Wired, reading
-from vbraille.devices.firmware import Controller
+from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,9 +8,9 @@ import numpy as np
 
 from tests.benchmarks.timing import Result, ratio
 from tests.conftest import SEED, TEXTS
+from tests.shown import rendered
 from vbraille.page import Layout
 from vbraille.render import STRESS2
-from vbraille.render.renderer import Renderer
 from vbraille.translate import Book, Document, Table
 
 if TYPE_CHECKING:
@@ -23,22 +23,22 @@ LONG_BOOK = 10_000  # lines
 PATH = 20_000
 
 
-def renderer(masks: np.ndarray) -> Renderer:
-    return Renderer(
+def renderer(masks: np.ndarray):
+    return rendered(
         masks,
-        array=STRESS2.array,
-        profile=STRESS2.profile,
-        mapping=STRESS2.mapping,
-        geometry=STRESS2.geometry,
-        tuning=STRESS2.tuning,
+        array=STRESS2.display,
+        profile=STRESS2.style.profile,
+        mapping=STRESS2.style.mapping,
+        geometry=STRESS2.style.geometry,
+        tuning=STRESS2.style.tuning,
     )
 
 
 def run() -> Iterator[Result]:
     random = np.random.default_rng(SEED)
     page = [renderer(random.integers(1, 64, CELLS).astype(np.uint8)) for _ in range(LINES)]
-    places = random.uniform(0, STRESS2.geometry.extent_mm(CELLS), 1000).tolist()
-    out = np.zeros(STRESS2.array.shape)
+    places = random.uniform(0, STRESS2.style.geometry.extent_mm(CELLS), 1000).tolist()
+    out = np.zeros(STRESS2.display.shape)
 
     def frames() -> None:
         for line in page:
@@ -61,8 +61,8 @@ def run() -> Iterator[Result]:
         share <= 5 and least <= 1e-6,
     )
 
-    path_mm = np.linspace(-STRESS2.array.span_mm, STRESS2.geometry.extent_mm(CELLS), PATH)
-    result = np.zeros((PATH, *STRESS2.array.shape), np.float32)
+    path_mm = np.linspace(-STRESS2.display.span_mm, STRESS2.style.geometry.extent_mm(CELLS), PATH)
+    result = np.zeros((PATH, *STRESS2.display.shape), np.float32)
     share, least = ratio(
         lambda: page[0].path(path_mm, result), lambda: result.fill(0), times=5, pairs=31
     )

@@ -68,7 +68,7 @@ from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
 from vbraille.render import VBD
 imported_s = time.perf_counter()
-with Host("sim:?hand=sweep:150", device_info(VBD, VBD.geometry, 1000.0), 4) as host:
+with Host("sim:?hand=sweep:150", device_info(VBD, VBD.style.geometry, 1000.0), 4) as host:
     while not host.poll().size:
         time.sleep(0.001)
     print(imported_s - begun_s, time.perf_counter() - imported_s)

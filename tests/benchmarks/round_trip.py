@@ -14,15 +14,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from tests.shown import rendered
 from vbraille.cli.simulate import go_real_time
 from vbraille.cli.wanted import device_info
-from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.messages import Encoder
-from vbraille.devices.pty import Link, Port
 from vbraille.render import VBD, Tuning
-from vbraille.render.renderer import Renderer
+from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.pty import Link, Port
 
-GEOMETRY = replace(VBD.geometry, dot_width_mm=20.0, dot_spacing_mm=25.0, cell_gap_mm=25.0)
+GEOMETRY = replace(VBD.style.geometry, dot_width_mm=20.0, dot_spacing_mm=25.0, cell_gap_mm=25.0)
 INFO = replace(device_info(VBD, GEOMETRY, 1000.0), levels=65_536)
 LOW_MM, HIGH_MM, STEP_MM = 2.0, 8.0, 0.04
 _MARGIN = 25  # steps near the turns, where one level stands for two places of late
@@ -30,13 +30,13 @@ _MOST_TICKS = 20
 _PERIOD_NS = 1_000_000
 
 
-def dot() -> Renderer:
+def dot():
     """The page."""
-    return Renderer(
+    return rendered(
         np.ones(1, np.uint8),
-        array=VBD.array,
-        profile=VBD.profile,
-        mapping=VBD.mapping,
+        array=VBD.display,
+        profile=VBD.style.profile,
+        mapping=VBD.style.mapping,
         geometry=GEOMETRY,
         tuning=Tuning(texture=0.0),
     )

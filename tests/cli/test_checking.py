@@ -10,8 +10,8 @@ from tests.engine.test_loop import info
 from vbraille.cli.checking import check
 from vbraille.devices.messages import Encoder
 from vbraille.devices.openserial import open_serial
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine.clock import ManualClock
+from vbraille.simulation.simulated import SimulatedDevice
 
 SMALL = {"rows": 1, "columns": 2, "inverted": b"\0\1", "gain": b"\xff\xff", "enabled": b"\1\1"}
 

@@ -185,8 +185,8 @@ def test_a_port_that_is_not_there(text):
 # Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
 SHORT = """
 from vbraille.pose import Pose
-from vbraille.devices.motion import Way
-from vbraille.devices.simulated import SimulatedDevice
+from vbraille.simulation.motion import Way
+from vbraille.simulation.simulated import SimulatedDevice
 
 class Hand:
     def read_line(self, start_mm, end_mm):

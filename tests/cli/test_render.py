@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from tests.cli import program
+from tests.shown import rendered
 from vbraille import __version__
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.render.reference import deflections
-from vbraille.render.renderer import Renderer
 from vbraille.translate import Book, Document, Table
 from vbraille.wording import count
 
@@ -29,14 +29,14 @@ def from_the_file_alone(file):
     model = MODELS[attributes["model"]]
     name = attributes["mapping"]
     show = {
-        "array": model.array,
-        "profile": model.profile,
+        "array": model.display,
+        "profile": model.style.profile,
         "mapping": MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
         "geometry": Geometry(**json.loads(attributes["geometry"])),
         "tuning": Tuning(**json.loads(attributes["tuning"])),
     }
-    np.testing.assert_array_equal(attributes["column_offset_mm"], model.array.column_offsets_mm())
-    np.testing.assert_array_equal(attributes["row_offset_mm"], model.array.row_offsets_mm())
+    np.testing.assert_array_equal(attributes["column_offset_mm"], model.display.column_offsets_mm())
+    np.testing.assert_array_equal(attributes["row_offset_mm"], model.display.row_offsets_mm())
     cells, length = file["page/cells"][:], file["page/length"][:]
     x_mm, line = file["x_mm"][:], file["line"][:]
     again = np.empty(file["frames"].shape, np.float32)
@@ -44,7 +44,7 @@ def from_the_file_alone(file):
     for row in range(len(cells)):
         here = line == row
         masks = cells[row, : length[row]]
-        again[here] = Renderer(masks, **show).path(x_mm[here])
+        again[here] = rendered(masks, **show).path(x_mm[here])
         twin[here] = deflections(x_mm[here], masks, **show)
     return again, twin
 
@@ -82,7 +82,7 @@ def test_the_file_holds_all_that_was_rendered(
         assert file.attrs["source"] == str(source)
         assert file.attrs["source_sha256"] == hashlib.sha256(source.read_bytes()).hexdigest()
 
-        array = MODELS[model].array
+        array = MODELS[model].display
         assert frames.dtype == np.float32
         assert frames.shape == (t_s.size, array.rows, array.columns)
         assert t_s.shape == x_mm.shape == line.shape

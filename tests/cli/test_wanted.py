@@ -11,7 +11,7 @@ from vbraille.render import STRESS2, VBD
 def test_a_known_array_is_a_model_with_the_device_s_own_pitches():
     model = model_of(info(column_pitch_mm=1.205, row_pitch_mm=1.79), None)
     assert model.name == "stress2"
-    assert (model.array.column_pitch_mm, model.array.row_pitch_mm) == (1.205, 1.79)
+    assert (model.display.column_pitch_mm, model.display.row_pitch_mm) == (1.205, 1.79)
     assert model_of(info(), None) == STRESS2
     assert model_of(info(rows=1, columns=12, column_pitch_mm=0.7, row_pitch_mm=0.7), "vbd") == VBD
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import info
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.errors import DeviceError
+from vbraille.simulation.simulated import SimulatedDevice
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from vbraille.errors import DeviceError, InputError
 HEAD = """
 import sys
 import numpy as np
-from vbraille.devices.simulated import SimulatedDevice
+from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.errors import InputError
 """
 
@@ -40,7 +40,6 @@ def driver(tmp_path, monkeypatch):
 def use():
     """Open it, ask all that a loop asks, and close it."""
     with opened_device("other:", info()) as device:
-        device.follow(10.0)
         device.set_zero()
         Loop(device, ManualClock()).tick()
         device.take_notes()
@@ -58,7 +57,6 @@ RAISES = {
     "library": ("def read(self):\n    return np.zeros(2).reshape(3)  # mark", ""),
     "python": ("def read(self):\n    return __import__('json').loads('')  # mark", ""),
     "send": ("def _send(self, frame):\n    raise ValueError('mark\\n of two lines')", ""),
-    "follow": ("def follow(self, end_mm):\n    raise KeyError('mark')", ""),
     "set_zero": ("def set_zero(self):\n    assert not 'mark'", ""),
     "notes": ("def take_notes(self):\n    return [{}['mark']]", ""),
     "counts": ("def counts(self):\n    return [][0]  # mark", ""),
@@ -119,8 +117,8 @@ def test_what_the_program_itself_raises_is_not_blamed_on_the_driver(driver):
             "take_notes must be a method, and",
         ),
         ("counts = {}", r"counts must be a method, and is \{\}"),
-        ("def followed(self):\n    return False", "followed must be a property or a value, and"),
-        ("def follow(self):\n    pass", r"can be called as follow\(self, value\)"),
+        ("def taking(self):\n    return False", "taking must be a property or a value, and"),
+        ("def _send(self):\n    pass", r"can be called as _send\(self, value\)"),
         ("@staticmethod\ndef read(self):\n    pass", r"can be called as read\(self\)"),
         ("_release = None", "_release must be a method, and is None"),
     ],

@@ -15,8 +15,8 @@ from vbraille.devices.conformance import (
     check_members,
     check_samples,
 )
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.pose import Pose
+from vbraille.simulation.simulated import SimulatedDevice
 
 
 @pytest.mark.parametrize("check", CHECKS)
@@ -57,14 +57,14 @@ class CountsInAProperty(SimulatedDevice):
     counts = property(lambda self: {"frames": self.frames})
 
 
-class FollowedByAMethod(SimulatedDevice):
-    def followed(self):
+class TakingByAMethod(SimulatedDevice):
+    def taking(self):
         return False
 
 
-class FollowsNoEnd(SimulatedDevice):
-    def follow(self):
-        pass
+class ZeroAtAPlace(SimulatedDevice):
+    def set_zero(self, x_mm):
+        del x_mm
 
 
 class OneNote(SimulatedDevice):
@@ -89,8 +89,8 @@ class RestedOrNot(SimulatedDevice):
     ("broken", "check"),
     [
         (CountsInAProperty, check_members),
-        (FollowedByAMethod, check_members),
-        (FollowsNoEnd, check_members),
+        (TakingByAMethod, check_members),
+        (ZeroAtAPlace, check_members),
         (OneNote, check_members),
         (CountsInHalves, check_members),
         (PlacedByANumber, check_members),

@@ -5,8 +5,8 @@ import pytest
 
 from tests.engine.test_loop import info
 from vbraille.devices import open_device
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.errors import InputError
+from vbraille.simulation.simulated import SimulatedDevice
 
 
 @pytest.mark.parametrize("spec", ["sim", "sim:", "sim:?hand=device"])
@@ -29,7 +29,7 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
     (package / "entry_points.txt").write_text("[vbraille.devices]\nother = other_driver:make\n")
     (tmp_path / "other_driver.py").write_text(
         "from dataclasses import replace\n"
-        "from vbraille.devices.simulated import SimulatedDevice\n"
+        "from vbraille.simulation.simulated import SimulatedDevice\n"
         "def make(address, wanted):\n"
         "    columns = int(address[-1])\n"
         "    made = replace(wanted, name=address, columns=columns, rate_hz=1000.0)\n"
@@ -49,7 +49,7 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
 
 OTHER = (
     "from dataclasses import replace\n"
-    "from vbraille.devices.simulated import SimulatedDevice\n"
+    "from vbraille.simulation.simulated import SimulatedDevice\n"
     "class Device(SimulatedDevice):\n"
     "    closed = 0\n"
     "    def _release(self):\n"
@@ -98,7 +98,7 @@ def test_any_device_will_do_where_none_is_wanted(tmp_path, monkeypatch):
     (package / "entry_points.txt").write_text("[vbraille.devices]\nany = any_driver:make\n")
     (tmp_path / "any_driver.py").write_text(
         "from tests.engine.test_loop import info\n"
-        "from vbraille.devices.simulated import SimulatedDevice\n"
+        "from vbraille.simulation.simulated import SimulatedDevice\n"
         "def make(address, wanted):\n"
         "    assert wanted is None\n"
         "    return SimulatedDevice(info(columns=3))\n"

@@ -19,7 +19,6 @@ from tests.controllers import ControllerOf20261121
 from tests.engine.test_loop import info
 from vbraille.devices.base import Placing
 from vbraille.devices.conformance import CHECKS
-from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.messages import (
     CountSign,
     Encoder,
@@ -31,10 +30,11 @@ from vbraille.devices.messages import (
     Watchdog,
 )
 from vbraille.devices.openserial import open_serial
-from vbraille.devices.simulator import split
 from vbraille.devices.wire import Decoder, Levels, encode, enframe
 from vbraille.errors import DeviceError, InputError
 from vbraille.pose import Pose
+from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.simulator import split
 
 SPAN_MM = 10.8
 HALF = np.full((6, 10), 0.5)

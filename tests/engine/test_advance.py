@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.devices.hand import DEVICE, FLUENT, HumanHand, Sweep
 from vbraille.engine.advance import EndOfLine
+from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
 
 SPAN_MM, END_MM = 10.8, 100.0
 

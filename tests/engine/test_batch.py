@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import straight
-from vbraille.devices.hand import parse_hand
-from vbraille.devices.simulated import SimulatedDevice
+from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
@@ -16,7 +15,9 @@ from vbraille.engine.local import LocalEngine
 from vbraille.engine.ring import Flag, tick_dtype
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
-from vbraille.render.renderer import Renderer
+from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.simulation.steering import ReadLine, Steering
 
 SHEARED = replace(STRESS2, mapping=MAPPINGS["sheared"])  # some of its rows are idle at 1
 LINE_MM = 12.0
@@ -25,7 +26,7 @@ EXACT += ("flags", "x_mm", "share")
 
 
 def device(model, hand, now_ns=time.monotonic_ns):
-    array = model.array
+    array = model.display
     info = Display(
         name="test",
         rows=array.rows,
@@ -33,21 +34,21 @@ def device(model, hand, now_ns=time.monotonic_ns):
         column_pitch_mm=array.column_pitch_mm,
         row_pitch_mm=1.8,
         levels=1024,
-        rest_side=model.rest_side,
+        rest_side=model.display.rest_side,
         travel_mm=300.0,
         counts_per_mm=200.0,
         rate_hz=1000.0,
     )
-    return SimulatedDevice(info, now_ns, hand if hand is None else parse_hand(hand, 7))
+    return SimulatedDevice(info, now_ns, hand if hand is None else parse_hand(hand, 7), Steering())
 
 
 def picture(model, masks, tuning):
-    return Renderer(
+    return rendered(
         np.array(masks, np.uint8),
-        array=model.array,
-        profile=model.profile,
-        mapping=model.mapping,
-        geometry=model.geometry,
+        array=model.display,
+        profile=model.style.profile,
+        mapping=model.style.mapping,
+        geometry=model.style.geometry,
         tuning=tuning,
     )
 
@@ -72,8 +73,19 @@ def run(engine, script, ticks):
     return np.concatenate(blocks)
 
 
-def show(shown, line):
-    return lambda engine: engine.show(shown, line, LINE_MM)
+def moved_by(engine):
+    return engine.loop.device if isinstance(engine, LocalEngine) else engine.device
+
+
+def show(shown, line, *, anew=True):
+    """Show a picture of a line, which the hand begins to read if it was not shown before."""
+
+    def act(engine):
+        engine.show(shown, line)
+        if anew:
+            moved_by(engine).steering.give(ReadLine(LINE_MM))
+
+    return act
 
 
 def pause(paused):
@@ -101,7 +113,7 @@ def assert_same(model, hand, got, script, rate_hz):
     clock = ManualClock()
     loop = LocalEngine(device(model, hand, clock.now_ns), clock, rate_hz=rate_hz)
     want = run(loop, script, got.size)
-    assert got.dtype == want.dtype == tick_dtype(model.array.shape)
+    assert got.dtype == want.dtype == tick_dtype(model.display.shape)
     for field in EXACT:
         np.testing.assert_array_equal(got[field], want[field], field)
     for field in ("speed_mm_s", "forward_mm", "forward_s"):
@@ -124,7 +136,7 @@ def anything(model, seed, ticks):
         if what == "line":
             line, masks = line + 1, random.integers(0, 256, 6)
         tuning = Tuning(texture=random.random(), contrast=random.random())
-        script.append((at, show(picture(model, masks, tuning), line)))
+        script.append((at, show(picture(model, masks, tuning), line, anew=what == "line")))
     return script
 
 
@@ -164,7 +176,7 @@ def test_the_size_of_a_block_does_not_matter():
     # Where actions fall is the same for all: at multiples of all sizes, no hand done before.
     script = [
         (0, show(full(SHEARED), 1)),
-        (240, show(full(SHEARED, contrast=0.3), 1)),
+        (240, show(full(SHEARED, contrast=0.3), 1, anew=False)),
         (300, pause(True)),
         (360, pause(False)),
         (420, show(full(SHEARED, texture=1.0), 2)),
@@ -187,7 +199,7 @@ def test_it_rests_when_the_hand_stands_still(poll_ticks):
     assert not resting[:1000].any()
     assert resting[1120:1450].all()
     assert not got["frame"][1120:1450].any()
-    assert not resting[script[1][0] :][:50].any()
+    assert not resting[script[1][0] + 1 :][:50].any()  # it sets out with the first tick
 
 
 @pytest.mark.no_cover
@@ -213,7 +225,7 @@ class Resting(SimulatedDevice):
 def test_a_device_that_rests_by_itself_is_the_loop_s(poll_ticks):
     def rest(held):
         def act(engine):
-            moved = engine.loop.device if isinstance(engine, LocalEngine) else engine.device
+            moved = moved_by(engine)
             moved.rested += held
             moved.taking = not held
 
@@ -224,11 +236,11 @@ def test_a_device_that_rests_by_itself_is_the_loop_s(poll_ticks):
     script += [(120, rest(True)), (160, rest(False)), (160, show(full(SHEARED), 2))]
     script += [(200, pause(True)), (240, rest(True)), (280, rest(False)), (320, pause(False))]
     info = device(SHEARED, None).display
-    moving = Resting(info, time.monotonic_ns, parse_hand("sweep:5", 7))
+    moving = Resting(info, time.monotonic_ns, parse_hand("sweep:5"), Steering())
     got = run(BatchEngine(moving, 200, poll_ticks), script, 600)
     clock = ManualClock()
-    loop = LocalEngine(Resting(info, clock.now_ns, parse_hand("sweep:5", 7)), clock, rate_hz=200)
-    want = run(loop, script, got.size)
+    looped = Resting(info, clock.now_ns, parse_hand("sweep:5"), Steering())
+    want = run(LocalEngine(looped, clock, rate_hz=200), script, got.size)
     for field in EXACT:
         np.testing.assert_array_equal(got[field], want[field], field)
     np.testing.assert_allclose(got["frame"], want["frame"], rtol=0, atol=1e-6)
@@ -262,7 +274,7 @@ def test_stillness_is_the_loop_s(motion, rests, poll_ticks):
     loop = LocalEngine(loop_device, clock, rate_hz=100)
     records = []
     for each, moved in ((engine, engine.device), (loop, loop_device)):
-        each.show(full(SHEARED), 1, LINE_MM)
+        each.show(full(SHEARED), 1)
         moved.move(motion)
         records.append(run(each, [], 1500)[:1500])
     got, want = records
@@ -276,12 +288,11 @@ def test_a_poll_is_over_when_the_hand_is_done():
     engine = batch(poll_ticks=700)
     assert engine.poll().size == 700  # nothing under way
     for line in (1, 2):
-        engine.show(full(), line, LINE_MM)
+        show(full(), line)(engine)
         blocks = [engine.poll()]
-        while not blocks[-1]["flags"][-1] & Flag.FOLLOWED:
+        while not engine.device.steering.done_at(blocks[-1]["device_ns"][-1]):
             blocks.append(engine.poll())
-        followed = np.concatenate(blocks)["flags"] & Flag.FOLLOWED != 0
-        assert followed.sum() == 1
+        assert not engine.device.steering.done_at(blocks[-1]["device_ns"][-2])
         assert [block.size for block in blocks[:-1]] == [700] * (len(blocks) - 1)
         assert blocks[-1].size < 700
         assert engine.newest is not None
@@ -297,7 +308,7 @@ def test_it_says_what_a_host_says():
     with engine:
         engine.start()
         assert not engine.paused
-        engine.show(full(), 1, LINE_MM)
+        show(full(), 1)(engine)
         ticks = engine.poll()
         engine.set_zero()
     assert engine.display.columns == 10
@@ -335,3 +346,6 @@ def test_bounds():
             batch(rate_hz=rate_hz)
     with pytest.raises(ValueError, match="1 or more"):
         batch(poll_ticks=0)
+    unsteered = SimulatedDevice(device(VBD, None).display, hand=parse_hand("sweep:60"))
+    with pytest.raises(ValueError, match="nothing steers the hand"):
+        BatchEngine(unsteered)

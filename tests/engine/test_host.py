@@ -45,7 +45,7 @@ def test_a_life():
     before = descriptors()
     with Host("sim:?hand=sweep:100", info(), 26) as host:
         line = picture(mapping="sheared")
-        host.show(line, 7, 100.0)
+        host.show(line, 7)
         ticks = until(host, lasting(400))
         assert host.display == info()
         assert ticks["tick"].tolist() == list(range(ticks.size))
@@ -104,7 +104,7 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
         assert host.open() == info(travel_mm=123.0)
         host.fit(host.display, 7)
         host.start()
-        host.show(picture((63,) * 7, mapping="sheared"), 1, 60.0)
+        host.show(picture((63,) * 7, mapping="sheared"), 1)
         until(host, lambda new: new.size and new["frame"][-1].any())
     finally:
         host.close()
@@ -127,7 +127,7 @@ import sys, time
 from tests.engine.test_host import info, picture
 from vbraille.engine.host import Host
 with Host(sys.argv[1], info(), 26) as host:
-    host.show(picture(mapping="sheared"), 1, 250.0)
+    host.show(picture(mapping="sheared"), 1)
     while host.tally.ticks < 400:
         time.sleep(0.01)
         host.poll()

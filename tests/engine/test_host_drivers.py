@@ -20,7 +20,7 @@ from vbraille.errors import DeviceError
 _HEAD = """
 import ctypes, os, subprocess, sys, time
 import numpy as np
-from vbraille.devices.simulated import SimulatedDevice
+from vbraille.simulation.simulated import SimulatedDevice
 """
 
 

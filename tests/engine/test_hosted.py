@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, picture, straight
-from vbraille.devices.hand import Sweep
+from tests.shown import rendered
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.hosted import Hosted, warm_up
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Flag
 from vbraille.render import VBD
-from vbraille.render.renderer import Renderer
+from vbraille.simulation.hand import Sweep
+from vbraille.simulation.steering import ReadLine
 
 EXTENT = shared.Extent(6, 10, 20, 4000)
 
@@ -46,7 +47,7 @@ def bench():
 def test_frames_are_those_of_the_picture_posted(bench, cells):
     line = picture(range(30, 30 + cells), mapping="row-sheared", texture=0.6)
     bench.device.move(straight((0, -10.8), (2, 200)))
-    bench.mailbox.post(line, 3, 200.0)
+    bench.mailbox.post(line, 3)
     ticks = bench.run(1.5)
     want = np.zeros((6, 10))
     assert ticks["line"][-1] == 3
@@ -59,7 +60,7 @@ def test_a_new_picture_fades_in_and_the_old_one_is_forgotten(bench):
     bench.device.move(straight((0, 3.0), (60, 3.0)))
     bench.run(0.1)
     for number in range(5):
-        bench.mailbox.post(picture((number + 1,) * (20 - number), mapping="sheared"), 1, 50.0)
+        bench.mailbox.post(picture((number + 1,) * (20 - number), mapping="sheared"), 1)
         bench.run(0.15)
     assert biggest_step(bench.device.sent) <= 1 / 100 + 1e-9
     want = np.zeros((6, 10))
@@ -69,14 +70,14 @@ def test_a_new_picture_fades_in_and_the_old_one_is_forgotten(bench):
 
 def test_of_several_pictures_at_once_the_last_counts(bench):
     for number in range(4):
-        bench.mailbox.post(picture((number,)), number + 1, 50.0)
+        bench.mailbox.post(picture((number,)), number + 1)
     assert bench.run(0.01)["line"].tolist()[-1] == 4
 
 
 def test_a_picture_in_the_writing_is_left_for_later(bench):
-    bench.mailbox.post(picture((1,)), 1, 50.0)
+    bench.mailbox.post(picture((1,)), 1)
     bench.run(0.01)
-    bench.mailbox.post(picture((2,)), 2, 50.0)
+    bench.mailbox.post(picture((2,)), 2)
     half = EXTENT.mailbox_bytes - 8  # in the slot that picture 2 or 1 lies in
     for at in (half, EXTENT.mailbox_bytes // 2):
         bench.memory[at] ^= 1
@@ -86,16 +87,18 @@ def test_a_picture_in_the_writing_is_left_for_later(bench):
     assert bench.run(0.01)["line"].tolist()[-1] == 2
 
 
-def test_a_hand_reads_anew_with_a_new_line_and_not_with_a_tuning():
+def test_a_hand_reads_on_while_the_tuning_changes():
     bench = Bench(hand=Sweep(100.0))
-    bench.mailbox.post(picture(), 1, 50.0)
+    bench.mailbox.post(picture(), 1)
+    bench.device.steering.give(ReadLine(50.0))
     x_mm = bench.run(0.4)["x_mm"]
-    bench.mailbox.post(picture(texture=0.1), 1, 50.0)
+    bench.mailbox.post(picture(texture=0.1), 1)
     x_mm = np.concatenate((x_mm, bench.run(1.0)["x_mm"]))
     assert np.abs(np.diff(x_mm)).max() < 1
     assert x_mm.argmax() == pytest.approx(610, abs=3)  # at 100 mm/s, straight through
-    assert bench.run(0.01)["flags"][-1] & Flag.FOLLOWED
-    bench.mailbox.post(picture(), 2, 50.0)
+    assert bench.device.steering.done_at(bench.clock.now_ns())
+    bench.mailbox.post(picture(), 2)
+    bench.device.steering.give(ReadLine(50.0))
     assert bench.run(0.3)["x_mm"][-1] > 10
 
 
@@ -103,7 +106,7 @@ def test_pause_and_zero_and_stop(bench):
     zeros = []
     bench.device.set_zero = lambda: zeros.append(1)
     bench.device.move(straight((0, 3.0), (60, 3.0)))
-    bench.mailbox.post(picture(mapping="sheared"), 1, 50.0)
+    bench.mailbox.post(picture(mapping="sheared"), 1)
     bench.run(0.3)
     bench.mailbox.paused = True
     ticks = bench.run(0.1)
@@ -128,13 +131,13 @@ def test_it_ends_with_its_parent_and_by_a_signal(bench):
 
 def test_a_picture_that_does_not_fit_is_refused(bench):
     with pytest.raises(ValueError, match="does not go into"):
-        bench.mailbox.post(picture((1,) * 21), 1, 300.0)
-    vbd = Renderer(
-        np.zeros(1, np.uint8), array=VBD.array, profile=VBD.profile, mapping=VBD.mapping,
-        geometry=VBD.geometry, tuning=VBD.tuning,
+        bench.mailbox.post(picture((1,) * 21), 1)
+    vbd = rendered(
+        np.zeros(1, np.uint8), array=VBD.display, profile=VBD.style.profile, mapping=VBD.style.mapping,
+        geometry=VBD.style.geometry, tuning=VBD.style.tuning,
     )  # fmt: skip
     with pytest.raises(ValueError, match="does not go into"):
-        bench.mailbox.post(vbd, 1, 300.0)
+        bench.mailbox.post(vbd, 1)
     assert bench.mailbox.published == 0
 
 

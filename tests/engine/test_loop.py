@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from vbraille.devices.hand import Hand
-from vbraille.devices.motion import Motion
-from vbraille.devices.simulated import SimulatedDevice
+from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
@@ -13,7 +11,10 @@ from vbraille.engine.ring import Flag, Ring
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
-from vbraille.render.renderer import Renderer
+from vbraille.simulation.hand import Hand
+from vbraille.simulation.motion import Motion
+from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.simulation.steering import Steering
 
 MS = 1_000_000
 SPAN_MM = 10.8
@@ -39,7 +40,7 @@ class Recording(SimulatedDevice):
     """A simulated device that keeps what it was sent."""
 
     def __init__(self, clock: ManualClock, hand: Hand | None = None) -> None:
-        super().__init__(info(), clock.now_ns, hand)
+        super().__init__(info(), clock.now_ns, hand, Steering())
         self.sent: list[np.ndarray] = []
         self.silent = False
         self.shift_mm = 0.0
@@ -54,13 +55,13 @@ class Recording(SimulatedDevice):
         self.sent.append(frame.copy())
 
 
-def picture(masks=(63,) * 20, mapping="alternate", **tuning) -> Renderer:
-    return Renderer(
+def picture(masks=(63,) * 20, mapping="alternate", **tuning):
+    return rendered(
         np.array(masks, np.uint8),
-        array=STRESS2.array,
-        profile=STRESS2.profile,
+        array=STRESS2.display,
+        profile=STRESS2.style.profile,
         mapping=MAPPINGS[mapping],
-        geometry=STRESS2.geometry,
+        geometry=STRESS2.style.geometry,
         tuning=Tuning(**tuning),
     )
 

@@ -4,8 +4,8 @@ import pytest
 
 from tests.controllers import ControllerOf20261121
 from tests.wired import reading
-from vbraille.devices.firmware import Controller
 from vbraille.devices.serialdevice import SerialDevice
+from vbraille.simulation.firmware import Controller
 
 BLOCK = 20
 BLOCKS = pytest.mark.parametrize("block", range(5))

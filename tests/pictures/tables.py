@@ -15,8 +15,8 @@ def make_line(braille, number=1, indent=0):
 
 def make_page(lines, model=STRESS2, **changes):
     settings = {
-        "mapping": model.mapping,
-        "geometry": model.geometry,
+        "mapping": model.style.mapping,
+        "geometry": model.style.geometry,
         "tuning": Tuning(),
         "x_mm": 0.0,
         **changes,
@@ -25,9 +25,9 @@ def make_page(lines, model=STRESS2, **changes):
 
 
 TABLES = [
-    profile(VBD, VBD.geometry, VBD.tuning),
-    mapping(STRESS2.geometry, STRESS2.tuning),
-    wave(VBD, VBD.geometry, VBD.tuning),
-    strain(VBD.geometry, VBD.tuning),
+    profile(VBD, VBD.style.geometry, VBD.style.tuning),
+    mapping(STRESS2.style.geometry, STRESS2.style.tuning),
+    wave(VBD, VBD.style.geometry, VBD.style.tuning),
+    strain(VBD.style.geometry, VBD.style.tuning),
     make_page([make_line("⠵⠁"), make_line("⠃", number=2)], x_mm=3.0),
 ]

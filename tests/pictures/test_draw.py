@@ -54,7 +54,7 @@ def test_pictures_are_grey(table):
 
 
 def test_profile_draws_a_panel_a_level():
-    figure = draw.draw(profile(STRESS2, STRESS2.geometry, STRESS2.tuning))
+    figure = draw.draw(profile(STRESS2, STRESS2.style.geometry, STRESS2.style.tuning))
     assert [axes.get_title() for axes in figure.axes] == ["T = 0 %", "T = 25 %", "T = 100 %"]
     for axes in figure.axes:
         (curve,) = curves(axes)
@@ -71,9 +71,11 @@ def test_mapping_draws_six_rows_a_method():
 
 
 def test_mapping_draws_one_method_too():
-    table = mapping(STRESS2.geometry, Tuning(), methods=[MAPPINGS["paired"], MAPPINGS["compact"]])
+    table = mapping(
+        STRESS2.style.geometry, Tuning(), methods=[MAPPINGS["paired"], MAPPINGS["compact"]]
+    )
     assert [axes.get_title() for axes in draw.draw(table).axes] == ["paired", "compact"]
-    four = mapping(STRESS2.geometry, Tuning(), methods=list(MAPPINGS.values())[:4])
+    four = mapping(STRESS2.style.geometry, Tuning(), methods=list(MAPPINGS.values())[:4])
     assert sum(axes.axison for axes in draw.draw(four).axes) == 4
 
 
@@ -98,7 +100,7 @@ def test_strain_tells_the_two_neighbours_apart_by_line_style():
 
 
 def test_strain_of_a_dot_as_wide_as_the_pitch_is_named_so():
-    figure = draw.draw(strain(replace(VBD.geometry, dot_width_mm=0.7), Tuning()))
+    figure = draw.draw(strain(replace(VBD.style.geometry, dot_width_mm=0.7), Tuning()))
     assert figure.axes[1].get_title() == "W = 0.7 mm = ε"
 
 

@@ -19,8 +19,8 @@ def peaks(values):
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_profile_rises_at_the_left_edge_and_is_back_at_the_right_one(model):
-    table = profile(model, model.geometry, model.tuning)
-    u, width = table["u_mm"], model.geometry.dot_width_mm
+    table = profile(model, model.style.geometry, model.style.tuning)
+    u, width = table["u_mm"], model.style.geometry.dot_width_mm
     for name in table.columns:
         if name != "u_mm":
             off = (u <= 0) | (u >= width)
@@ -32,9 +32,9 @@ def test_profile_rises_at_the_left_edge_and_is_back_at_the_right_one(model):
 
 @pytest.mark.parametrize("cycles", [3, 7])
 def test_profile_of_texture_alone_has_k_ripples(cycles):
-    table = profile(STRESS2, STRESS2.geometry, Tuning(texture=1, cycles=cycles))
+    table = profile(STRESS2, STRESS2.style.geometry, Tuning(texture=1, cycles=cycles))
     ripples = table["deflection_T100"]
-    radius = STRESS2.geometry.dot_width_mm / 2
+    radius = STRESS2.style.geometry.dot_width_mm / 2
     at = table["u_mm"][peaks(ripples)]
     # cos(kπp) is 1 at p = 0, ±2/k, … (eq. 4.2)
     expected = radius + radius * np.arange(-cycles + 1, cycles, 2) / cycles
@@ -45,22 +45,22 @@ def test_profile_of_texture_alone_has_k_ripples(cycles):
     ("model", "levels"), [(STRESS2, ["0", "25", "100"]), (VBD, ["0", "100"])], ids=["s", "v"]
 )
 def test_profile_shows_the_levels_of_the_source_and_the_readers_own(model, levels):
-    table = profile(model, model.geometry, model.tuning)
+    table = profile(model, model.style.geometry, model.style.tuning)
     assert list(table.columns) == ["u_mm", *(f"deflection_T{level}" for level in levels)]
-    own = profile(model, model.geometry, Tuning(texture=0.4))
+    own = profile(model, model.style.geometry, Tuning(texture=0.4))
     assert "deflection_T40" in own.columns
 
 
 def test_contrast_scales_the_profile():
-    full = profile(VBD, VBD.geometry, Tuning())
-    half = profile(VBD, VBD.geometry, Tuning(contrast=0.5))
+    full = profile(VBD, VBD.style.geometry, Tuning())
+    half = profile(VBD, VBD.style.geometry, Tuning(contrast=0.5))
     assert half["deflection_T100"] == pytest.approx(full["deflection_T100"] / 2)
     assert "contrast 50 %" in half.title
     assert "contrast" not in full.title
 
 
 def test_mapping_compares_all_methods_on_six_rows():
-    table = mapping(STRESS2.geometry, Tuning())
+    table = mapping(STRESS2.style.geometry, Tuning())
     assert set(table["method"]) == set(MAPPINGS)
     assert [n for n in table.columns if n.startswith("deflection")] == [
         f"deflection_row_{row}" for row in range(6)
@@ -70,7 +70,7 @@ def test_mapping_compares_all_methods_on_six_rows():
 @pytest.mark.parametrize("method", MAPPINGS.values(), ids=MAPPINGS)
 def test_mapping_idles_at_one_where_a_row_is_inverted(method):
     full_cell = np.array([0x3F], np.uint8)
-    chosen = mapping(STRESS2.geometry, Tuning(), full_cell, [method])
+    chosen = mapping(STRESS2.style.geometry, Tuning(), full_cell, [method])
     for row, inverted in enumerate(method.inverted):
         values = chosen[f"deflection_row_{row}"]
         assert values[0] == values[-1] == inverted
@@ -80,7 +80,7 @@ def test_mapping_idles_at_one_where_a_row_is_inverted(method):
 
 def test_mapping_swings_at_the_dots_of_the_letter():
     # z: dots 1 and 3 left, 5 and 6 right
-    chosen = mapping(STRESS2.geometry, Tuning()).where("method", "alternate")
+    chosen = mapping(STRESS2.style.geometry, Tuning()).where("method", "alternate")
     at = np.searchsorted(chosen["x_mm"], [1.295, 4.995])  # centres: one radius right of the edge
     raised = [chosen[f"deflection_row_{row}"][at] > 0.99 for row in range(6)]
     none = [False, False]
@@ -89,18 +89,18 @@ def test_mapping_swings_at_the_dots_of_the_letter():
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
-    table = wave(model, model.geometry, Tuning(texture=0.25))
-    x, pitch = table["x_mm"], model.array.column_pitch_mm
+    table = wave(model, model.style.geometry, Tuning(texture=0.25))
+    x, pitch = table["x_mm"], model.display.column_pitch_mm
     shift = round(pitch / (x[1] - x[0]))
-    assert len(table.columns) == 1 + model.array.columns
-    for column in range(1, model.array.columns):
+    assert len(table.columns) == 1 + model.display.columns
+    for column in range(1, model.display.columns):
         left = table[f"deflection_column_{column - 1}"]
         right = table[f"deflection_column_{column}"]
         assert right[:-shift] == pytest.approx(left[shift:], abs=1e-9)
 
 
 def test_wave_begins_and_ends_at_rest_and_is_at_the_dot_between():
-    table = wave(VBD, VBD.geometry, Tuning())
+    table = wave(VBD, VBD.style.geometry, Tuning())
     for column in range(12):
         values = table[f"deflection_column_{column}"]
         assert values[0] == values[-1] == 0
@@ -109,7 +109,7 @@ def test_wave_begins_and_ends_at_rest_and_is_at_the_dot_between():
 
 
 def strain_of(width):
-    return strain(VBD.geometry, Tuning()).where("dot_width_mm", width)
+    return strain(VBD.style.geometry, Tuning()).where("dot_width_mm", width)
 
 
 def test_strain_of_a_dot_narrower_than_the_pitch_has_no_overlap():
@@ -140,7 +140,7 @@ def test_strain_reaches_its_maximum_only_up_to_twice_the_pitch():
 
 
 def test_strain_adds_the_readers_width():
-    table = strain(replace(VBD.geometry, dot_width_mm=1.7), Tuning())
+    table = strain(replace(VBD.style.geometry, dot_width_mm=1.7), Tuning())
     assert sorted(set(table["dot_width_mm"])) == [0.5, 1.0, 1.7, 2.0]
 
 
@@ -216,7 +216,7 @@ def test_a_table_refuses_columns_of_different_lengths():
 def test_the_numbers_need_neither_matplotlib_nor_the_kernels():
     code = (
         "import sys, vbraille.pictures as p; from vbraille.render import VBD;"
-        "p.wave(VBD, VBD.geometry, VBD.tuning);"
+        "p.wave(VBD, VBD.style.geometry, VBD.style.tuning);"
         "sys.exit(str({'matplotlib', 'numba', 'louis'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import Recording, biggest_step, run, straight
-from vbraille.devices.hand import Sweep
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.page import Layout
@@ -12,6 +11,7 @@ from vbraille.reading import COMMANDS
 from vbraille.reading.commands import BY_KEY
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import STRESS2, Tuning
+from vbraille.simulation.hand import Sweep
 from vbraille.translate import Book, Document, Table
 
 SPAN_MM = 10.8
@@ -21,7 +21,7 @@ TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 class Bench:
     """A reader with its device, and all that it says."""
 
-    def __init__(self, text=TEXT, hand=None, tuning=STRESS2.tuning, width=20, **options):
+    def __init__(self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, **options):
         self.clock = ManualClock()
         self.device = Recording(self.clock, hand)
         self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
@@ -32,10 +32,11 @@ class Bench:
             self.layout,
             self.engine,
             model=STRESS2,
-            geometry=STRESS2.geometry,
-            mapping=STRESS2.mapping,
+            geometry=STRESS2.style.geometry,
+            mapping=STRESS2.style.mapping,
             tuning=tuning,
             say=self.said.append,
+            steering=self.device.steering,
             **options,
         )
         self.reader.start()
@@ -122,7 +123,7 @@ def test_next_and_previous_line_and_their_ends():
 def test_the_word_is_the_one_under_the_middle_of_the_array():
     bench = Bench()
     assert bench.press("w") == ["word: none here"]  # nobody knows yet where the hand is
-    pitch = STRESS2.geometry.cell_pitch_mm
+    pitch = STRESS2.style.geometry.cell_pitch_mm
     cells = {}
     line = bench.layout.line(1)
     for cell in range(len(line)):
@@ -177,7 +178,7 @@ def test_help_says_every_key_and_every_key_does_something():
 
 @pytest.mark.no_cover
 def test_a_hand_too_fast_for_texture_is_told_once():
-    def told(speed, tuning=STRESS2.tuning):
+    def told(speed, tuning=STRESS2.style.tuning):
         bench = Bench(text="one", hand=Sweep(speed), tuning=tuning)
         bench.run()
         return [said for said in bench.said if said.startswith("speed")]

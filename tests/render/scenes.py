@@ -8,22 +8,19 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, rendered
+from vbraille.display import Display
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.render import (
-    LATERO,
     MAPPINGS,
     STRESS2,
-    STRESS2_ARRAY,
     VBD,
-    VBD_ARRAY,
-    ActuatorArray,
     Mapping,
     Profile,
     Tuning,
     single_row,
 )
 from vbraille.render.reference import deflections
-from vbraille.render.renderer import Renderer
 
 JIT = not numba.config.DISABLE_JIT
 
@@ -64,7 +61,7 @@ def frame_at(renderer, x_mm, dtype=np.float64):
 @dataclass(frozen=True)
 class Scene:
     masks: np.ndarray
-    array: ActuatorArray
+    array: Display
     profile: Profile
     mapping: Mapping
     geometry: Geometry
@@ -81,7 +78,7 @@ class Scene:
         }
 
     def renderer(self):
-        return Renderer(self.masks, **self.manner)
+        return rendered(self.masks, **self.manner)
 
     def twin(self, x_mm):
         return deflections(x_mm, self.masks, **self.manner)
@@ -127,11 +124,11 @@ def models(masks, **changes):
         model.name: Scene(
             masks,
             **{
-                "array": model.array,
-                "profile": model.profile,
-                "mapping": model.mapping,
-                "geometry": model.geometry,
-                "tuning": model.tuning,
+                "array": model.display,
+                "profile": model.style.profile,
+                "mapping": model.style.mapping,
+                "geometry": model.style.geometry,
+                "tuning": model.style.tuning,
                 **changes,
             },
         )
@@ -150,7 +147,7 @@ lines = st.binary(max_size=6).map(lambda masks: line(*masks))
 arrays = st.one_of(
     st.sampled_from([VBD_ARRAY, STRESS2_ARRAY, LATERO]),
     st.builds(
-        ActuatorArray,
+        array,
         rows=st.integers(1, 16),
         columns=st.integers(1, 12),
         column_pitch_mm=st.floats(0.05, 8),

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from vbraille.render import LATERO, STRESS2_ARRAY, VBD_ARRAY, ActuatorArray
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array
 
 
 def test_the_vbd_has_one_row_of_twelve_at_0_7_mm():
@@ -24,7 +24,7 @@ def test_the_latero_has_eight_rows_of_eight():
 
 
 def test_offsets_count_from_the_left_column_and_the_far_row():
-    array = ActuatorArray(rows=3, columns=4, column_pitch_mm=0.5, row_pitch_mm=2.0)
+    array = array(rows=3, columns=4, column_pitch_mm=0.5, row_pitch_mm=2.0)
     for offsets, expected in (
         (array.column_offsets_mm(), [0, 0.5, 1, 1.5]),
         (array.row_offsets_mm(), [0, 2, 4]),
@@ -36,7 +36,7 @@ def test_offsets_count_from_the_left_column_and_the_far_row():
 
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (16, 64)])
 def test_the_smallest_and_the_largest_array(rows, columns):
-    array = ActuatorArray(rows, columns, column_pitch_mm=0.05, row_pitch_mm=50)
+    array = array(rows, columns, column_pitch_mm=0.05, row_pitch_mm=50)
     assert array.shape == (rows, columns)
     assert array.column_offsets_mm().size == columns
     assert array.row_offsets_mm().size == rows
@@ -49,13 +49,13 @@ def test_impossible_numbers_of_actuators(rows, columns):
         "it must be 1 to 16 rows × 1 to 64 columns$"
     )
     with pytest.raises(ValueError, match=says):
-        ActuatorArray(rows, columns, 1.0, 1.0)
+        array(rows, columns, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("pitch", [0.0, 0.049, 50.1, -1.0, float("nan"), float("inf")])
 def test_impossible_pitches(pitch):
     says = f"^a pitch of {pitch:g} mm is out of range 0.05 to 50 mm$"
     with pytest.raises(ValueError, match=says):
-        ActuatorArray(2, 2, pitch, 1.0)
+        array(2, 2, pitch, 1.0)
     with pytest.raises(ValueError, match=says):
-        ActuatorArray(2, 2, 1.0, pitch)
+        array(2, 2, 1.0, pitch)

@@ -18,6 +18,7 @@ from tests.render.scenes import (
     scenes,
     scenes_with_places,
 )
+from tests.shown import array
 from vbraille import geometry
 from vbraille.geometry import Geometry
 from vbraille.render import (
@@ -25,7 +26,6 @@ from vbraille.render import (
     MODELS,
     STRESS2,
     VBD,
-    ActuatorArray,
     Profile,
     Tuning,
     single_row,
@@ -256,7 +256,7 @@ def test_no_slope_is_steeper_than_the_equations_allow(drawn, exponent):
 def test_the_bound_on_slopes_is_a_close_one(texture):
     for scene in models(line(cell(1)), tuning=Tuning(texture=texture)).values():
         x_mm = np.linspace(0, scene.geometry.dot_width_mm, 2001)
-        one = replace(scene, array=ActuatorArray(scene.array.rows, 1, 1.0, 1.0))
+        one = replace(scene, array=array(scene.array.rows, 1, 1.0, 1.0))
         slopes = np.abs(np.diff(frames_at(one, x_mm)[:, 0, 0]) / np.diff(x_mm))
         assert 0.9 * scene.steepest_per_mm() < slopes.max() <= scene.steepest_per_mm()
 

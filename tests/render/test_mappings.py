@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import DOT_PLACES, cell, frame_at, line
-from vbraille.render import LATERO, MAPPINGS, STRESS2, STRESS2_ARRAY, VBD, Mapping, single_row
+from tests.shown import LATERO, STRESS2_ARRAY, rendered
+from vbraille.render import MAPPINGS, STRESS2, VBD, Mapping, single_row
 from vbraille.render.mappings import NONE
-from vbraille.render.renderer import Renderer
 
 # Of each actuator row, far one first: the dot of a cell's left column, the one of its right
 # column (0 for none), and whether it is inverted. Lévesque 2009, fig. 4.5, and its author's
@@ -67,13 +67,13 @@ def dot_of(side, dot_row):
 
 def rendered(masks, mapping, *, array=STRESS2_ARRAY, contrast_of=STRESS2, x_mm=0.0):
     model = contrast_of
-    renderer = Renderer(
+    renderer = rendered(
         masks,
         array=array,
-        profile=model.profile,
+        profile=model.style.profile,
         mapping=mapping,
-        geometry=model.geometry,
-        tuning=model.tuning,
+        geometry=model.style.geometry,
+        tuning=model.style.tuning,
     )
     return frame_at(renderer, x_mm)
 
@@ -96,7 +96,7 @@ def test_the_table_of_each_method(name):
 @pytest.mark.parametrize("name", TABLES)
 @pytest.mark.parametrize("dot", DOT_PLACES)
 def test_a_dot_swings_the_rows_that_its_table_says(name, dot):
-    geometry = STRESS2.geometry
+    geometry = STRESS2.style.geometry
     side = DOT_PLACES[dot][1]
     centre_mm = side * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
     # The left column on the dot's centre, where the swing is full at every texture.
@@ -156,8 +156,10 @@ def test_a_single_dot_row(dot_row, dots):
     assert mapping.shown_dots() == cell(*dots)
     np.testing.assert_array_equal(mapping.idle(), [0.0])
     for dot, (_, side) in DOT_PLACES.items():
-        centre_mm = side * VBD.geometry.dot_spacing_mm + VBD.geometry.dot_width_mm / 2
-        frame = rendered(line(cell(dot)), mapping, array=VBD.array, contrast_of=VBD, x_mm=centre_mm)
+        centre_mm = side * VBD.style.geometry.dot_spacing_mm + VBD.style.geometry.dot_width_mm / 2
+        frame = rendered(
+            line(cell(dot)), mapping, array=VBD.display, contrast_of=VBD, x_mm=centre_mm
+        )
         assert frame[0, 0] == pytest.approx(float(dot in dots), abs=1e-12)
 
 

@@ -3,14 +3,13 @@ import sys
 
 import pytest
 
+from tests.shown import STRESS2_ARRAY, VBD_ARRAY
 from vbraille import geometry
 from vbraille.render import (
     MAPPINGS,
     MODELS,
     STRESS2,
-    STRESS2_ARRAY,
     VBD,
-    VBD_ARRAY,
     Profile,
     Tuning,
     single_row,
@@ -23,26 +22,26 @@ def test_models_by_name():
 
 
 def test_the_vbd_as_the_source_has_it():
-    assert VBD.array is VBD_ARRAY
-    assert VBD.profile is Profile.HALF_SINE
-    assert VBD.mapping == single_row(1)
-    assert VBD.geometry is geometry.VBD
-    assert VBD.tuning == Tuning(texture=0.0, contrast=1.0)
-    assert VBD.rest_side == "left"
+    assert VBD.display is VBD_ARRAY
+    assert VBD.style.profile is Profile.HALF_SINE
+    assert VBD.style.mapping == single_row(1)
+    assert VBD.style.geometry is geometry.VBD
+    assert VBD.style.tuning == Tuning(texture=0.0, contrast=1.0)
+    assert VBD.display.rest_side == "left"
 
 
 def test_the_stress2_as_the_source_prefers_it():
-    assert STRESS2.array is STRESS2_ARRAY
-    assert STRESS2.profile is Profile.RAISED_COSINE
-    assert STRESS2.mapping is MAPPINGS["alternate"]
-    assert STRESS2.geometry is geometry.STRESS2
-    assert STRESS2.tuning == Tuning(texture=1.0, contrast=1.0, cycles=7)
-    assert STRESS2.rest_side == "right"
+    assert STRESS2.display is STRESS2_ARRAY
+    assert STRESS2.style.profile is Profile.RAISED_COSINE
+    assert STRESS2.style.mapping is MAPPINGS["alternate"]
+    assert STRESS2.style.geometry is geometry.STRESS2
+    assert STRESS2.style.tuning == Tuning(texture=1.0, contrast=1.0, cycles=7)
+    assert STRESS2.display.rest_side == "right"
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_a_model_fits_its_array(model):
-    assert model.mapping.rows == model.array.rows
+    assert model.style.mapping.rows == model.display.rows
 
 
 @pytest.mark.parametrize("cycles", [1, 7, 11])

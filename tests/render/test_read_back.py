@@ -5,9 +5,9 @@ import pytest
 
 from tests.render.reader import read_back
 from tests.render.scenes import DOT_PLACES, JIT, cell
+from tests.shown import LATERO, rendered
 from vbraille import geometry
-from vbraille.render import LATERO, MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
-from vbraille.render.renderer import Renderer
+from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
 
 TEXTURES = [0.0, 0.25, 1.0] if JIT else [0.25]
 STEP_MM = 0.7 if JIT else 1.5
@@ -28,7 +28,7 @@ def hand(rng, array, geometry, cells):
 
 
 def told(rng, masks, *, array, profile, mapping, geometry, tuning):
-    renderer = Renderer(
+    renderer = rendered(
         masks, array=array, profile=profile, mapping=mapping, geometry=geometry, tuning=tuning
     )
     x_mm = hand(rng, array, geometry, len(masks))
@@ -47,10 +47,10 @@ def test_every_cell_of_a_line_on_the_stress2(name, texture, rng):
     read = told(
         rng,
         masks,
-        array=STRESS2.array,
-        profile=STRESS2.profile,
+        array=STRESS2.display,
+        profile=STRESS2.style.profile,
         mapping=MAPPINGS[name],
-        geometry=STRESS2.geometry,
+        geometry=STRESS2.style.geometry,
         tuning=Tuning(texture=texture),
     )
     np.testing.assert_array_equal(read, masks)
@@ -63,10 +63,10 @@ def test_none_left_right_or_both_on_the_vbd(dot_row, texture, rng):
     read = told(
         rng,
         masks,
-        array=VBD.array,
-        profile=VBD.profile,
+        array=VBD.display,
+        profile=VBD.style.profile,
         mapping=single_row(dot_row),
-        geometry=VBD.geometry,
+        geometry=VBD.style.geometry,
         tuning=Tuning(texture=texture),
     )
     left, right = cell(dot_row), cell(dot_row + 3)
@@ -97,10 +97,10 @@ def test_dots_7_and_8_have_no_row_of_their_own(rng):
     read = told(
         rng,
         masks,
-        array=STRESS2.array,
-        profile=STRESS2.profile,
-        mapping=STRESS2.mapping,
-        geometry=STRESS2.geometry,
-        tuning=STRESS2.tuning,
+        array=STRESS2.display,
+        profile=STRESS2.style.profile,
+        mapping=STRESS2.style.mapping,
+        geometry=STRESS2.style.geometry,
+        tuning=STRESS2.style.tuning,
     )
     np.testing.assert_array_equal(read, masks & cell(*(dot for dot in DOT_PLACES if dot < 7)))

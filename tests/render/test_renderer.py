@@ -8,24 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array, rendered
 from vbraille import geometry
 from vbraille.geometry import Geometry
 from vbraille.render import (
-    LATERO,
     MAPPINGS,
     STRESS2,
-    STRESS2_ARRAY,
     VBD,
-    VBD_ARRAY,
-    ActuatorArray,
     Profile,
     Tuning,
     single_row,
 )
 from vbraille.render.kernels import blend
-from vbraille.render.renderer import Renderer
 
-ONE = ActuatorArray(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
+ONE = array(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
 PEAK = {0.0: 1.0, 1.0: 1.107908722138734}  # M(a) by texture level, a = T / 8
 
 
@@ -73,7 +69,7 @@ def test_the_stress2_samples_its_dots_at_ten_places_of_each_row(level):
 @pytest.mark.parametrize("level", [0.3, 1.0])
 @pytest.mark.parametrize("cycles", [1, 3, 5, 7, 9, 11])
 def test_the_polynomial_of_every_k_is_the_cosine(cycles, level):
-    renderer = Renderer(
+    renderer = rendered(
         line(cell(1)),
         array=ONE,
         profile=Profile.RAISED_COSINE,
@@ -103,7 +99,7 @@ def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
     # Both dots of a cell 3 mm wide and 2 mm apart; and the right one reaches into the next cell.
     crowded = Geometry(3.0, 2.0, 2.5, row_spacing_mm=3.6, line_pitch_mm=14.0)
     swing = half_sine if profile is Profile.HALF_SINE else raised_cosine
-    renderer = Renderer(
+    renderer = rendered(
         line(cell(1, 4), cell(1)),
         array=STRESS2_ARRAY,
         profile=profile,
@@ -157,13 +153,13 @@ def test_a_line_of_one_cell():
 def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
     says = rf"^mapping {mapping.name} needs 6 actuator rows; the array has 1$"
     with pytest.raises(ValueError, match=says):
-        Renderer(
+        rendered(
             line(1),
             array=VBD_ARRAY,
-            profile=VBD.profile,
+            profile=VBD.style.profile,
             mapping=mapping,
-            geometry=VBD.geometry,
-            tuning=VBD.tuning,
+            geometry=VBD.style.geometry,
+            tuning=VBD.style.tuning,
         )
 
 
@@ -173,7 +169,7 @@ def test_the_lateros_last_two_rows_rest(mapping, rng):
     x_mm = np.linspace(-9, 60, 90)
     upper, all_rows = (
         models(masks, mapping=mapping, array=array)["stress2"].renderer().path(x_mm)
-        for array in (ActuatorArray(6, 8, 1.2, 1.6125), LATERO)
+        for array in (array(6, 8, 1.2, 1.6125), LATERO)
     )
     np.testing.assert_allclose(all_rows[:, :6], upper, rtol=0, atol=1e-7)
     np.testing.assert_array_equal(all_rows[:, 6:], 0.0)
@@ -187,7 +183,7 @@ def test_one_dot_row_on_an_array_of_many_rows():
 
 
 def test_the_largest_array():
-    largest = ActuatorArray(rows=16, columns=64, column_pitch_mm=0.5, row_pitch_mm=1.0)
+    largest = array(rows=16, columns=64, column_pitch_mm=0.5, row_pitch_mm=1.0)
     scene = models(line(63, 0, 21), array=largest, mapping=MAPPINGS["paired"])["stress2"]
     x_mm = np.array([-20.0, -1.0, 3.3])
     twin = scene.twin(x_mm)
@@ -287,7 +283,7 @@ def test_a_blend_is_linear_and_between_the_two(before, after, share):
 
 def test_a_blend_from_rest_to_a_frame():
     renderer = models(line(63))["stress2"].renderer()
-    frame = frame_at(renderer, STRESS2.geometry.dot_width_mm / 3)
+    frame = frame_at(renderer, STRESS2.style.geometry.dot_width_mm / 3)
     rest = np.zeros_like(frame)
     np.testing.assert_allclose(blended(rest, frame, 0.25), frame / 4, rtol=0, atol=1e-15)
     np.testing.assert_allclose(blended(frame, rest, 0.25), frame * 0.75, rtol=0, atol=1e-15)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT, Scene, cell, frame_at, line
+from tests.shown import array
 from vbraille import geometry
-from vbraille.render import VBD, ActuatorArray, Tuning
+from vbraille.render import VBD, Tuning
 
 PITCH_MM = 0.7
-PAIR = ActuatorArray(rows=1, columns=2, column_pitch_mm=PITCH_MM, row_pitch_mm=1.0)
+PAIR = array(rows=1, columns=2, column_pitch_mm=PITCH_MM, row_pitch_mm=1.0)
 STEP_MM = 0.001 if JIT else 0.005
 
 
@@ -19,8 +20,8 @@ def neighbours_over_a_dot(width_mm):
     scene = Scene(
         line(cell(1)),
         array=PAIR,
-        profile=VBD.profile,
-        mapping=VBD.mapping,
+        profile=VBD.style.profile,
+        mapping=VBD.style.mapping,
         geometry=replace(geometry.VBD, dot_width_mm=width_mm),
         tuning=Tuning(),
     )

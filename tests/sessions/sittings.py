@@ -17,6 +17,7 @@ from vbraille.sessions.running.answers import Simulated
 from vbraille.sessions.running.console import Console
 from vbraille.sessions.running.course import Course
 from vbraille.sessions.running.showing import OnDevice
+from vbraille.simulation.steering import Steering
 
 MINI = """
 format = 1
@@ -115,17 +116,19 @@ class Session:
         answers = person if script else Simulated(self.protocol, self.plan, noise)
         model, display = self.protocol.model, None
         if self.protocol.medium == "device":
-            array = model.array
+            array = model.display
             info = Display(
                 "test", array.rows, array.columns, array.column_pitch_mm, array.row_pitch_mm,
-                1024, model.rest_side, 300.0, 200.0, 1000.0,
+                1024, model.display.rest_side, 300.0, 200.0, 1000.0,
             )  # fmt: skip
-            device = open_device(f"sim:?hand={self.hand}&seed=1", info)
-            engine = engine(device, poll_ticks=100)
+            steering = Steering()
+            spec = f"sim:?hand={self.hand}&seed=1&steering={steering.descriptor}"
+            engine = engine(open_device(spec, info), poll_ticks=100)
             engine.start()
             display = OnDevice(
-                engine, self.protocol, self.folder, keeps=not script, tie=lambda: journal.durable
-            )
+                engine, self.protocol, self.folder, keeps=not script, steering=steering,
+                tie=lambda: journal.durable,
+            )  # fmt: skip
         record = load(self.folder)
         with Journal(self.folder) as journal:
             check_end(self.folder, journal.told)

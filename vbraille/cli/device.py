@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _list()
     if arguments.action == "check":
         with EAR.at_once():
-            warm_up()
+            warm_up(_wanted(arguments) or MODELS["stress2"].display)
     with opened_device(arguments.spec, _wanted(arguments)) as device:
         _describe(device)
         if arguments.action == "info":

@@ -20,20 +20,21 @@ from vbraille.cli.wanted import (
     device_spec,
     is_simulated,
     refuse_hand,
+    steering_of,
 )
 from vbraille.devices.base import Placing
-from vbraille.devices.hand import parse_hand
-from vbraille.devices.recorded import Recorded
 from vbraille.devices.registry import check_actuators
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import DeviceError, InputError
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS, model_of
+from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.recorded import Recorded
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -65,7 +66,12 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = asked.on(asked.style.geometry, rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    host = Host(device_spec(arguments.device, hand, seed), wanted)
+    steering = steering_of(arguments.device)
+    host = Host(
+        device_spec(arguments.device, hand, seed, steering),
+        wanted,
+        pass_fds=() if steering is None else (steering.descriptor,),
+    )
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
@@ -92,6 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
                 advance=arguments.advance == "return",
                 stay=keyboard.attached,
                 echo=_echo(arguments.echo),
+                steering=steering,
             )
             # Till now Ctrl-Z may do what it does elsewhere.
             suspension = listening.enter_context(Suspension())
@@ -162,10 +169,8 @@ class _Reading:
             _say(_PLACES.get(placing, "place: known"))
         line = self._reader.lines
         self._reader.step(ticks)
-        done = (
-            ticks["flags"][-1] & (Flag.FOLLOWED | Flag.HELD) == Flag.FOLLOWED
-            and not self._keyboard.attached
-        )
+        felt = not ticks["flags"][-1] & Flag.HELD
+        done = felt and self._reader.steered_till(ticks[-1]) and not self._keyboard.attached
         if done and self._reader.lines == line and not self._reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._once:
@@ -223,6 +228,7 @@ class _Reading:
                 _say("fault: nothing drives the device; space begins again, q stops")
         self._placing = Placing.DONE
         self._host.start()
+        self._reader.steer()
         _say("reading")
 
 

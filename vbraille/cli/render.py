@@ -18,12 +18,12 @@ from vbraille.cli.build import (
 )
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
-from vbraille.devices.hand import Recorded, parse_hand
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
 from vbraille.reading.reader import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
+from vbraille.simulation.hand import Recorded, parse_hand
 from vbraille.wording import count, duration
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from tqdm import tqdm
 
     from vbraille.cli.build import Page
-    from vbraille.devices.hand import Hand
     from vbraille.page import Line
+    from vbraille.simulation.hand import Hand
 
 _BLOCK_FRAMES = 16_384
 # So many frames tell how well the rest can be compressed, and take less than half a second.

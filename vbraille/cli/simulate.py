@@ -9,13 +9,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.stopping import EAR
-from vbraille.devices.firmware import describe
-from vbraille.devices.hand import parse_hand
 from vbraille.devices.messages import Encoder
-from vbraille.devices.pty import Link, Port
-from vbraille.devices.simulator import Defect, Faults, Simulator
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
+from vbraille.simulation.firmware import describe
+from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.wording import printable
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec
+from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec, steering_of
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
@@ -50,12 +50,21 @@ class Sitting:
         self._opened = False
         # Another hand for each participant, and each time that the session is gone on with.
         drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {runs}"
-        spec = device_spec(arguments.device, arguments.hand, seed_of(drawn))
+        self._steering = steering_of(arguments.device)
+        spec = device_spec(arguments.device, arguments.hand, seed_of(drawn), self._steering)
         if arguments.fast and not spec.startswith("sim:"):
             raise InputError("--fast is for the simulated device; leave out --device")
         if protocol.medium == "device":
             wanted = protocol.model.on(protocol.geometry, rate_hz)
-            self._engine = _build(spec, wanted, protocol, plan, fast=arguments.fast)
+            if arguments.fast:
+                from vbraille.engine.batch import BatchEngine
+
+                self._engine = BatchEngine(open_device(spec, wanted), wanted.rate_hz)
+            else:
+                most = max(len(protocol.line(stimulus.masks)) for stimulus in _stimuli(plan))
+                inherited = () if self._steering is None else (self._steering.descriptor,)
+                room = protocol.model.style.room(wanted, most)
+                self._engine = Host(spec, wanted, room, pass_fds=inherited)
 
     def check(self, answers: Answers) -> None:
         """Raise InputError if these answers cannot be had in this way."""
@@ -86,7 +95,12 @@ class Sitting:
                 # A session of format 1 is gone on with in that, whose traces are not tied.
                 tie = None if book.told.format == 1 else lambda: book.durable
                 display = OnDevice(
-                    self._engine, record.protocol, record.folder, keeps=answers.felt, tie=tie
+                    self._engine,
+                    record.protocol,
+                    record.folder,
+                    keeps=answers.felt,
+                    tie=tie,
+                    steering=self._steering,
                 )
             sound = self._sound(answers)
             course = Course(
@@ -167,16 +181,6 @@ class Sitting:
         if self._engine is not None:
             EAR.close()
             self._engine.close()
-
-
-def _build(spec: str, wanted: Display, protocol: Protocol, plan: Plan, *, fast: bool) -> RunEngine:
-    """The engine: in a process of its own, or on a clock turned by hand."""
-    if fast:
-        from vbraille.engine.batch import BatchEngine
-
-        return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-    most = max(len(protocol.line(stimulus.masks)) for stimulus in _stimuli(plan))
-    return Host(spec, wanted, protocol.model.style.room(wanted, most))
 
 
 def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:

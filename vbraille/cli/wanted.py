@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from vbraille.errors import InputError
+from vbraille.simulation.steering import Steering
 
 if TYPE_CHECKING:
     from vbraille.display import Display
@@ -59,8 +60,15 @@ def refuse_hand(device: str, **given: object) -> None:
             )
 
 
-def device_spec(device: str, hand: str, seed: int) -> str:
-    """Spec of a device; the simulated one is told its hand."""
-    if not is_simulated(device):
+def steering_of(device: str) -> Steering | None:
+    """What steers the hand of a simulated device; None for a device that a person moves."""
+    return Steering() if is_simulated(device) or device.startswith("sim:?") else None
+
+
+def device_spec(device: str, hand: str, seed: int, steering: Steering | None) -> str:
+    """Spec of a device; the simulated one is told its hand, and what steers it."""
+    if steering is None:
         return device
-    return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
+    if is_simulated(device):
+        device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
+    return f"{device}&steering={steering.descriptor}"

@@ -131,14 +131,6 @@ class Device(ABC):
         """What went wrong so far, by name: frames not sent, samples missed, corrupt messages."""
         return {}
 
-    def follow(self, end_mm: float) -> None:
-        """Have a simulated hand read a new line, whose last dot ends there; a real hand does."""
-
-    @property
-    def followed(self) -> bool:
-        """Whether a simulated hand has come to its end; a real one never has."""
-        return False
-
     def write(self, frame: NDArray[np.float64]) -> None:
         """Send a frame.
 

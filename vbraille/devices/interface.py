@@ -9,7 +9,7 @@ from functools import cached_property
 from vbraille.devices.base import Device, Particulars, Placing
 
 # What a member is given, where it is given anything.
-_ARGUMENTS = {"write": 1, "_send": 1, "follow": 1}
+_ARGUMENTS = {"write": 1, "_send": 1}
 _METHODS = (
     "read",
     "write",
@@ -20,7 +20,6 @@ _METHODS = (
     "set_zero",
     "take_notes",
     "counts",
-    "follow",
 )
 _VALUES: dict[str, tuple[type, ...]] = {
     "rested": (int,),
@@ -29,7 +28,6 @@ _VALUES: dict[str, tuple[type, ...]] = {
     "acknowledges": (bool,),
     "acknowledged_ns": (int, type(None)),
     "watchdog_trips": (int, type(None)),
-    "followed": (bool,),
     "particulars": (Particulars, type(None)),
 }
 

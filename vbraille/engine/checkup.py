@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
-from vbraille.render import kernels
+from vbraille.render.program import vibration
+from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices import Device
+    from vbraille.display import Display
     from vbraille.engine.clock import Clock
 
 NS_PER_S = 1_000_000_000
@@ -89,22 +92,14 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
         frame[row, column] = 0.0
 
 
-def warm_up() -> None:
+def warm_up(display: Display) -> None:
     """Compile what `hold_rate` calls, before there is a device whose watchdog could trip."""
-    out = np.zeros((1, 1))
-    kernels.blend(out, out, 0.0, out)
-
-
-class _Breath:
-    """A picture that swells and sinks with each frame, wherever the carriage is."""
-
-    def __init__(self, rate_hz: float) -> None:
-        self._step = 2 * math.pi / rate_hz
-        self._phase = 0.0
-
-    def frame(self, _x_mm: float, out: NDArray[np.float64]) -> None:
-        self._phase += self._step
-        out.fill(0.5 - 0.5 * math.cos(self._phase))
+    clock = ManualClock()
+    with SimulatedDevice(display, clock.now_ns) as device:
+        engine = LocalEngine(device, clock, poll_ticks=2)
+        engine.loop.show(vibration(display, 1.0))
+        engine.poll()
+        engine.loop.fade_to_rest()
 
 
 def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
@@ -117,7 +112,8 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     """
     rate_hz = device.display.rate_hz
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
-    engine.loop.show(_Breath(rate_hz))
+    # All swell and sink, once a second.
+    engine.loop.show(vibration(device.display, 1.0, exposure_s=math.inf))
     engine.loop.restart_clock()
     polled = []
     while engine.tally.ticks + engine.tally.late < seconds * rate_hz:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Protocol
 
 from vbraille.devices.base import Placing
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,7 +45,7 @@ class Engine(Protocol):
     @paused.setter
     def paused(self, paused: bool) -> None: ...
 
-    def show(self, picture: Program, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int) -> None:
         """Put a picture of a line under the hand.
 
         Parameters
@@ -53,15 +53,12 @@ class Engine(Protocol):
         picture
             What to show.
         line
-            The line's number in the records, from 1. With another one than before
-            a simulated hand reads anew.
-        end_mm
-            Where its last dot ends.
+            The line's number in the records, from 1.
         """
         ...
 
     def poll(self) -> NDArray[np.void]:
-        """Records of all ticks since the last poll; `vbraille.engine.ring.tick_dtype`[n].
+        """Records of all ticks since the last poll; `vbraille.engine.record.tick_dtype`[n].
 
         Raises
         ------

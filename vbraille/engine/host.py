@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.engine.mailbox import Mailbox
-    from vbraille.engine.ring import Ring
+    from vbraille.engine.ring import RingReader
     from vbraille.render.program import Program
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
@@ -45,11 +45,13 @@ class Host:
     device
         Spec, as of `vbraille.devices.open_device`.
     wanted
-        The actuators, travel and rate that the page was laid out for. With no cells given they are
+        The actuators, travel and rate that the page was laid out for. With no room given they are
         a wish, which a simulated device fulfils; a real one is what it is.
     room
         Bytes of the largest picture; None if pictures are made for the device that is found:
         `open` it, then tell `fit`, then `start`.
+    pass_fds
+        Descriptors that the process inherits, for its device: the spec names them.
 
     Attributes
     ----------
@@ -61,20 +63,28 @@ class Host:
         Ticks that were never polled: the parent was away for too long.
     """
 
-    def __init__(self, device: str, wanted: Display, room: int | None = None) -> None:
+    def __init__(
+        self,
+        device: str,
+        wanted: Display,
+        room: int | None = None,
+        *,
+        pass_fds: Sequence[int] = (),
+    ) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
         self._device = device
         self._wanted = wanted
         self._room = room
+        self._pass_fds = tuple(pass_fds)
         self._info: Display | None = None
         self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None  # of memory that nobody has a view of yet
         self._mailbox: Mailbox | None = None
-        self._ring: Ring | None = None
-        self._shown: tuple[Program, int, float] | None = None
+        self._ring: RingReader | None = None
+        self._shown: tuple[Program, int] | None = None
         self._notes: list[str] = []
         self._heard = b""
         self._fault: VbrailleError | None = None
@@ -121,7 +131,7 @@ class Host:
             self._wait()
         self._launched = False
         if self._shown is not None:
-            self._posted.post(*self._shown[:2])
+            self._posted.post(*self._shown)
 
     def launch(self) -> None:
         """Start the process and wait for nothing: `start` does, when there is no more to do.
@@ -140,7 +150,7 @@ class Host:
             [sys.executable, "-m", "vbraille.engine.hosted", str(self._descriptor)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            pass_fds=(self._descriptor,),
+            pass_fds=(self._descriptor, *self._pass_fds),
         )
         os.set_blocking(self._answers(), False)
         self._tell(
@@ -161,7 +171,7 @@ class Host:
         extent = shared.Extent(wanted.rows, wanted.columns, self._room, ticks)
         memory = shared.attach(self._descriptor, extent)
         self._forget_memory()
-        self._mailbox, self._ring = shared.divide(memory, extent)
+        self._mailbox, self._ring = shared.watch(memory, extent)
         self._tell(**asdict(extent))
 
     def _tell(self, **what: object) -> None:
@@ -210,9 +220,9 @@ class Host:
     def paused(self, paused: bool) -> None:
         self._paused = self._posted.paused = paused
 
-    def show(self, picture: Program, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
-        self._shown = picture, line, end_mm
+        self._shown = picture, line
         self._posted.post(picture, line)
 
     def set_zero(self) -> None:

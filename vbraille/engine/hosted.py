@@ -25,13 +25,14 @@ from typing import TYPE_CHECKING, Any
 from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
 from vbraille.devices.notices import EVERY_NS, Notices
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
+from vbraille.render.program import nothing
+from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
     from io import RawIOBase
@@ -89,20 +90,17 @@ class Hosted:
         To run.
     mailbox
         What is to be done.
-    extent
-        What is shared.
     parent
         Process that must live.
     """
 
-    def __init__(self, loop: Loop, mailbox: Mailbox, extent: shared.Extent, parent: int) -> None:
+    def __init__(self, loop: Loop, mailbox: Mailbox, parent: int) -> None:
         self.loop = loop
         self._mailbox = mailbox
         self._parent = parent
         self._ended = False
         self._zeroed = 0
         self._taken = 0
-        self._line = 0
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
         """Take a signal: end after this tick."""
@@ -121,9 +119,6 @@ class Hosted:
             if posted is not None:
                 self._taken = posted.number
                 loop.show(posted.program, posted.line)
-                if posted.line != self._line:
-                    self._line = posted.line
-                    loop.device.follow(0.0)
         if mailbox.paused != loop.paused:
             loop.paused = mailbox.paused
         if mailbox.zeroed != self._zeroed:
@@ -138,10 +133,8 @@ def warm_up(info: Display, extent: shared.Extent) -> None:
     with SimulatedDevice(info, clock.now_ns) as device:
         mailbox, ring = shared.divide(memoryview(bytearray(extent.total_bytes)), extent)
         loop = Loop(device, clock, ring=ring)
-        picture = PostedPicture(extent.shape, extent.cells)
-        loop.show(picture)
-        loop.warm_up()
-        hosted = Hosted(loop, mailbox, extent, 0)
+        loop.show(nothing(info))
+        hosted = Hosted(loop, mailbox, 0)
         for _ in range(_WARM_TICKS):
             hosted.tick()
         loop.fade_to_rest()
@@ -189,7 +182,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
     config = json.loads(orders.readline())
     wanted = Display(**config["wanted"])
     end_after(config["parent"])
-    warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 1, _WARM_TICKS))
+    warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 0, _WARM_TICKS))
     with opened_device(config["device"], wanted, fits=config["fits"]) as device:
         channel.say(opened=asdict(device.display))
         told = wait_for_line(orders, device, wanted.rate_hz)
@@ -201,7 +194,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         note = go_real_time()
         rehearse(device, wanted.rate_hz)
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
-        hosted = Hosted(loop, mailbox, extent, config["parent"])
+        hosted = Hosted(loop, mailbox, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, note=note)
         channel.never_wait()

@@ -10,12 +10,19 @@ held up would jump if it took the time that it lost for time in which it faded. 
 of a picture that moves by itself.
 """
 
-import math
-
 import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
+from vbraille.engine.constants import (
+    DIFFERENCE,
+    GAP_NS,
+    JUMP_MM_S,
+    MEAN,
+    NS_PER_S,
+    REACH_MM,
+    STILL_MM,
+)
 from vbraille.engine.record import (
     DEVICE,
     FLAGS,
@@ -33,15 +40,6 @@ from vbraille.engine.record import (
     Flag,
     X,
     Y,
-)
-from vbraille.engine.constants import (
-    DIFFERENCE,
-    GAP_NS,
-    JUMP_MM_S,
-    MEAN,
-    NS_PER_S,
-    REACH_MM,
-    STILL_MM,
 )
 from vbraille.render import work
 from vbraille.render.kernels import blend, frame, part_of
@@ -359,4 +357,3 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
             frames[n] = 0.0
         else:
             frames[n] = output
-

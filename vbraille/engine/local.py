@@ -38,12 +38,10 @@ class LocalEngine:
     def __init__(
         self, device: Device, clock: Clock, *, rate_hz: float = 1000.0, poll_ticks: int = 1
     ) -> None:
-        shape = device.display.rows, device.display.columns
-        size = poll_ticks + 1
-        self._ring = Ring(memoryview(bytearray(Ring.bytes_needed(shape, size))), shape, size)
-        self.loop = Loop(device, clock, rate_hz=rate_hz, ring=self._ring)
+        ring = Ring.alone(device.display.shape, poll_ticks + 1)
+        self._reader = ring.reader()
+        self.loop = Loop(device, clock, rate_hz=rate_hz, ring=ring)
         self._poll_ticks = poll_ticks
-        self._line = 0
 
     @property
     def display(self) -> Display:
@@ -69,19 +67,16 @@ class LocalEngine:
     def paused(self, paused: bool) -> None:
         self.loop.paused = paused
 
-    def show(self, picture: Program, line: int, end_mm: float) -> None:
+    def show(self, picture: Program, line: int) -> None:
         """Put a picture of a line under the hand; see `Engine`."""
         self.loop.show(picture, line)
-        if line != self._line:
-            self._line = line
-            self.loop.device.follow(end_mm)
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; their records."""
         for _ in range(self._poll_ticks):
             self.loop.tick()
-        self._ring.publish()
-        return self._ring.drain()
+        self.loop.ring.publish()
+        return self._reader.drain()
 
     def take_notes(self) -> Sequence[str]:
         """What the device has to say since the last call."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
 from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
-from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, tick_dtype
+from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag
 from vbraille.engine.ring import Ring
 from vbraille.engine.state import State
 from vbraille.engine.tally import Tally
@@ -181,10 +180,6 @@ class Loop:
         whole[FLAGS] = (int(whole[FLAGS]) & ~_HELD) | held | _PLACING[device.placing]
         ring.end()
 
-    def warm_up(self) -> None:
-        """Compile what a tick calls, so that the first is no slower than the others."""
-        self.state.warm_up()
-
     def restart_clock(self) -> None:
         """Let the next tick be due now: the time before it was not the loop's."""
         self._deadline_ns = self.clock.now_ns()
@@ -209,4 +204,4 @@ class Loop:
             faded_ns += self._period_ns
             self.state.fade(faded_ns / self._fade_ns if faded_ns < self._fade_ns else 1.0)
             self.device.write(self.output)
-        self.state.restart()
+        self.state.want(None, 0)

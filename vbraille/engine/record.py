@@ -73,11 +73,12 @@ def columns_of(
     int64[n, INTS], float64[n, FLOATS], float32[n, rows, columns]
         Of the same memory; one kind of array each, whatever the frame's shape.
     """
-    step, at = records.itemsize, records.dtype.fields
-    assert at is not None
+    step = records.itemsize
+    assert records.dtype.fields is not None
+    offsets = {name: field[1] for name, field in records.dtype.fields.items()}
 
     def view(dtype: type, names: tuple[str, ...]) -> NDArray:
-        start = at[names[0]][1]
+        start = offsets[names[0]]
         return np.ndarray(
             (records.size, len(names)), dtype, records.data, start, (step, np.dtype(dtype).itemsize)
         )

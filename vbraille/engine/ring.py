@@ -1,64 +1,27 @@
-"""The last ticks, in memory that a recorder in another process reads.
+"""The last ticks, in memory that any number of readers follow, each at its own pace.
 
-One side appends, the other drains; neither waits for the other. The reader
-copies, then looks how far the writer has come meanwhile: what may have been
-overwritten under its hands it drops, and counts as lost. A record is published
-with the next one, a tick later: that far apart, no processor shows the two
+One side appends, and never waits for anybody. A reader copies, then looks how far the writer has
+come meanwhile: what may have been overwritten under its hands it drops, and counts as lost. A
+record is published with the next one, a tick later: that far apart, no processor shows the two
 stores to another in the wrong order.
 """
 
 from __future__ import annotations
 
-import struct
-from enum import IntFlag
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
+
+from vbraille.engine.record import columns_of, tick_dtype
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HEADER_BYTES = 64
-_FIELDS = (
-    ("tick", "<i8"),  # from 0
-    ("time_ns", "<i8"),  # when the tick woke, by the host's monotonic clock
-    ("device_ns", "<i8"),  # of the sample, by the device's clock
-    ("lateness_ns", "<i8"),  # from the deadline to the waking
-    ("work_ns", "<i8"),  # from waking until the frame was written
-    ("late", "<i8"),  # deadlines missed so far
-    ("overruns", "<i8"),  # ticks so far whose own work took longer than a period
-    ("line", "<i8"),  # number of what is under the hand; 0 before the first
-    ("flags", "<i8"),  # of `Flag`
-    ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
-    ("speed_mm_s", "<f8"),
-    ("forward_mm", "<f8"),  # way to the right so far, and the time that it took
-    ("forward_s", "<f8"),
-    ("share", "<f8"),  # how much of a change has faded in: 1 is all
-)
-_PACK = struct.Struct("<9q5d").pack_into
-
-
-class Flag(IntFlag):
-    """What else is true of a tick."""
-
-    PAUSED = 1
-    SILENT = 2  # the device has given no sample for a while
-    FOLLOWED = 4  # a simulated hand has come to its end
-    MARK = 8  # the device waits for its mark
-    STOP = 16  # the device waits to be told that it is at the left stop
-    RESTING = 32  # nothing is shown, whatever the line
-    CHANGED = 64  # a fade begins here, from the frame before
-    RESTED = 128  # the device had gone to rest by itself: the frame before was rest
-    HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
-
-
-def tick_dtype(shape: tuple[int, int]) -> np.dtype:
-    """One record: the fields of a tick, and the frame that it sent, float32[rows, columns]."""
-    return np.dtype([*_FIELDS, ("frame", "<f4", shape)], align=True)
 
 
 class Ring:
-    """Records of the last ticks.
+    """The writer's end: records of the last ticks.
 
     Parameters
     ----------
@@ -71,45 +34,76 @@ class Ring:
 
     Attributes
     ----------
-    lost : int
-        Records that were overwritten before this end drained them.
+    columns : tuple of arrays
+        All records, as `vbraille.engine.record.columns_of` gives them, to be filled.
+    published : int64[1]
+        How many records may be read.
     """
 
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
-        self.lost = 0
-        self._size = size
-        self._published = buffer[:_HEADER_BYTES].cast("q")
-        self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
-        self._frames = self._records["frame"]
-        self._bytes = buffer[_HEADER_BYTES:]
-        self._appended = 0
-        self._drained = 0
+        self.size = size
+        self.published = np.frombuffer(buffer, np.int64, 1)
+        self.columns = columns_of(np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES))
+        self._buffer = buffer
+        self._shape = shape
+        self.appended = 0
+
+    @classmethod
+    def alone(cls, shape: tuple[int, int], size: int) -> Self:
+        """A ring in memory of its own."""
+        return cls(memoryview(bytearray(cls.bytes_needed(shape, size))), shape, size)
 
     @staticmethod
     def bytes_needed(shape: tuple[int, int], size: int) -> int:
         """Size of the buffer, a multiple of 8."""
         return _HEADER_BYTES + size * tick_dtype(shape).itemsize
 
-    def append(self, frame: NDArray[np.float64], *fields: float) -> None:
-        """Add a record: the frame, and the fields in their order but for the tick's number."""
-        tick = self._appended
-        self._published[0] = tick
-        slot = tick % self._size
-        _PACK(self._bytes, slot * self._records.itemsize, tick, *fields)
-        np.copyto(self._frames[slot], frame, casting="same_kind")
-        self._appended = tick + 1
+    def begin(self) -> int:
+        """Begin a record: let those before it be seen, and tell the place of the new one."""
+        self.published[0] = self.appended
+        return self.appended % self.size
+
+    def end(self, count: int = 1) -> None:
+        """End a record, or so many that were filled one after the other."""
+        self.appended += count
 
     def publish(self) -> None:
         """Let the last record be seen at once."""
-        self._published[0] = self._appended
+        self.published[0] = self.appended
+
+    def reader(self) -> RingReader:
+        """A reader of what comes from now on, in this process."""
+        return RingReader(self._buffer, self._shape, self.size)
+
+
+class RingReader:
+    """One reader's end; there may be any number, in any process, and none holds up another.
+
+    Parameters
+    ----------
+    buffer, shape, size
+        As the writer's.
+
+    Attributes
+    ----------
+    lost : int
+        Records that were overwritten before this reader had them.
+    """
+
+    def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
+        self.lost = 0
+        self._size = size
+        self._published = np.frombuffer(buffer, np.int64, 1)
+        self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
+        self._drained = int(self._published[0])
 
     def drain(self) -> NDArray[np.void]:
-        """Records since the last call, oldest first; `tick_dtype`[n]."""
-        end = self._published[0]
+        """Records since the last call, oldest first; `vbraille.engine.record.tick_dtype`[n]."""
+        end = int(self._published[0])
         first = max(self._drained, end - self._size)
         ticks = self._records[np.arange(first, end) % self._size]
         # The slot after the last published one may be in the writing.
-        whole = max(first, self._published[0] + 1 - self._size)
+        whole = max(first, int(self._published[0]) + 1 - self._size)
         self.lost += min(whole, end) - self._drained
         self._drained = end
         return ticks[whole - first :]

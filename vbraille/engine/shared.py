@@ -11,7 +11,7 @@ import os
 from dataclasses import dataclass
 
 from vbraille.engine.mailbox import Mailbox
-from vbraille.engine.ring import Ring
+from vbraille.engine.ring import Ring, RingReader
 
 RING_S = 8.0
 
@@ -64,6 +64,12 @@ def attach(descriptor: int, extent: Extent) -> memoryview:
 
 
 def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
-    """The two that are in it."""
+    """The two that are in it, for the process whose loop takes orders and records ticks."""
     mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
     return mailbox, Ring(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)
+
+
+def watch(memory: memoryview, extent: Extent) -> tuple[Mailbox, RingReader]:
+    """The two that are in it, for whoever gives orders and reads records; there may be several."""
+    mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
+    return mailbox, RingReader(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)

@@ -94,8 +94,7 @@ def mapping(
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
     frames = [
-        deflections(x, masks, replace(style, mapping=method), column)[:, :, 0]
-        for method in methods
+        deflections(x, masks, replace(style, mapping=method), column)[:, :, 0] for method in methods
     ]
     columns = {
         "method": np.repeat([method.name for method in methods], x.size),

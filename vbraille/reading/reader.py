@@ -7,11 +7,12 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from vbraille.engine.advance import EndOfLine
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.page import locate
 from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.reading.keys import PASTE
 from vbraille.reading.waiting import Waiting
+from vbraille.simulation.steering import ReadLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.engine.engine import Engine
     from vbraille.page import Layout, Line
     from vbraille.render import BrailleStyle, Model
+    from vbraille.simulation.steering import Steering
 
 STEP = 0.1
 # Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
@@ -56,6 +58,8 @@ class Reader:
         Whether to wait for keys at the end of the text, instead of being done.
     echo
         What to say of each line.
+    steering
+        Of the simulated hand that reads; None if a person's hand does.
     say
         Where to say it, one thing a call.
 
@@ -79,6 +83,7 @@ class Reader:
         advance: bool = True,
         stay: bool = False,
         echo: Echo = Echo.NONE,
+        steering: Steering | None = None,
     ) -> None:
         self.layout = layout
         self.engine = engine
@@ -91,6 +96,7 @@ class Reader:
         self._advance = advance
         self._stay = stay
         self._echo = echo
+        self._steering = steering
         self._line: Line | None = None
         self._end: EndOfLine
         self._waiting: Waiting
@@ -137,6 +143,15 @@ class Reader:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
                     self._say(sentence)
         self._watch_speed(float(ticks["speed_mm_s"].max()))
+
+    def steer(self) -> None:
+        """Have a simulated hand read the line under it; a person's hand does by itself."""
+        if self._steering is not None and self._line is not None:
+            self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self._line))))
+
+    def steered_till(self, tick: np.void) -> bool:
+        """Whether a simulated hand had read the line, by the time of a tick; no other ever has."""
+        return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
 
     def go_on(self) -> None:
         """Put the next line under the hand; there is none: the reading is finished."""
@@ -235,13 +250,13 @@ class Reader:
             self._model.display.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
         )
         self._picture(line)
+        self.steer()
         self._say_line(line)
 
     def _picture(self, line: Line) -> None:
         self.engine.show(
             self.style.render(line.masks, self._model.display),
             line.number,
-            self.style.geometry.extent_mm(len(line)),
         )
 
     def _say_line(self, line: Line) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.engine.advance import HOME_MM
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

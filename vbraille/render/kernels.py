@@ -74,7 +74,7 @@ def _sin_pi(d, q):
     return d * (_T0 + q * (_T1 + q * (_T2 + q * (_T3 + q * (_T4 + q * high)))))
 
 
-@_inlined
+@_compiled
 def _swings(numbers, scratch, count, which):
     """Replace the places on the surface in ``scratch[SWING]`` by the swings there; fill the slots.
 
@@ -130,7 +130,7 @@ def _places(scratch, left_mm, first, columns, pitch):
         scratch[SWING, first + column] = left_mm + column * pitch
 
 
-@_inlined
+@_compiled
 def _write(numbers, table, base, scratch, first, out, above, below):
     """Fill rows of a frame with the swings of a block."""
     rows, columns = out.shape
@@ -142,7 +142,7 @@ def _write(numbers, table, base, scratch, first, out, above, below):
             out[row, column] = idle + gain * shown * scratch[SWING, first + column]
 
 
-@_inlined
+@_compiled
 def _write_larger(numbers, table, base, scratch, first, out, above, below):
     """Of dots that overlap, the one with the larger swing."""
     rows, columns = out.shape
@@ -156,7 +156,7 @@ def _write_larger(numbers, table, base, scratch, first, out, above, below):
                 out[row, column] = idle + swing
 
 
-@_inlined
+@_compiled
 def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
     """Fill rows of a frame that all have their left column at one place."""
     columns = out.shape[1]
@@ -198,7 +198,7 @@ def part_of(numbers, y_mm, before):
         return before
     lines = numbers[LINES]
     at = at if at > -1.0 else -1.0  # a NaN, too
-    return int(math.floor(at if at < lines else lines))
+    return math.floor(at if at < lines else lines)
 
 
 @_compiled

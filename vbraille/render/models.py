@@ -91,7 +91,7 @@ MODELS = {model.name: model for model in (STRESS2, VBD)}
 
 
 def same_array(one: Display, other: Display) -> bool:
-    """Whether two displays have the same actuators, as far apart; one row or column has no pitch."""
+    """Whether two displays have as many actuators, as far apart; one line has no pitch."""
     if one.shape != other.shape:
         return False
     return all(

@@ -1,4 +1,4 @@
-"""A picture, compiled for the kernels: plain arrays that say what the actuators do at every pose."""
+"""A picture, compiled for the kernels: plain arrays that say what actuators do at every pose."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 _BLOCK = 64  # places whose swings stay in the processor's nearest cache
-# Longest that a picture may move actuators by itself: vibration tires the skin (Lévesque 2009, 8.6).
+# Longest that a picture may move by itself: vibration tires the skin (Lévesque 2009, 8.6).
 EXPOSURE_S = 60.0
 # Twenty samples a period at 1 kHz: Lévesque 2009, 8.3.2.
 MOST_FREQUENCY_HZ = 50.0

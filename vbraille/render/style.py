@@ -125,18 +125,14 @@ class BrailleStyle:
         numbers = work.IDLE + 2 * display.rows
         return numbers * 8 + (lines + 2) * 2 * (cells + 2) * 2
 
-    def _compile(
-        self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: Kind
-    ) -> Program:
+    def _compile(self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: Kind) -> Program:
         # The kernels are compiled when this is first imported: not for a command that needs none.
         from vbraille.render.program import Program, head
 
         geometry, tuning = self.geometry, self.tuning
         own = self.rows_on(display)
         slots = 2 * (max(len(masks) for masks in lines) + 2)
-        numbers = head(
-            display, kind, work.IDLE + 2 * display.rows, geometry.line_pitch_mm / 2
-        )
+        numbers = head(display, kind, work.IDLE + 2 * display.rows, geometry.line_pitch_mm / 2)
         numbers[work.COLUMN_PITCH] = display.column_pitch_mm
         numbers[work.ROW_PITCH] = display.row_pitch_mm
         numbers[work.LINE_PITCH] = geometry.line_pitch_mm

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
-from vbraille.devices.simulated import SimulatedDevice
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.engine.ring import Flag
+from vbraille.simulation.simulated import SimulatedDevice
 
 KEPT = MINI + "[faults]\nrepeat = false\n"
 CAUSES = {
@@ -154,11 +154,11 @@ def test_ticks_just_before_another_contrast_are_looked_at(tmp_path):
     class Rested(BatchEngine):
         """The array rests just before what is shown is shown otherwise."""
 
-        def show(self, picture, line, end_mm):
+        def show(self, picture, line):
             if line == 2:
                 self.after = super().poll()
                 self.after["flags"][-1] |= int(Flag.RESTED)
-            super().show(picture, line, end_mm)
+            super().show(picture, line)
 
         def poll(self):
             late, self.after = getattr(self, "after", None), None

@@ -7,20 +7,18 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT
-from vbraille.devices.hand import parse_hand
+from tests.shown import LATERO, array, rendered
 from vbraille.render import (
-    LATERO,
     MAPPINGS,
     STRESS2,
     VBD,
-    ActuatorArray,
     Mapping,
     Tuning,
     single_row,
 )
-from vbraille.render.renderer import Renderer
 from vbraille.sessions.simulated.observer import Observer, Touch
 from vbraille.sessions.simulated.skin import Exploration, reference_per_mm2, smoothing_mm
+from vbraille.simulation.hand import parse_hand
 
 MARGIN_MM = 2.0
 WAYS = [(STRESS2, mapping) for mapping in MAPPINGS.values()]
@@ -33,8 +31,8 @@ NAMES = [f"{model.name}-{mapping.name}" for model, mapping in WAYS]
 
 def moved(model, hand, cells, *, seed=1, late_s=(), kept=None, geometry=None):
     """Times and places of a hand's ticks at 1 kHz, each so much too late, or some of them lost."""
-    line_mm = (geometry or model.geometry).extent_mm(cells)
-    start_mm = -model.array.span_mm - MARGIN_MM
+    line_mm = (geometry or model.style.geometry).extent_mm(cells)
+    start_mm = -model.display.span_mm - MARGIN_MM
     motion = parse_hand(hand, seed).read_line(start_mm, line_mm + MARGIN_MM)
     time_s = np.arange(0, motion.duration_s, 1e-3)
     if len(late_s):
@@ -46,11 +44,11 @@ def moved(model, hand, cells, *, seed=1, late_s=(), kept=None, geometry=None):
 
 def explored(model, mapping, masks, time_s, x_mm, *, count_mm=None, levels=None, **changes):
     """What a hand is given of a line, through an encoder and a device of so many levels."""
-    geometry = changes.pop("geometry", model.geometry)
-    renderer = Renderer(
+    geometry = changes.pop("geometry", model.style.geometry)
+    renderer = rendered(
         np.array(masks, np.uint8),
-        array=model.array,
-        profile=model.profile,
+        array=model.display,
+        profile=model.style.profile,
         mapping=mapping,
         geometry=geometry,
         tuning=Tuning(**changes),
@@ -76,7 +74,7 @@ def drawn(rng, mapping, cells=4):
 
 
 def of(model, mapping, **changes):
-    return Observer(model.array, mapping, model.geometry, **changes)
+    return Observer(model.display, mapping, model.style.geometry, **changes)
 
 
 @pytest.mark.no_cover
@@ -115,9 +113,11 @@ def test_through_levels_counts_a_fade_and_late_ticks(
 
 def test_it_reads_the_frames_and_nothing_else(rng):
     path = moved(STRESS2, QUICK, 4)
-    strings = [drawn(rng, STRESS2.mapping) for _ in range(3)]
-    given = [explored(STRESS2, STRESS2.mapping, masks, *path, texture=0.5) for masks in strings]
-    observer = of(STRESS2, STRESS2.mapping)
+    strings = [drawn(rng, STRESS2.style.mapping) for _ in range(3)]
+    given = [
+        explored(STRESS2, STRESS2.style.mapping, masks, *path, texture=0.5) for masks in strings
+    ]
+    observer = of(STRESS2, STRESS2.style.mapping)
     assert [observer.read(one, 4, rng) for one in given] == strings
     swapped = Exploration(given[1].frames, given[0].x_mm, given[0].time_s)
     assert observer.read(swapped, 4, rng) == strings[1]
@@ -142,23 +142,23 @@ def test_a_mapping_with_dots_7_and_8_and_another_array(rng):
 
 
 def test_a_hand_that_turns_round_and_stops_in_the_middle(rng):
-    masks = drawn(rng, STRESS2.mapping)
+    masks = drawn(rng, STRESS2.style.mapping)
     knots = [(0, -14), (0.3, 16), (0.6, 16), (0.9, -6), (1.2, 20), (1.5, 8), (2.0, 48)]
     knots_s, knots_mm = np.array(knots, float).T
     time_s = np.arange(0, 2.0, 1e-3)
     x_mm = np.interp(time_s, knots_s, knots_mm)
-    given = explored(STRESS2, STRESS2.mapping, masks, time_s, x_mm)
-    assert of(STRESS2, STRESS2.mapping).read(faded_in(given), 4, rng) == masks
+    given = explored(STRESS2, STRESS2.style.mapping, masks, time_s, x_mm)
+    assert of(STRESS2, STRESS2.style.mapping).read(faded_in(given), 4, rng) == masks
 
 
 def test_what_a_later_pass_gives_outdoes_what_faded_or_rested():
     time_s, x_mm = moved(VBD, "sweep:100", 3)
     twice = np.concatenate([time_s, time_s + time_s[-1] + 1e-3])
-    given = explored(VBD, VBD.mapping, [9, 1, 8], twice, np.concatenate([x_mm, x_mm]))
+    given = explored(VBD, VBD.style.mapping, [9, 1, 8], twice, np.concatenate([x_mm, x_mm]))
     first = np.arange(twice.size) < time_s.size
     weak = given.frames * np.where(first, 0.3, 1.0).astype(np.float32)[:, None, None]
     weak[time_s.size // 2 : time_s.size] = 0
-    observer = of(VBD, VBD.mapping)
+    observer = of(VBD, VBD.style.mapping)
     np.testing.assert_allclose(
         observer.felt(replace(given, frames=weak), 3).evidence,
         observer.felt(given, 3).evidence,
@@ -178,11 +178,11 @@ def test_what_a_later_pass_gives_outdoes_what_faded_or_rested():
     ][: None if JIT else 0],
 )
 def test_when_exactly_the_ticks_were_hardly_matters(hand, model, texture, most, rng):
-    observer = of(model, model.mapping)
+    observer = of(model, model.style.mapping)
     touches = []
     for late_s in ((), rng.exponential(1e-4, 997) + 3e-4):
         path = moved(model, hand, 3, seed=7, late_s=late_s)
-        given = explored(model, model.mapping, [9, 1, 25], *path, texture=texture)
+        given = explored(model, model.style.mapping, [9, 1, 25], *path, texture=texture)
         touches.append(observer.felt(given, 3).evidence)
     felt = touches[0] > 0.1
     assert felt.sum() >= 4
@@ -191,9 +191,9 @@ def test_when_exactly_the_ticks_were_hardly_matters(hand, model, texture, most, 
 
 def test_evidence_is_in_proportion_to_contrast_and_near_1_for_a_plain_dot():
     path = moved(STRESS2, "sweep:73", 1)
-    observer = of(STRESS2, STRESS2.mapping)
+    observer = of(STRESS2, STRESS2.style.mapping)
     touches = [
-        observer.felt(explored(STRESS2, STRESS2.mapping, [1], *path, contrast=contrast), 1)
+        observer.felt(explored(STRESS2, STRESS2.style.mapping, [1], *path, contrast=contrast), 1)
         for contrast in (1.0, 0.3)
     ]
     one, third = (touch.evidence[0, 0] for touch in touches)
@@ -203,14 +203,14 @@ def test_evidence_is_in_proportion_to_contrast_and_near_1_for_a_plain_dot():
 
 @pytest.mark.no_cover
 def test_legibility_falls_with_contrast(rng):
-    observer = of(VBD, VBD.mapping, noise=0.12)
+    observer = of(VBD, VBD.style.mapping, noise=0.12)
     path = moved(VBD, "sweep:100", 4)
     strings = [[9, left, right, 9] for left in (0, 1, 8, 9) for right in (0, 1, 8, 9)]
     right = []
     for contrast in (1.0, 0.6, 0.4, 0.25, 0.1):
         told = []
         for masks in strings:
-            given = explored(VBD, VBD.mapping, masks, *path, contrast=contrast)
+            given = explored(VBD, VBD.style.mapping, masks, *path, contrast=contrast)
             touch = observer.felt(given, 4)
             told += [np.equal(observer.answer(touch, rng), masks)[1:3].all() for _ in range(15)]
         right.append(np.mean(told))
@@ -221,8 +221,10 @@ def test_legibility_falls_with_contrast(rng):
 
 
 def test_noise_is_the_seeds(rng):
-    given = explored(VBD, VBD.mapping, [9, 1, 8, 9], *moved(VBD, "sweep:200", 4), contrast=0.2)
-    observer = of(VBD, VBD.mapping, noise=0.2)
+    given = explored(
+        VBD, VBD.style.mapping, [9, 1, 8, 9], *moved(VBD, "sweep:200", 4), contrast=0.2
+    )
+    observer = of(VBD, VBD.style.mapping, noise=0.2)
     seeds = [int(seed) for seed in rng.integers(0, 1000, 12)]
     answers = [observer.read(given, 4, np.random.default_rng(seed)) for seed in seeds]
     assert answers == [observer.read(given, 4, np.random.default_rng(seed)) for seed in seeds]
@@ -231,8 +233,8 @@ def test_noise_is_the_seeds(rng):
 
 def test_nothing_felt_is_no_answer(rng):
     path = moved(VBD, "sweep:200", 3)
-    blind = of(VBD, VBD.mapping, noise=0.2)
-    without = explored(VBD, VBD.mapping, [9, 9, 9], *path, contrast=0.0)
+    blind = of(VBD, VBD.style.mapping, noise=0.2)
+    without = explored(VBD, VBD.style.mapping, [9, 9, 9], *path, contrast=0.0)
     assert blind.read(without, 3, rng) == [None] * 3
     assert blind.felt(without, 3).nothing
     never = Exploration(without.frames, np.full(without.x_mm.shape, np.nan), without.time_s)
@@ -241,18 +243,18 @@ def test_nothing_felt_is_no_answer(rng):
 
 
 def test_where_the_hand_never_was_there_is_no_answer(rng):
-    given = explored(VBD, VBD.mapping, [9, 1, 9], *moved(VBD, "sweep:100", 3))
+    given = explored(VBD, VBD.style.mapping, [9, 1, 9], *moved(VBD, "sweep:100", 3))
     near = given.within(-np.inf, 12.0)
-    observer = of(VBD, VBD.mapping)
+    observer = of(VBD, VBD.style.mapping)
     assert observer.read(near, 3, rng) == [9, 1, None]
     assert np.isnan(observer.felt(near, 3).evidence[2]).all()
 
 
 def test_ticks_without_a_place_are_dropped(rng):
-    given = explored(VBD, VBD.mapping, [9, 1], *moved(VBD, "sweep:100", 2))
+    given = explored(VBD, VBD.style.mapping, [9, 1], *moved(VBD, "sweep:100", 2))
     x_mm = given.x_mm.copy()
     x_mm[:20] = np.nan
-    observer = of(VBD, VBD.mapping)
+    observer = of(VBD, VBD.style.mapping)
     assert observer.read(replace(given, x_mm=x_mm), 2, rng) == [9, 1]
 
 
@@ -264,17 +266,20 @@ def stimuli(parameter, hand):
     """Explorations of every value of a parameter."""
     for value_mm in WIDTHS_MM if parameter == "dot width" else GAPS_MM:
         if parameter == "dot width":
-            masks, geometry = [1], replace(VBD.geometry, dot_width_mm=value_mm)
+            masks, geometry = [1], replace(VBD.style.geometry, dot_width_mm=value_mm)
         else:
-            masks, geometry = [9], replace(VBD.geometry, dot_spacing_mm=2.0 + value_mm)
+            masks, geometry = [9], replace(VBD.style.geometry, dot_spacing_mm=2.0 + value_mm)
         path = moved(VBD, hand, 1, geometry=geometry)
-        yield value_mm, explored(VBD, VBD.mapping, masks, *path, geometry=geometry, texture=1.0)
+        yield (
+            value_mm,
+            explored(VBD, VBD.style.mapping, masks, *path, geometry=geometry, texture=1.0),
+        )
 
 
 @pytest.mark.parametrize("hand", ["sweep:20", "device", "fluent"] if JIT else ["sweep:40"])
 @pytest.mark.parametrize("parameter", ["dot width", "gap"])
 def test_the_nearer_to_nominal_is_chosen_the_first_of_ties(parameter, hand, rng):
-    observer = of(VBD, VBD.mapping)
+    observer = of(VBD, VBD.style.mapping)
     for (first_mm, first), (second_mm, second) in permutations(stimuli(parameter, hand), 2):
         off_mm = round(abs(first_mm - 2), 3), round(abs(second_mm - 2), 3)
         nearer = 1 if off_mm[0] <= off_mm[1] else 2
@@ -283,13 +288,13 @@ def test_the_nearer_to_nominal_is_chosen_the_first_of_ties(parameter, hand, rng)
 
 def test_comparing_errs_with_noise_and_knows_what_was_not_felt(rng):
     widths = dict(stimuli("dot width", "sweep:100"))
-    unsure = of(VBD, VBD.mapping, noise=0.2)
+    unsure = of(VBD, VBD.style.mapping, noise=0.2)
     near = [unsure.compare(widths[2.0], widths[2.5], "dot width", rng) for _ in range(40)]
     far = [unsure.compare(widths[2.0], widths[0.5], "dot width", rng) for _ in range(40)]
     assert 40 > near.count(1) > 20
     assert far.count(1) > near.count(1)
     rest = replace(widths[2.0], frames=np.zeros_like(widths[2.0].frames))
-    sure = of(VBD, VBD.mapping)
+    sure = of(VBD, VBD.style.mapping)
     assert sure.compare(rest, widths[0.5], "dot width", rng) == 2
     assert sure.compare(widths[0.5], rest, "dot width", rng) == 1
     assert sure.compare(rest, rest, "dot width", rng) == 1
@@ -312,20 +317,20 @@ def test_constants_of_the_skin():
 
 def test_what_makes_no_observer_or_exploration():
     with pytest.raises(ValueError, match="1 column"):
-        Observer(ActuatorArray(1, 1, 0.7, 0.7), single_row(1), VBD.geometry)
+        Observer(array(1, 1, 0.7, 0.7), single_row(1), VBD.style.geometry)
     with pytest.raises(ValueError, match="needs 6 actuator rows"):
-        Observer(VBD.array, STRESS2.mapping, VBD.geometry)
+        Observer(VBD.display, STRESS2.style.mapping, VBD.style.geometry)
     with pytest.raises(ValueError, match="shows no dot"):
-        Observer(VBD.array, Mapping("none", (-1,), (-1,), (False,)), VBD.geometry)
+        Observer(VBD.display, Mapping("none", (-1,), (-1,), (False,)), VBD.style.geometry)
     with pytest.raises(ValueError, match="noise is -1"):
-        of(VBD, VBD.mapping, noise=-1.0)
+        of(VBD, VBD.style.mapping, noise=-1.0)
     frames, ramp = np.zeros((3, 1, 12), np.float32), np.arange(3.0)
     with pytest.raises(ValueError, match="must be \\[n, rows, columns\\]"):
         Exploration(frames, ramp[:2], ramp)
     with pytest.raises(ValueError, match="time goes back"):
         Exploration(frames, ramp, ramp[::-1])
     with pytest.raises(ValueError, match="must be \\(6, 10\\)"):
-        of(STRESS2, STRESS2.mapping).felt(Exploration(frames, ramp, ramp), 1)
+        of(STRESS2, STRESS2.style.mapping).felt(Exploration(frames, ramp, ramp), 1)
     with pytest.raises(ValueError, match="must be \\[places, 8\\]"):
         Touch(np.zeros((2, 6)))
     with pytest.raises(ValueError, match="must be 0 or more"):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.errors import InputError, VbrailleError
 from vbraille.geometry import BOUNDS_MM
 from vbraille.sessions.planning.design import StringList

@@ -7,12 +7,14 @@ how far a change had faded in; so each frame follows from the one before.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.ring import Flag
-from vbraille.render.kernels import blend
+from vbraille.engine.kernels import replay
+from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
+from vbraille.render.program import nothing, scratch_for
 from vbraille.sessions.planning.pictures import render
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import read_trace
@@ -22,12 +24,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
     from vbraille.render.program import Program
     from vbraille.sessions.record.folder import Record
 
-_RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
-_HELD = int(Flag.HELD)
-_FIELDS = ("tick", "line", "flags", "x_mm", "share")
+_RESTING = int(Flag.RESTING)
 
 
 class Replay:
@@ -37,16 +38,18 @@ class Replay:
     ----------
     picture_of
         The picture of a line number.
-    shape
-        Rows and columns of the array, which is at rest before the first tick.
+    display
+        The hardware, which is at rest before the first tick.
     """
 
-    def __init__(self, picture_of: Callable[[int], Program], shape: tuple[int, int]) -> None:
+    def __init__(self, picture_of: Callable[[int], Program], display: Display) -> None:
         self._picture_of = picture_of
-        self._shape = shape
-        self._before = np.zeros(shape)
-        self._held = self._before
-        self._tick = -1
+        self._nothing = nothing(display)
+        self._shape = display.shape
+        self._output, self._held, self._target = np.zeros((3, *display.shape))
+        self._scratch = scratch_for(display.columns)
+        self._at = np.zeros(6)
+        self._next = 0
 
     def frames(self, ticks: NDArray[np.void]) -> NDArray[np.float64]:
         """Frames of the next ticks.
@@ -63,31 +66,34 @@ class Replay:
             is not known, and its frames are NaN.
         """
         frames = np.zeros((ticks.size, *self._shape))
-        target = np.zeros(self._shape)
-        shown, picture = 0, None
-        columns = (ticks[name].tolist() for name in _FIELDS)
-        for frame, tick, line, flags, x_mm, share in zip(frames, *columns, strict=True):
-            if tick != self._tick + 1:
-                self._before = self._held = np.full(self._shape, np.nan)
-            self._tick = tick
-            if flags & _RESTED:
-                self._before = np.zeros(self._shape)
-            if flags & _CHANGED:
-                self._held = self._before
-            if flags & _RESTING:
-                target.fill(0.0)
-            else:
-                if picture is None or line != shown:
-                    shown, picture = line, self._picture_of(line)
-                picture.frame(x_mm, target)
-            if share < 1:
-                blend(self._held, target, share, frame)
-            else:
-                np.copyto(frame, target)
-            self._before = frame
-            if flags & _HELD:  # the loop goes on from what it wrote, and nothing of it was done
-                self._before = frame.copy()
-                frame.fill(0.0)
+        ints = np.zeros((ticks.size, len(INTS)), np.int64)
+        floats = np.zeros((ticks.size, len(FLOATS)))
+        for table, names in ((ints, INTS), (floats, FLOATS)):
+            for column, name in enumerate(names):
+                if name in (ticks.dtype.names or ()):
+                    table[:, column] = ticks[name]
+        missing = np.diff(ticks["tick"], prepend=self._next - 1) != 1
+        bounds = np.flatnonzero(missing | (np.diff(ticks["line"], prepend=-1) != 0)).tolist()
+        for first, end in pairwise((*bounds, ticks.size)):
+            if missing[first]:
+                self._output.fill(np.nan)
+                self._held.fill(np.nan)
+            resting = (ints[first:end, FLAGS] & _RESTING).all()
+            program = self._nothing if resting else self._picture_of(int(ints[first, LINE]))
+            replay(
+                program.numbers,
+                program.table,
+                self._scratch,
+                ints[first:end],
+                floats[first:end],
+                self._at,
+                self._output,
+                self._held,
+                self._target,
+                frames[first:end],
+            )
+        if ticks.size:
+            self._next = int(ticks["tick"][-1]) + 1
         return frames
 
 
@@ -114,7 +120,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
         if "trace" not in run:
             continue
         ticks = read_trace(record.folder / run["trace"]).ticks
-        replay = Replay(pictures.of, record.protocol.model.display.shape)
+        replay = Replay(pictures.of, record.protocol.model.display)
         ends = np.flatnonzero(np.diff(ticks["line"])) + 1
         for part in np.split(ticks, ends):
             if part.size:

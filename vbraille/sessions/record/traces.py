@@ -38,7 +38,7 @@ TRACE = np.dtype(
         ("device_ns", "<i8"),  # of the sample, by the device's clock
         ("late", "<i8"),  # deadlines missed so far
         ("line", "<i8"),  # number of what is under the hand; 0 before the first
-        ("flags", "<i8"),  # of `vbraille.engine.ring.Flag`
+        ("flags", "<i8"),  # of `vbraille.engine.record.Flag`
         ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
         ("speed_mm_s", "<f8"),
         ("share", "<f8"),  # how much of a change has faded in: 1 is all

@@ -9,11 +9,12 @@ import numpy as np
 from vbraille.devices.base import Placing
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.sessions.planning.pictures import render
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import Exploration
+from vbraille.simulation.steering import ReadLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.record.journal import Tie
+    from vbraille.simulation.steering import Steering
 
 _PLACES = {
     Placing.DONE: "place: known",
@@ -96,6 +98,8 @@ class OnDevice:
     tie
         Tells which line of the journal is on the disk, for the traces to be tied to; None in a
         session of format 1.
+    steering
+        Of the simulated hand that reads; None if a person's hand does.
 
     Attributes
     ----------
@@ -115,6 +119,7 @@ class OnDevice:
         *,
         keeps: bool,
         tie: Callable[[], Tie] | None = None,
+        steering: Steering | None = None,
     ) -> None:
         self.engine = engine
         self.line = 0
@@ -123,6 +128,7 @@ class OnDevice:
         self._folder = folder
         self._keeps = keeps
         self._tie = tie
+        self._steering = steering
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
@@ -214,7 +220,9 @@ class OnDevice:
         assert stimulus is not None, "nothing is shown"
         self.line += 1
         picture = render(self._protocol, stimulus, tuning)
-        self.engine.show(picture, self.line, self._end_mm(stimulus))
+        self.engine.show(picture, self.line)
+        if self._steering is not None:
+            self._steering.give(ReadLine(self._end_mm(stimulus)))
 
     def _end_mm(self, stimulus: Stimulus) -> float:
         return stimulus.geometry.extent_mm(len(self._protocol.line(stimulus.masks)))
@@ -346,8 +354,8 @@ class OnDevice:
             if on.size:
                 self._touched = True
                 happened.append(Happened("contact", _when(ticks[int(on[0])])))
-        followed = ticks["flags"][-1] & Flag.FOLLOWED
-        if not self._read and (self._end.find(ticks["x_mm"]) is not None or followed):
+        steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
+        if not self._read and (self._end.find(ticks["x_mm"]) is not None or steered):
             self._read = True
             happened.append(Happened("read", _when(ticks[-1])))
         return happened

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from vbraille.devices.carriage import APPROACH_MM_S, Carriage
-from vbraille.devices.hand import Sweep
-from vbraille.devices.recorded import Recorded
+from vbraille.simulation.carriage import APPROACH_MM_S, Carriage
+from vbraille.simulation.hand import Sweep
+from vbraille.simulation.recorded import Recorded
 
 SPAN_MM = 10.8
 TRAVEL_MM = 300.0

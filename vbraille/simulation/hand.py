@@ -13,9 +13,9 @@ from typing import Protocol
 
 import numpy as np
 
-from vbraille.devices.motion import Motion, Way
-from vbraille.devices.recorded import MOST_MM, Recorded, load_recorded
 from vbraille.errors import InputError
+from vbraille.simulation.motion import Motion, Way
+from vbraille.simulation.recorded import MOST_MM, Recorded, load_recorded
 
 SPEED_BOUNDS_MM_S = (0.1, 1000.0)
 # Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.devices.hand import (
+from vbraille.errors import InputError
+from vbraille.simulation.hand import (
     CLEAR_MM,
     DEVICE,
     FLUENT,
@@ -17,8 +18,7 @@ from vbraille.devices.hand import (
     Sweep,
     parse_hand,
 )
-from vbraille.devices.recorded import Recorded
-from vbraille.errors import InputError
+from vbraille.simulation.recorded import Recorded
 
 START_MM, END_MM = -10.8, 270.0  # a line of 24 cells of 11.1 mm
 LENGTH_MM = END_MM - START_MM

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.motion import SLACK, Motion
 from vbraille.errors import InputError
+from vbraille.simulation.motion import SLACK, Motion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tests.controllers import ControllerOf20261121
-from vbraille.devices.firmware import MARK_MM, Controller, describe
 from vbraille.devices.messages import (
     FAULTY,
     PLACED,
@@ -26,6 +25,7 @@ from vbraille.devices.messages import (
 )
 from vbraille.devices.wire import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
 from vbraille.display import Display
+from vbraille.simulation.firmware import MARK_MM, Controller, describe
 
 TOP = 1000  # 10 bits could say more
 INFO = Info(

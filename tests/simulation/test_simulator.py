@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.devices.test_firmware import INFO, REST, SWING, packed
-from vbraille.devices.hand import Sweep
+from tests.simulation.test_firmware import INFO, REST, SWING, packed
 from vbraille.devices.messages import Encoder, Frame, Hello, Info, State, Watchdog
-from vbraille.devices.pty import Link, Port
-from vbraille.devices.simulator import Defect, Faults, Simulator, Spoiler
 from vbraille.devices.wire import DELIMITER, Decoder, encode
 from vbraille.errors import InputError
+from vbraille.simulation.hand import Sweep
+from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.simulator import Defect, Faults, Simulator, Spoiler
 
 PATIENCE_S = 30.0
 SLOW = replace(INFO, rate_hz=500, travel_um=40_000)  # leaves the test's machine some time

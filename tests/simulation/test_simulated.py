@@ -2,9 +2,11 @@ import numpy as np
 import pytest
 
 from tests.engine.test_loop import info, straight
-from vbraille.devices.hand import Sweep
-from vbraille.devices.simulated import APPROACH_MM_S, SimulatedDevice
 from vbraille.engine.clock import ManualClock
+from vbraille.simulation.hand import Sweep
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.simulated import APPROACH_MM_S, SimulatedDevice
+from vbraille.simulation.steering import ReadLine, Steering
 
 SPAN_MM = 10.8
 
@@ -61,23 +63,52 @@ def test_the_carriage_stops_at_its_ends(clock, device):
 )
 def test_many_places_at_once_are_those_read_one_by_one(clock, columns, counts_per_mm):
     simulated = info(columns=columns, counts_per_mm=counts_per_mm)
-    device = SimulatedDevice(simulated, clock.now_ns, Sweep(32.0))
+    device = SimulatedDevice(simulated, clock.now_ns, Sweep(32.0), Steering())
     clock.advance_ns(123_456)
-    device.follow(320.0)
+    device.steering.give(ReadLine(320.0))
+    device.read()
     # By halves of a coarse count, and beyond both ends of the travel.
     home = -simulated.span_mm
     device.move(straight((0, home), (10, home + 320), (12, -30), (13, 20)))
     times_ns = clock.now_ns() + np.arange(1000) * 15_625_000
-    places, followed = device.places_mm(times_ns), device.followed_at(times_ns)
-    assert 0 < followed.sum() < 1000
+    places, count = device.places_mm(times_ns), device.until_done(times_ns)
+    assert 0 < count < 1000
     for n in range(1000):
         assert device.read().x_mm == places[n]
-        assert device.followed == followed[n]
+        assert device.steering.done_at(clock.now_ns()) == (n >= count - 1)
         clock.advance_ns(15_625_000)
+    assert device.until_done(times_ns) == 1000  # done already
 
 
-def test_a_hand_that_follows_nothing_has_not_come_to_its_end(device):
-    assert not device.followed_at(np.arange(3)).any()
+def test_nothing_ends_before_anything_was_ordered(device):
+    assert device.until_done(np.arange(3)) == 3
+
+
+def test_a_hand_that_nothing_steers_reads_as_far_as_the_carriage_goes(clock):
+    device = SimulatedDevice(info(), clock.now_ns, Sweep(1000.0))
+    clock.advance_ns(1_000_000_000)
+    assert device.read().x_mm == pytest.approx(-SPAN_MM)  # till it is sent the first frame
+    device.write(np.zeros((6, 10)))
+    places = []
+    for _ in range(4000):
+        places.append(device.read().x_mm)
+        clock.advance_ns(1_000_000)
+    places = np.array(places)
+    assert places.max() == pytest.approx(300 - SPAN_MM, abs=1)
+    home = np.flatnonzero(np.diff((places < -SPAN_MM + 1).astype(int)) == -1)
+    np.testing.assert_allclose(np.diff(home), 1500, atol=2)  # 300 mm and back at 250 mm/s
+
+
+def test_a_recorded_hand_sets_out_with_the_first_order_and_goes_on(clock):
+    hand = Recorded(np.arange(0, 2.1, 0.1), np.arange(0, 21.0))
+    device = SimulatedDevice(info(), clock.now_ns, hand, Steering())
+    for seconds, done in ((1.0, False), (0.9, False), (0.2, True)):
+        device.steering.give(ReadLine(100.0))
+        device.read()
+        clock.advance_ns(round(seconds * 1e9))
+        device.read()
+        assert device.steering.done_at(clock.now_ns()) == done
+    assert device.read().x_mm == pytest.approx(20)
 
 
 def test_a_motion_goes_on_by_another_clock(clock, device):

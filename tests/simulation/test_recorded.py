@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.devices.motion import Motion, Way
-from vbraille.devices.recorded import MAX_GAP_S, Recorded, load_recorded
 from vbraille.errors import InputError
+from vbraille.simulation.motion import Motion, Way
+from vbraille.simulation.recorded import MAX_GAP_S, Recorded, load_recorded
 
 HEADER = "t_s,x_mm\n"
 

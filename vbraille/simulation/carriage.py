@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.devices.motion import Motion, Way
-from vbraille.devices.recorded import Recorded
+from vbraille.simulation.motion import Motion, Way
+from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
-    from vbraille.devices.hand import Hand
+    from vbraille.simulation.hand import Hand
 
 # How a hand goes where it does not read.
 APPROACH_MM_S: Final = 250.0

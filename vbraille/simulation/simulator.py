@@ -14,18 +14,18 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.carriage import Carriage
-from vbraille.devices.firmware import WATCHDOG_US, Controller
 from vbraille.devices.messages import Encoder
 from vbraille.devices.wire import DELIMITER, MOST_FRAME_BYTES
+from vbraille.simulation.carriage import Carriage
+from vbraille.simulation.firmware import WATCHDOG_US, Controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.hand import Hand
     from vbraille.devices.messages import Info
-    from vbraille.devices.pty import Port
-    from vbraille.devices.recorded import Recorded
+    from vbraille.simulation.hand import Hand
+    from vbraille.simulation.pty import Port
+    from vbraille.simulation.recorded import Recorded
 
 NS_PER_S: Final = 1_000_000_000
 # Between stalls, and how long it is unplugged.

@@ -9,19 +9,20 @@ from urllib.parse import parse_qsl
 import numpy as np
 
 from vbraille.devices.base import Device
-from vbraille.devices.hand import parse_hand
-from vbraille.devices.recorded import Recorded
 from vbraille.errors import InputError
 from vbraille.pose import Pose
+from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.steering import Steering
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from vbraille.devices.hand import Hand
-    from vbraille.devices.motion import Motion
     from vbraille.display import Display
+    from vbraille.simulation.hand import Hand
+    from vbraille.simulation.motion import Motion
 
 NS_PER_S = 1_000_000_000
 # How a hand goes to where its next motion begins.
@@ -42,6 +43,9 @@ class SimulatedDevice(Device):
         Its clock.
     hand
         What moves its carriage; `move` does, too.
+    steering
+        Tells the hand what to do, one thing after the other. Without it the hand sets out with
+        the first frame, and reads lines as wide as the travel, one after the other.
 
     Attributes
     ----------
@@ -56,10 +60,13 @@ class SimulatedDevice(Device):
         info: Display,
         now_ns: Callable[[], int] = time.monotonic_ns,
         hand: Hand | Recorded | None = None,
+        steering: Steering | None = None,
     ) -> None:
         self._info = info
         self._hand = hand
-        self._following = False
+        self._steering = steering
+        self._has_set_out = False
+        self._ordered = False  # whether something is to be done that is not known to be done yet
         self._now_ns = now_ns
         self.levels = np.zeros((info.rows, info.columns), np.int64)
         self.frames = 0
@@ -88,24 +95,44 @@ class SimulatedDevice(Device):
         """Whether the hand is still on its way."""
         return (self._now_ns() - self._begun_ns) / NS_PER_S < self._t_s[-1]
 
-    def follow(self, end_mm: float) -> None:
-        """Have the hand read a new line; a recorded one sets out with the first, and goes on."""
+    @property
+    def steering(self) -> Steering | None:
+        """What tells the hand what to do."""
+        return self._steering
+
+    def obey(self) -> None:
+        """Have the hand do what it is told to, from now on; `read` does this."""
+        steering = self._steering
+        if steering is None:
+            if self.frames and not self.moving:
+                self._read_line(self._info.travel_mm - self._info.span_mm)
+            return
+        order = steering.take()
+        if order is not None:
+            self._ordered = True
+            self._read_line(order.end_mm)
+        if self._ordered and not self.moving:
+            self._ordered = False
+            steering.answer(self._now_ns())
+
+    def until_done(self, times_ns: NDArray[np.int64]) -> int:
+        """How many of these times of its clock come until the hand has done what it was told to.
+
+        The one at which it has is counted. All do if nothing is under way, or it takes longer.
+        """
+        done = (times_ns - self._begun_ns) / NS_PER_S >= self._t_s[-1]
+        if not self._ordered or not done.any():
+            return times_ns.size
+        return int(done.argmax()) + 1
+
+    def _read_line(self, end_mm: float) -> None:
+        """Have the hand read a line; a recorded one sets out with the first, and goes on."""
         if isinstance(self._hand, Recorded):
-            if not self._following:
+            if not self._has_set_out:
                 self.move(self._hand.motion())
         elif self._hand is not None:
             self.move(self._hand.read_line(-self._info.span_mm, end_mm))
-        self._following = self._hand is not None
-
-    @property
-    def followed(self) -> bool:
-        """Whether the hand has come to its end."""
-        return self._following and not self.moving
-
-    def followed_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """What `followed` is at times of its clock, if nothing else comes between; bool[n]."""
-        moving = (times_ns - self._begun_ns) / NS_PER_S < self._t_s[-1]
-        return ~moving & self._following
+        self._has_set_out = True
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion, from now on; first to where that begins."""
@@ -120,6 +147,7 @@ class SimulatedDevice(Device):
 
     def read(self) -> Pose | None:
         """Pose of the carriage now, to the nearest count of the encoder."""
+        self.obey()
         now_ns = self._now_ns()
         info = self._info
         way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
@@ -146,7 +174,7 @@ class SimulatedDevice(Device):
 
 
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
-    """Open ``sim:?hand=HAND&seed=N``: a device as the page wants it.
+    """Open ``sim:?hand=HAND&seed=N&steering=DESCRIPTOR``: a device as the page wants it.
 
     Raises
     ------
@@ -160,6 +188,19 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))
     seed = given.pop("seed", "1")
     hand = given.pop("hand", None)
+    descriptor = given.pop("steering", None)
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
         raise InputError(f"there is no device sim:{address}; give sim:?hand=HAND&seed=N, or sim")
-    return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)))
+    steering = None if descriptor is None else _steering(descriptor)
+    return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)), steering=steering)
+
+
+def _steering(descriptor: str) -> Steering:
+    """What steers the hand, in memory that this process has made or inherited."""
+    try:
+        return Steering(int(descriptor))
+    except (ValueError, OverflowError):
+        raise InputError(
+            f"nothing can steer a hand by steering={descriptor}; leave it out, for it is what a "
+            f"program tells the process that it starts"
+        ) from None

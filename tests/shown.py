@@ -1,0 +1,27 @@
+"""Lines compiled in one call, and the arrays that tests show them on."""
+
+from vbraille.display import Display
+from vbraille.render import STRESS2, VBD, BrailleStyle
+from vbraille.render.reference import deflections
+
+STRESS2_ARRAY = STRESS2.display
+VBD_ARRAY = VBD.display
+# A device of the author's later code (Lévesque 2009, ch. 8, and its successor).
+LATERO = Display("Latero", rows=8, columns=8, column_pitch_mm=1.2, row_pitch_mm=1.6125)
+
+
+def array(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
+    """Actuators, on a carriage of no consequence."""
+    return Display("array", rows, columns, column_pitch_mm, row_pitch_mm)
+
+
+def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None):
+    """A line on a display."""
+    style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
+    return style.render(masks, array)
+
+
+def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None):
+    """The frames of a line in plain numpy, for places of the left column."""
+    style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
+    return deflections(x_mm, masks, style, array)

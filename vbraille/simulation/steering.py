@@ -1,0 +1,122 @@
+"""Orders to a simulated hand, in memory that the process of its device shares.
+
+Whoever runs a simulated device tells its hand from outside what to do next, and sees when that is
+done; the engine between the two knows nothing of it. One side gives orders and the other takes
+them; neither waits for the other. Orders go into two slots in turn, each with a checksum: one that
+is in the writing, or seen in the wrong order, is taken later. The memory has no name: a descriptor
+of it goes into the spec of the device (``sim:?hand=HAND&steering=DESCRIPTOR``), and is inherited
+where the device is in another process.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import struct
+import weakref
+from dataclasses import astuple, dataclass
+from typing import Final
+from zlib import crc32
+
+# Words of 8 bytes: the number of the last order given, of the last one that is done, and when.
+_GIVEN, _DONE, _DONE_NS = range(3)
+_HEADER_BYTES: Final = 64
+_MOST_NUMBERS: Final = 4
+_SLOT: Final = struct.Struct(f"<3q{_MOST_NUMBERS}d")  # checksum, number of the order, its kind
+_MEMORY_BYTES: Final = _HEADER_BYTES + 2 * _SLOT.size
+
+
+@dataclass(frozen=True, slots=True)
+class ReadLine:
+    """Read a line from the left stop to its end and come back; one that was recorded goes on.
+
+    Parameters
+    ----------
+    end_mm
+        Where the last dot of the line ends.
+    """
+
+    end_mm: float
+
+
+Order = ReadLine
+_KINDS: Final = (ReadLine,)
+
+
+class Steering:
+    """Both ends of what steers a simulated hand.
+
+    Parameters
+    ----------
+    descriptor
+        Of memory that another `Steering` has made; None makes some.
+
+    Attributes
+    ----------
+    descriptor : int
+        Of the memory; it is closed with the `Steering` that has made it.
+
+    Raises
+    ------
+    ValueError
+        If a descriptor is of something else.
+    """
+
+    def __init__(self, descriptor: int | None = None) -> None:
+        if descriptor is None:
+            descriptor = os.memfd_create("vbraille steering")
+            weakref.finalize(self, os.close, descriptor)
+            os.ftruncate(descriptor, _MEMORY_BYTES)
+        self.descriptor = descriptor
+        try:
+            if os.fstat(descriptor).st_size != _MEMORY_BYTES:
+                raise ValueError(f"descriptor {descriptor} is not of memory that steers a hand")
+            self._memory = memoryview(mmap.mmap(descriptor, _MEMORY_BYTES))
+        except OSError as error:
+            raise ValueError(
+                f"descriptor {descriptor} is not of memory that steers a hand: {error.strerror}"
+            ) from None
+        self._words = self._memory[:_HEADER_BYTES].cast("q")
+        # Orders that were given before are not for whoever takes them from now on.
+        self._taken = self._words[_GIVEN]
+
+    def give(self, order: Order) -> None:
+        """Have the hand do something else from now on.
+
+        To read a line it sets out at once: show the line first.
+        """
+        number = self._words[_GIVEN] + 1
+        numbers = (*astuple(order), *[0.0] * _MOST_NUMBERS)[:_MOST_NUMBERS]
+        slot = _SLOT.pack(0, number, _KINDS.index(type(order)), *numbers)
+        at = _place(number)
+        self._memory[at : at + _SLOT.size] = crc32(slot).to_bytes(8, "little") + slot[8:]
+        self._words[_GIVEN] = number
+
+    def done_at(self, time_ns: int) -> bool:
+        """Whether the hand had done by a time of the device's clock all that it was told to."""
+        given = self._words[_GIVEN]
+        return given > 0 and self._words[_DONE] == given and self._words[_DONE_NS] <= time_ns
+
+    def take(self) -> Order | None:
+        """The last order given, for the device; None if it was taken before, or is not whole."""
+        number = self._words[_GIVEN]
+        if number == self._taken:
+            return None
+        at = _place(number)
+        slot = bytes(self._memory[at : at + _SLOT.size])
+        checksum, there, kind, *numbers = _SLOT.unpack(slot)
+        if there != number or checksum != crc32(bytes(8) + slot[8:]):
+            return None
+        self._taken = number
+        order = _KINDS[kind]
+        return order(*numbers[: len(order.__slots__)])
+
+    def answer(self, time_ns: int) -> None:
+        """Tell, for the device, that the order taken last is done at a time of its clock."""
+        self._words[_DONE_NS] = time_ns
+        self._words[_DONE] = self._taken
+
+
+def _place(number: int) -> int:
+    """Where in the memory the slot of an order is."""
+    return _HEADER_BYTES + number % 2 * _SLOT.size
