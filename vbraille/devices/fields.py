@@ -240,6 +240,25 @@ def fields_of(message: type[Message]) -> tuple[tuple[str, Field], ...]:
     return tuple((name, get_args(hint)[1]) for name, hint in hints.items())
 
 
+def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
+    """Where each number of a message is in its body: first byte, bytes, whether it is signed.
+
+    Raises
+    ------
+    ValueError
+        If the message has a field of no fixed width.
+    """
+    places = []
+    at = 1  # after the type
+    for name, field in fields_of(message):
+        if not isinstance(field, Fixed):
+            raise ValueError(f"{name} of {message.__name__} has no fixed width")
+        width = Struct("<" + field.code).size
+        places.append((at, width, field.code.islower()))
+        at += width
+    return tuple(places)
+
+
 @cache
 def _checks(
     message: type[Message],
