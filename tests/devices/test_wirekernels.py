@@ -17,7 +17,6 @@ from vbraille.devices.wire import enframe as enframe_in_python
 
 GUARD = 16
 LENGTHS = range(601)
-PLACES = np.array(places_of(State), np.int64)
 # Long runs without a zero are where encoders go wrong, and zeros in a row.
 pieces = st.one_of(
     st.binary(max_size=300),
@@ -186,28 +185,21 @@ states = st.builds(
 )
 
 
-@given(states, st.binary(max_size=5))
-def test_the_numbers_of_a_state_are_read_where_the_table_says(state, appended):
+@given(states)
+def test_the_numbers_of_a_message_are_read_and_written_where_the_table_says(state):
     body = cobs.decode(encode(state)[:-1])[:-CRC_BYTES]
-    values = Guarded(8 * len(PLACES))
-    numbers = values.array.view(np.int64)
-    given = between(body + appended, 0xFF)
-    assert kernels.parse(given, len(body) + len(appended), PLACES, numbers)
-    values.check()
+    source = np.frombuffer(body, np.uint8)
+    numbers = [kernels.number(source, *place) for place in places_of(State)]
     want = [getattr(state, name) for name in State.__slots__]
     want[-1] = -0x8000 if want[-1] is None else want[-1]
-    assert numbers.tolist() == want
+    assert numbers == want
+    written = source.copy()
+    written[1:] = 0xA5
+    for (at, width, _), value in zip(places_of(State), numbers, strict=True):
+        kernels.put_number(written, at, width, value)
+    assert written.tobytes() == body
 
 
-@given(st.integers(0, int(PLACES[-1, 0])))
-def test_a_state_that_ends_too_soon_gives_no_number(size):
-    body = np.full(size, 0x82, np.uint8)
-    numbers = np.full(len(PLACES), 5, np.int64)
-    assert not kernels.parse(body, size, PLACES, numbers)
-    assert not kernels.parse(body, 1 << 20, PLACES, numbers)
-    assert (numbers == 5).all()
-
-
-def test_a_message_of_another_form_has_no_places():
-    with pytest.raises(ValueError, match="text of Error has no fixed width"):
-        places_of(Error)
+def test_places_end_where_the_width_is_not_fixed():
+    assert places_of(Frame) == ((1, 2, False),)
+    assert places_of(Error) == ((1, 1, False),)

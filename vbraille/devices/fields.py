@@ -241,18 +241,15 @@ def fields_of(message: type[Message]) -> tuple[tuple[str, Field], ...]:
 
 
 def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
-    """Where each number of a message is in its body: first byte, bytes, whether it is signed.
+    """Where the numbers are that a message begins with: first byte, bytes, whether it is signed.
 
-    Raises
-    ------
-    ValueError
-        If the message has a field of no fixed width.
+    From the first field on whose width is not fixed, nobody can say.
     """
     places = []
     at = 1  # after the type
-    for name, field in fields_of(message):
+    for _, field in fields_of(message):
         if not isinstance(field, Fixed):
-            raise ValueError(f"{name} of {message.__name__} has no fixed width")
+            break
         width = Struct("<" + field.code).size
         places.append((at, width, field.code.islower()))
         at += width

@@ -208,11 +208,14 @@ def enframe(body, size, out, at):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def number(source, at, width, signed):
-    """Integer of ``width`` bytes from ``source[at]`` on, least significant first, as int64."""
+    """Integer of ``width`` bytes from ``source[at]`` on, least significant first, as int64.
+
+    A message's numbers are where `vbraille.devices.fields.places_of` says, in this order.
+    """
     value = 0
     for place in range(width):
         value |= np.int64(source[at + place]) << (8 * place)
-    if signed != 0 and value >= 1 << (8 * width - 1):
+    if signed and value >= 1 << (8 * width - 1):
         value -= 1 << (8 * width)
     return value
 
@@ -222,35 +225,3 @@ def put_number(out, at, width, value):
     """Write an integer's ``width`` bytes from ``out[at]`` on, least significant first."""
     for place in range(width):
         out[at + place] = (value >> (8 * place)) & 0xFF
-
-
-@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
-def parse(body, size, places, values):
-    """Read the numbers of a message whose fields are all of a fixed width.
-
-    Parameters
-    ----------
-    body : uint8[bytes]
-        The body of the message, beginning with its type.
-    size : int64
-        Bytes of it; those after the last field, of a later version, are left alone.
-    places : int64[fields, 3]
-        First byte, width in bytes and whether it is signed, of each field: the array of
-        `vbraille.devices.fields.places_of`.
-    values : int64[fields]
-        The numbers as they are on the wire, to fill.
-
-    Returns
-    -------
-    bool
-        Whether the body goes as far as its last field; else nothing is written.
-    """
-    fields = places.shape[0]
-    if size > body.size or values.size < fields:
-        return False
-    for field in range(fields):
-        if places[field, 0] + places[field, 1] > size:
-            return False
-    for field in range(fields):
-        values[field] = number(body, places[field, 0], places[field, 1], places[field, 2])
-    return True
