@@ -31,7 +31,7 @@ lint: .venv/tests
 tests: .venv/tests
 	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
 	@# The kernels once more, as plain Python.
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py tests/devices/test_wirekernels.py tests/devices/test_steady.py
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import logging
 import os
+import shutil
 import stat
 import tempfile
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 _log = logging.getLogger(__name__)
@@ -21,25 +23,35 @@ _log = logging.getLogger(__name__)
 def keep_compiled() -> bool:
     """Whether numba can keep what it compiles; to be called before anything is compiled.
 
-    numba's own places are the packages' ``__pycache__`` and the user's cache. Where it can
-    write neither, it is told of the private folder.
+    It is kept in the package's own ``__pycache__``, else among the user's caches, else in the
+    private folder: there in a folder of this very source. numba looks only at the file of a
+    function, and would keep what has one of another file compiled into it that has changed.
     """
     if given := os.environ.get("NUMBA_CACHE_DIR"):
-        usual = [Path(given)]
+        places = [Path(given)]
     else:
-        usual = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache") / "numba"]
-    if any(map(_is_writable, usual)):
-        return True
-    folder = _private_folder()
-    if folder is None:
+        places = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache")]
+    place = next(filter(_is_writable, places), None) or _private_folder()
+    if place is None:
         _log.info("nothing compiled can be kept, so that every process compiles again")
         return False
-    _log.info("what is compiled is kept in %s, for %s cannot be written", folder, usual[-1])
+    folder = place / f"vbraille-compiled-{_source()}"
+    _log.info("what is compiled is kept in %s", folder)
     from numba import config
 
-    os.environ["NUMBA_CACHE_DIR"] = str(folder)
-    config.reload_config()
+    config.CACHE_DIR = str(folder)
+    for other in place.glob("vbraille-compiled-*"):
+        if other != folder:
+            shutil.rmtree(other, ignore_errors=True)
     return True
+
+
+def _source() -> str:
+    """What the package's source is known by: the names, sizes and times of its files."""
+    root = Path(__file__).parent
+    files = sorted(root.glob("*.py")) + sorted(root.glob("*/*.py"))
+    told = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
+    return sha256(repr(told).encode()).hexdigest()[:16]
 
 
 @cache

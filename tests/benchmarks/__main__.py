@@ -9,6 +9,7 @@ PARTS = (
     "lines",
     "wire",
     "engine",
+    "tick",
     "faults",
     "jumps",
     "sessions",

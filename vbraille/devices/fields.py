@@ -240,6 +240,22 @@ def fields_of(message: type[Message]) -> tuple[tuple[str, Field], ...]:
     return tuple((name, get_args(hint)[1]) for name, hint in hints.items())
 
 
+def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
+    """Where the numbers are that a message begins with: first byte, bytes, whether it is signed.
+
+    From the first field on whose width is not fixed, nobody can say.
+    """
+    places = []
+    at = 1  # after the type
+    for _, field in fields_of(message):
+        if not isinstance(field, Fixed):
+            break
+        width = Struct("<" + field.code).size
+        places.append((at, width, field.code.islower()))
+        at += width
+    return tuple(places)
+
+
 @cache
 def _checks(
     message: type[Message],
