@@ -1,0 +1,222 @@
+"""The steady tick of a serial device as one compiled function, some ticks at a time.
+
+It waits for a STATE, with the deadline as the fallback; takes it, advances, makes the FRAME, writes
+it and fills the record, with the same functions that `Loop.tick` and `SerialDevice` come to:
+`vbraille.devices.steady` and `vbraille.engine.kernels`. Whatever is anything else ends it: an
+order in the mailbox, a signal, bytes that are no STATE, a rest, a fault. What it had received is
+then given to Python, which does that tick.
+"""
+
+from __future__ import annotations
+
+import errno
+
+import numpy as np
+from numba import njit
+
+from vbraille import libc
+from vbraille.caching import keep_compiled
+from vbraille.devices import steady
+from vbraille.engine.kernels import POSE_X, POSED, advance
+from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK
+
+# Why it ended, beside that the ticks asked for are done.
+DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
+# What it is told and tells, in whole numbers.
+(
+    DESCRIPTOR,
+    MOST,  # ticks to do
+    DEADLINE,  # of the next tick, ns
+    PERIOD,  # of the ticks, ns
+    GUARD,  # how much before or after its deadline a STATE may have a tick begin, ns
+    HELD,  # bytes received and not consumed
+    APPENDED,  # records filled so far
+    LATE_SO_FAR,
+    OVERRUNS_SO_FAR,
+    UNSENT,  # FRAMEs that found no room so far
+    RESTED,  # how often the device has gone to rest
+    WOKEN,  # when the tick that Python is to do woke, ns; 0 if it has not begun
+    LATENESS_OF_IT,
+    WRITTEN,  # bytes that went out of a FRAME that was torn
+    SIZE,  # bytes of that FRAME
+) = range(15)
+_EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def _changed(orders, known):
+    """Whether there is anything new in the mailbox."""
+    for word in range(orders.size):
+        if orders[word] != known[word]:
+            return True
+    return False
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def _wait(told, received, talk, work):
+    """Wait for a tick to begin; when it woke, how many STATEs came, and why there is none.
+
+    With a guard, a STATE that comes about the deadline has the tick begin; one that came before
+    is taken and waits for it. A read between the two gives whatever has come.
+    """
+    descriptor, deadline = told[DESCRIPTOR], told[DEADLINE]
+    last = deadline + told[GUARD]
+    now = libc.clock_ns(libc.CLOCK_MONOTONIC)
+    if now < deadline - told[GUARD]:
+        if libc.sleep_until_ns(deadline - told[GUARD]) == _EINTR:
+            return 0, 0, ORDERS
+        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
+    fresh = told[GUARD] == 0
+    states = 0
+    while True:
+        size = libc.read(descriptor, received, told[HELD])
+        if size == 0 or (size < 0 and size != _EAGAIN and size != _EINTR):
+            return now, states, GONE
+        if size > 0:
+            told[HELD] += size
+            consumed, more = steady.take(received, told[HELD], now, talk, work)
+            if consumed == steady.SOMETHING_ELSE:
+                return now, states, UNSTEADY
+            states += more
+            for at in range(told[HELD] - consumed):
+                received[at] = received[consumed + at]
+            told[HELD] -= consumed
+            if fresh and more > 0:
+                return now, states, DONE
+        fresh = True
+        if now >= last:
+            return now, states, DONE
+        happened = libc.poll(descriptor, libc.POLLIN, last - now)
+        if happened == _EINTR:
+            return 0, states, ORDERS
+        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        if happened & (libc.POLLERR | libc.POLLHUP) != 0 and happened & libc.POLLIN == 0:
+            return now, states, GONE
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def run(
+    told,
+    orders,
+    known,
+    received,
+    work,
+    out,
+    talk,
+    actuators,
+    state,
+    window_ns,
+    window_mm,
+    velocities,
+    output,
+    held,
+    target,
+    at,
+    numbers,
+    table,
+    scratch,
+    times_ns,
+    poses,
+    published,
+    ints,
+    floats,
+    frames,
+):
+    """Do ticks until there is something for Python to do; why that is.
+
+    Parameters
+    ----------
+    told : int64[15]
+        What it is told and tells, by the names above.
+    orders, known : int64[8]
+        Words of the mailbox, and what they were when they were last obeyed.
+    received : uint8[bytes]
+        What was received and not consumed, at its beginning; room for more.
+    work, out : uint8[bytes]
+        Room to work in, and for a FRAME as it goes over the line.
+    talk, actuators
+        Of `vbraille.devices.steady`.
+    state and on
+        As of `vbraille.engine.kernels.advance`; the last three are a ring's, and ``published``
+        tells its readers.
+
+    Returns
+    -------
+    int64
+        DONE, or why a tick is left to Python: ORDERS or a signal; UNSTEADY, for what was received
+        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for this
+        is no FRAME to send; TORN, for a part of it went out; GONE, for the line is.
+    """
+    size = ints.shape[0]
+    talk = talk[0]
+    for _ in range(told[MOST]):
+        if _changed(orders, known):
+            return ORDERS
+        told[WOKEN] = 0
+        now, states, why = _wait(told, received, talk, work)
+        if why == ORDERS:
+            return ORDERS
+        deadline = told[DEADLINE]
+        lateness = now - deadline if told[GUARD] == 0 else max(now - deadline - told[GUARD], 0)
+        told[WOKEN], told[LATENESS_OF_IT] = now, lateness
+        # A STATE that was taken is not lost with the tick that Python does.
+        times_ns[0, 0], times_ns[0, 1] = now, talk.device_ns
+        poses[0, POSED] = 1.0 if states > 0 else 0.0
+        poses[0, POSE_X] = talk.x_mm
+        if why != DONE:
+            return why
+        if steady.stalled(talk, now):
+            return UNSTEADY
+        slot = told[APPENDED] % size
+        published[0] = told[APPENDED]
+        done = advance(
+            state,
+            window_ns,
+            window_mm,
+            velocities,
+            output,
+            held,
+            target,
+            at,
+            numbers,
+            table,
+            scratch,
+            times_ns,
+            poses,
+            told[RESTED],
+            True,
+            ints,
+            floats,
+            frames,
+            slot,
+        )
+        if done == 0:
+            return NOWHERE
+        ends = steady.make(output, now, talk, actuators, out)
+        if ends == steady.SOMETHING_ELSE:
+            return UNMADE
+        written = libc.write(told[DESCRIPTOR], out, 0, ends)
+        if written > 0:
+            steady.sent(now, talk, actuators)
+        elif written == _EAGAIN:
+            told[UNSENT] += 1
+        # The next STATE is a period from this one; without one, ticks keep to their deadlines.
+        told[DEADLINE] = (now if states > 0 and told[GUARD] > 0 else deadline) + told[PERIOD]
+        after = libc.clock_ns(libc.CLOCK_MONOTONIC)
+        behind = after - told[DEADLINE]
+        if behind >= told[PERIOD]:
+            missed = behind // told[PERIOD]
+            told[LATE_SO_FAR] += missed
+            told[DEADLINE] += missed * told[PERIOD]
+        ints[slot, LATENESS] = lateness
+        ints[slot, WORK] = after - now
+        ints[slot, LATE] = told[LATE_SO_FAR]
+        ints[slot, OVERRUNS] = told[OVERRUNS_SO_FAR]
+        told[APPENDED] += 1
+        if written > 0 and written < ends:
+            told[WRITTEN], told[SIZE] = written, ends
+            return TORN
+        if written <= 0 and written != _EAGAIN:
+            return GONE
+    told[WOKEN] = 0
+    return DONE
