@@ -74,6 +74,7 @@ def rendered(masks, mapping, *, array=STRESS2_ARRAY, contrast_of=STRESS2, x_mm=0
         mapping=mapping,
         geometry=model.geometry,
         tuning=model.tuning,
+        anchor_mm=0.0,
     )
     return frame_at(renderer, x_mm)
 

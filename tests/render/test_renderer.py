@@ -23,6 +23,7 @@ from vbraille.render import (
     single_row,
 )
 from vbraille.render.kernels import blend
+from vbraille.render.reference import deflections
 from vbraille.render.renderer import Renderer
 
 ONE = ActuatorArray(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
@@ -110,6 +111,7 @@ def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
         mapping=MAPPINGS["sheared"],
         geometry=crowded,
         tuning=Tuning(texture=1.0, contrast=0.8),
+        anchor_mm=0.0,
     )
     seen = set()
     for x_mm in np.linspace(-0.5, 8, 171):
@@ -291,3 +293,21 @@ def test_a_blend_from_rest_to_a_frame():
     rest = np.zeros_like(frame)
     np.testing.assert_allclose(blended(rest, frame, 0.25), frame / 4, rtol=0, atol=1e-15)
     np.testing.assert_allclose(blended(frame, rest, 0.25), frame * 0.75, rtol=0, atol=1e-15)
+
+
+def test_places_are_of_the_arrays_centre_unless_another_anchor_is_given():
+    for scene in models(line(cell(1, 5), cell(2))).values():
+        manner = scene.manner
+        anchor_mm = manner.pop("anchor_mm")
+        assert anchor_mm == 0.0
+        centred, left = Renderer(scene.masks, **manner), Renderer(scene.masks, **scene.manner)
+        half_mm = scene.array.span_mm / 2
+        x_mm = np.linspace(-9, 30, 333)
+        assert centred.path(x_mm).any()
+        # Bit for bit: a trace of left columns and one of centres make the same frames.
+        np.testing.assert_array_equal(centred.path(x_mm), left.path(x_mm - half_mm))
+        np.testing.assert_array_equal(
+            [frame_at(centred, x) for x in x_mm], [frame_at(left, x) for x in x_mm - half_mm]
+        )
+        twin = deflections(x_mm, scene.masks, **manner)
+        np.testing.assert_allclose(centred.path(x_mm), twin, rtol=0, atol=1e-6)

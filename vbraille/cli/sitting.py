@@ -86,7 +86,12 @@ class Sitting:
                 # A session of format 1 is gone on with in that, whose traces are not tied.
                 tie = None if book.told.format == 1 else lambda: book.durable
                 display = OnDevice(
-                    self._engine, record.protocol, record.folder, keeps=answers.felt, tie=tie
+                    self._engine,
+                    record.protocol,
+                    record.folder,
+                    keeps=answers.felt,
+                    tie=tie,
+                    centred=record.centred,
                 )
             sound = self._sound(answers)
             course = Course(

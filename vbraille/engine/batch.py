@@ -114,7 +114,7 @@ class BatchEngine:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column was at the last poll; None before it is known."""
+        """Where the array's centre was at the last poll; None before it is known."""
         return place_of(self.newest)
 
     @property
@@ -197,7 +197,7 @@ class BatchEngine:
         return times_ns - moved_ns > _IDLE_NS
 
     def _measure(self, ticks: NDArray[np.void], x_mm: NDArray[np.float64]) -> None:
-        """Fill in speed (as `Velocity`) and the way to the right."""
+        """Fill in the velocity (as `Velocity`) and the way to the right."""
         before_mm = self._places_mm
         if not before_mm.size:
             before_mm = np.full(1, x_mm[0])
@@ -219,7 +219,7 @@ class BatchEngine:
         if ways_mm.size:
             velocities[-ways_mm.size :] = ways_mm / (DIFFERENCE * self._period_ns) * NS_PER_S
         self._velocities = velocities[x_mm.size :]
-        ticks["speed_mm_s"] = np.convolve(velocities, np.ones(MEAN), "valid") / MEAN
+        ticks["vx_mm_s"] = np.convolve(velocities, np.ones(MEAN), "valid") / MEAN
 
     def _render(
         self,

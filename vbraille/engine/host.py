@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
+from vbraille.engine.ring import RingReader
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.engine.mailbox import Mailbox
-    from vbraille.engine.ring import Ring
     from vbraille.render.renderer import Renderer
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
@@ -73,7 +73,7 @@ class Host:
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None  # of memory that nobody has a view of yet
         self._mailbox: Mailbox | None = None
-        self._ring: Ring | None = None
+        self._ring: RingReader | None = None
         self._shown: tuple[Renderer, int, float] | None = None
         self._notes: list[str] = []
         self._heard = b""
@@ -161,7 +161,8 @@ class Host:
         extent = shared.Extent(wanted.rows, wanted.columns, self._cells, ticks)
         memory = shared.attach(self._descriptor, extent)
         self._forget_memory()
-        self._mailbox, self._ring = shared.divide(memory, extent)
+        self._mailbox, records = shared.divide(memory, extent)
+        self._ring = RingReader(records, extent.shape, extent.ticks)
         self._tell(**asdict(extent))
 
     def _tell(self, **what: object) -> None:
@@ -198,7 +199,7 @@ class Host:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column was at the last poll; None before it is known."""
+        """Where the array's centre was at the last poll; None before it is known."""
         return place_of(self.newest)
 
     @property

@@ -32,6 +32,7 @@ from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.posted import PostedPicture
 from vbraille.engine.realtime import go_real_time
+from vbraille.engine.ring import Ring
 from vbraille.errors import DeviceError, VbrailleError
 
 if TYPE_CHECKING:
@@ -140,7 +141,8 @@ def warm_up(info: Display, extent: shared.Extent) -> None:
     """Compile and run once all that a tick calls, on a device and a clock of no consequence."""
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
-        mailbox, ring = shared.divide(memoryview(bytearray(extent.total_bytes)), extent)
+        mailbox, records = shared.divide(memoryview(bytearray(extent.total_bytes)), extent)
+        ring = Ring(records, extent.shape, extent.ticks)
         loop = Loop(device, clock, ring=ring)
         picture = PostedPicture(extent.shape, extent.cells)
         loop.show(picture)
@@ -200,7 +202,8 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         if not told:
             return  # nobody wants it any more
         extent = shared.Extent(**json.loads(told))
-        mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
+        mailbox, records = shared.divide(shared.attach(descriptor, extent), extent)
+        ring = Ring(records, extent.shape, extent.ticks)
         os.close(descriptor)
         note = go_real_time()
         rehearse(device, wanted.rate_hz)

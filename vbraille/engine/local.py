@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Ring
+from vbraille.engine.ring import Ring, RingReader
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,7 +40,8 @@ class LocalEngine:
     ) -> None:
         shape = device.display.rows, device.display.columns
         size = poll_ticks + 1
-        self._ring = Ring(memoryview(bytearray(Ring.bytes_needed(shape, size))), shape, size)
+        memory = memoryview(bytearray(Ring.bytes_needed(shape, size)))
+        self._ring, self._ticks = Ring(memory, shape, size), RingReader(memory, shape, size)
         self.loop = Loop(device, clock, rate_hz=rate_hz, ring=self._ring)
         self._poll_ticks = poll_ticks
         self._line = 0
@@ -57,8 +58,8 @@ class LocalEngine:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column is; None before it is known."""
-        return self.loop.x_mm
+        """Where the array's centre is; None before it is known."""
+        return None if self.loop.pose is None else self.loop.pose.x_mm
 
     @property
     def paused(self) -> bool:
@@ -81,7 +82,7 @@ class LocalEngine:
         for _ in range(self._poll_ticks):
             self.loop.tick()
         self._ring.publish()
-        return self._ring.drain()
+        return self._ticks.drain()
 
     def take_notes(self) -> Sequence[str]:
         """What the device has to say since the last call."""

@@ -15,6 +15,7 @@ from vbraille.engine.ring import Flag
 from vbraille.engine.tally import Tally
 from vbraille.engine.velocity import Velocity
 from vbraille.errors import DeviceError
+from vbraille.pose import Pose
 from vbraille.render.kernels import blend
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ SILENCE_S = 0.1
 _PAUSED, _SILENT, _FOLLOWED = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.FOLLOWED)
 _RESTING, _CHANGED, _RESTED = int(Flag.RESTING), int(Flag.CHANGED), int(Flag.RESTED)
 _HELD = int(Flag.HELD)
+_NOWHERE = Pose(0, math.nan, math.nan, math.nan)  # before the first sample
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
@@ -44,7 +46,7 @@ class Picture(Protocol):
     """What is under the hand: a frame for every place."""
 
     def frame(self, x_mm: float, out: NDArray[np.float64], /) -> None:
-        """Fill the frame for the array's left column at x."""
+        """Fill the frame for the array's centre at x."""
         ...
 
 
@@ -69,8 +71,8 @@ class Loop:
 
     Attributes
     ----------
-    x_mm : float or None
-        Where the array's left column is; None before the first sample.
+    pose : Pose or None
+        The newest sample of the device; None before the first.
     velocity : Velocity
         Of the hand.
     output : float64[rows, columns]
@@ -99,7 +101,7 @@ class Loop:
         self.device = device
         self.clock = clock
         self.rate_hz = rate_hz
-        self.x_mm: float | None = None
+        self.pose: Pose | None = None
         self.velocity = Velocity()
         self.tally = Tally()
         self._ring = ring
@@ -124,8 +126,7 @@ class Loop:
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
         self._moved_ns = self._sampled_ns = self._deadline_ns
-        self._device_ns = 0
-        self._moved_mm = 0.0
+        self._moved_mm = 0.0, 0.0
 
     def show(self, picture: Picture | None, line: int = 0) -> None:
         """Put something else under the hand; it fades in. None is rest. Records tell the line."""
@@ -240,21 +241,26 @@ class Loop:
             flags |= _FOLLOWED
         if not self.device.taking:
             flags |= _HELD
-        tally = self.tally
+        tally, pose = self.tally, self.pose or _NOWHERE
         ring.append(
             self.output,
             now_ns,
-            self._device_ns,
+            pose.time_ns,
             lateness_ns,
             work_ns,
             tally.late,
             tally.overruns,
             self._line,
+            0,
             flags,
-            math.nan if self.x_mm is None else self.x_mm,
-            self.velocity.mm_s,
+            pose.x_mm,
+            pose.y_mm,
+            pose.theta_rad,
+            self.velocity.x_mm_s,
+            self.velocity.y_mm_s,
             tally.forward_mm,
             tally.forward_s,
+            0.0,
             self._share,
         )
 
@@ -262,30 +268,30 @@ class Loop:
         sample = self.device.read()
         if sample is None:
             return
-        x_mm = sample.x_mm
-        if not -1e6 < x_mm < 1e6:
+        _, x_mm, y_mm, theta_rad = sample
+        if not (-1e6 < x_mm < 1e6 and -1e6 < y_mm < 1e6 and math.isfinite(theta_rad)):
             raise DeviceError(
-                f"{self.device.display.name} says that its carriage is at {x_mm} mm, where it "
-                f"cannot be; switch it off and on, and if it says so again, look at its encoder "
-                f"and at the counts that its INFO tells, with 'vbraille device check'"
+                f"{self.device.display.name} says that its carriage is at x = {x_mm} mm, "
+                f"y = {y_mm} mm, turned by {theta_rad} rad, where it cannot be; switch it off and "
+                f"on, and if it says so again, look at its encoder and at the counts that its INFO "
+                f"tells, with 'vbraille device check'"
             )
-        if self.x_mm is None:
-            self._moved_mm, self._moved_ns = x_mm, now_ns
+        if self.pose is None:
+            self._moved_mm, self._moved_ns = (x_mm, y_mm), now_ns
         else:
-            step_mm = x_mm - self.x_mm
+            step_mm = x_mm - self.pose.x_mm
             elapsed_s = max(now_ns - self._sampled_ns, self._period_ns) / NS_PER_S
-            if abs(step_mm) > JUMP_MM_S * elapsed_s:
+            if math.hypot(step_mm, y_mm - self.pose.y_mm) > JUMP_MM_S * elapsed_s:
                 self.velocity.reset()
                 self._change(self._shown, self._fade_ns)
             elif step_mm > 0:
                 self.tally.forward_mm += step_mm
                 self.tally.forward_s += elapsed_s
-        self.velocity.add(sample.time_ns, x_mm)
-        self._device_ns = sample.time_ns
-        self.x_mm = x_mm
+        self.velocity.add(sample.time_ns, x_mm, y_mm)
+        self.pose = sample
         self._sampled_ns = now_ns
-        if abs(x_mm - self._moved_mm) > STILL_MM:
-            self._moved_mm, self._moved_ns = x_mm, now_ns
+        if math.dist((x_mm, y_mm), self._moved_mm) > STILL_MM:
+            self._moved_mm, self._moved_ns = (x_mm, y_mm), now_ns
 
     def _silent(self, now_ns: int) -> bool:
         return now_ns - self._sampled_ns > SILENCE_S * NS_PER_S
@@ -293,7 +299,7 @@ class Loop:
     def _wanted(self, now_ns: int) -> Picture | None:
         """What belongs under the hand now."""
         idle = now_ns - self._moved_ns > self._idle_ns
-        if self._paused or idle or self._silent(now_ns) or self.x_mm is None:
+        if self._paused or idle or self._silent(now_ns) or self.pose is None:
             return None
         if not self.device.taking:
             return None
@@ -310,8 +316,8 @@ class Loop:
         # The first tick of a change still sends what was there, the last one all of the new.
         fading = self._faded_ns < self._fading_ns
         out = self._target if fading else self.output
-        if picture is not None and self.x_mm is not None:
-            picture.frame(self.x_mm, out)
+        if picture is not None and self.pose is not None:
+            picture.frame(self.pose.x_mm, out)
         else:
             out.fill(0.0)
         self._share = self._faded_ns / self._fading_ns if fading else 1.0

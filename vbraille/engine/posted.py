@@ -52,5 +52,5 @@ class PostedPicture:
         np.copyto(self._parameters, self.slot["parameters"])
 
     def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
-        """Fill the frame for the array's left column at x."""
+        """Fill the frame for the array's centre at x."""
         kernels.frame(self._work, self._gains, x_mm, out)

@@ -1,10 +1,9 @@
-"""The last ticks, in memory that a recorder in another process reads.
+"""The last ticks, in memory that any number of readers follow, each at its own pace.
 
-One side appends, the other drains; neither waits for the other. The reader
-copies, then looks how far the writer has come meanwhile: what may have been
-overwritten under its hands it drops, and counts as lost. A record is published
-with the next one, a tick later: that far apart, no processor shows the two
-stores to another in the wrong order.
+The writer appends, readers drain, and nobody waits for anybody: a reader that is too slow loses
+records, and counts them. It copies, then looks how far the writer has come meanwhile: what may
+have been overwritten under its hands it drops. A record is published with the next one, a tick
+later: that far apart, no processor shows the two stores to another in the wrong order.
 """
 
 from __future__ import annotations
@@ -28,14 +27,19 @@ _FIELDS = (
     ("late", "<i8"),  # deadlines missed so far
     ("overruns", "<i8"),  # ticks so far whose own work took longer than a period
     ("line", "<i8"),  # number of what is under the hand; 0 before the first
+    ("part", "<i8"),  # which part of a picture that has several is under the array
     ("flags", "<i8"),  # of `Flag`
-    ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
-    ("speed_mm_s", "<f8"),
+    ("x_mm", "<f8"),  # where the array is, a `vbraille.pose.Pose`; NaN before the first sample
+    ("y_mm", "<f8"),
+    ("theta_rad", "<f8"),
+    ("vx_mm_s", "<f8"),  # velocity of the hand
+    ("vy_mm_s", "<f8"),
     ("forward_mm", "<f8"),  # way to the right so far, and the time that it took
     ("forward_s", "<f8"),
+    ("shown_s", "<f8"),  # the picture's own time since its start, if it moves by itself
     ("share", "<f8"),  # how much of a change has faded in: 1 is all
 )
-_PACK = struct.Struct("<9q5d").pack_into
+_PACK = struct.Struct("<10q9d").pack_into
 
 
 class Flag(IntFlag):
@@ -58,7 +62,7 @@ def tick_dtype(shape: tuple[int, int]) -> np.dtype:
 
 
 class Ring:
-    """Records of the last ticks.
+    """The writer's end.
 
     Parameters
     ----------
@@ -68,22 +72,14 @@ class Ring:
         Rows and columns of a frame.
     size
         Ticks held.
-
-    Attributes
-    ----------
-    lost : int
-        Records that were overwritten before this end drained them.
     """
 
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
-        self.lost = 0
         self._size = size
-        self._published = buffer[:_HEADER_BYTES].cast("q")
-        self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
+        self._published, self._records = _views(buffer, shape, size)
         self._frames = self._records["frame"]
         self._bytes = buffer[_HEADER_BYTES:]
         self._appended = 0
-        self._drained = 0
 
     @staticmethod
     def bytes_needed(shape: tuple[int, int], size: int) -> int:
@@ -103,13 +99,47 @@ class Ring:
         """Let the last record be seen at once."""
         self._published[0] = self._appended
 
+
+class RingReader:
+    """A reader's end; there may be many on one memory, in this process and in others.
+
+    It begins with the newest record that is there when it joins; one that joins before the
+    writer's first sees all.
+
+    Parameters
+    ----------
+    buffer, shape, size
+        As the writer's. Nothing is written to the memory, which may be read-only.
+
+    Attributes
+    ----------
+    cursor : int
+        Number of the tick that comes next.
+    lost : int
+        Records that were overwritten before this reader drained them.
+    """
+
+    def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
+        self.lost = 0
+        self._size = size
+        self._published, self._records = _views(buffer, shape, size)
+        self.cursor = max(self._published[0] - 1, 0)
+
     def drain(self) -> NDArray[np.void]:
-        """Records since the last call, oldest first; `tick_dtype`[n]."""
+        """Records since the last call, oldest first; `tick_dtype`[n], copies."""
         end = self._published[0]
-        first = max(self._drained, end - self._size)
+        first = max(self.cursor, end - self._size)
         ticks = self._records[np.arange(first, end) % self._size]
         # The slot after the last published one may be in the writing.
-        whole = max(first, self._published[0] + 1 - self._size)
-        self.lost += min(whole, end) - self._drained
-        self._drained = end
+        whole = min(max(first, self._published[0] + 1 - self._size), end)
+        self.lost += whole - self.cursor
+        self.cursor = end
         return ticks[whole - first :]
+
+
+def _views(
+    buffer: memoryview, shape: tuple[int, int], size: int
+) -> tuple[memoryview, NDArray[np.void]]:
+    """How many records are published, and the records."""
+    published = buffer[:_HEADER_BYTES].cast("q")
+    return published, np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)

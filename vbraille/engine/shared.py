@@ -63,7 +63,7 @@ def attach(descriptor: int, extent: Extent) -> memoryview:
     return memoryview(mmap.mmap(descriptor, extent.total_bytes))
 
 
-def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
-    """The two that are in it."""
+def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, memoryview]:
+    """The mailbox that is in it, and the memory of the ring."""
     mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.shape, extent.cells)
-    return mailbox, Ring(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)
+    return mailbox, memory[extent.mailbox_bytes :]

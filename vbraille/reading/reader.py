@@ -145,7 +145,7 @@ class Reader:
             if not self._finished:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
                     self._say(sentence)
-        self._watch_speed(float(ticks["speed_mm_s"].max()))
+        self._watch_speed(float(ticks["vx_mm_s"].max()))
 
     def go_on(self) -> None:
         """Put the next line under the hand; there is none: the reading is finished."""
@@ -175,7 +175,7 @@ class Reader:
         line, x_mm = self._line, self.engine.x_mm
         cell = None
         if line is not None and x_mm is not None:
-            cell = locate(line, self._geometry, x_mm + self._model.array.span_mm / 2)
+            cell = locate(line, self._geometry, x_mm)
         word = line.word(cell) if line is not None and cell is not None else ""
         self._say(f"word: {word}" if word else "word: none here")
 

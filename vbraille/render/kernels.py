@@ -21,6 +21,7 @@ from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.render.work import (
+    ANCHOR,
     CELL_PITCH,
     CELLS_PER_MM,
     COLUMN_PITCH,
@@ -111,8 +112,9 @@ def _swings(work, count, cells, which):
 def _places(work, x_mm, first, columns):
     """Where on the surface each column is (eq. 3.1: all sample one and the same)."""
     pitch = work[0, COLUMN_PITCH]
+    left = x_mm - work[0, ANCHOR]
     for column in range(columns):
-        work[SWING, first + column] = x_mm + column * pitch
+        work[SWING, first + column] = left + column * pitch
 
 
 @_inlined
@@ -140,7 +142,7 @@ def _write_larger(work, gains, first, out):
 
 @_compiled
 def frame(work, gains, x_mm, out):
-    """Fill one frame, float[rows, columns], for the left column at x."""
+    """Fill one frame, float[rows, columns], for the array's anchor (its centre) at x."""
     rows, columns = out.shape
     # Compiled, nothing else would stop it from reading beyond the gains.
     if rows != gains.shape[0] or columns != work[0, COLUMNS]:

@@ -77,8 +77,9 @@ def deflections(
     mapping: Mapping,
     geometry: Geometry,
     tuning: Tuning,
+    anchor_mm: float | None = None,
 ) -> NDArray[np.float64]:
-    """Frames of a line for positions of the left column.
+    """Frames of a line for positions of the array's centre.
 
     Parameters
     ----------
@@ -88,14 +89,18 @@ def deflections(
         The line.
     array, profile, mapping, geometry, tuning
         What it is shown with and how.
+    anchor_mm
+        How far right of the left column the point is whose positions are given; the centre if
+        nothing is said.
 
     Returns
     -------
     float64[n, rows, columns]
         Deflections, 0 … 1.
     """
+    anchor_mm = array.span_mm / 2 if anchor_mm is None else anchor_mm
     x = np.atleast_1d(np.asarray(x_mm, np.float64))
-    surface = x[:, None] + array.column_offsets_mm()  # eq. 3.1
+    surface = (x - anchor_mm)[:, None] + array.column_offsets_mm()  # eq. 3.1
     swing = np.zeros((x.size, array.rows, array.columns))
     for cell, mask in enumerate(masks):
         for dot in range(8):

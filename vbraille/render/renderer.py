@@ -39,6 +39,10 @@ class Renderer:
         Where the dots are.
     tuning
         Texture and contrast.
+    anchor_mm
+        How far right of the left column the point of the array is whose places are given: half of
+        the array's width if nothing is said, which is its centre. Sessions and recordings of
+        before 22 November 2026 have places of the left column: 0 shows them bit for bit.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class Renderer:
         mapping: Mapping,
         geometry: Geometry,
         tuning: Tuning,
+        anchor_mm: float | None = None,
     ) -> None:
         if mapping.rows > array.rows:
             raise ValueError(
@@ -70,6 +75,7 @@ class Renderer:
         parameters[work.CELL_PITCH] = geometry.cell_pitch_mm
         parameters[work.COLUMN_PITCH] = array.column_pitch_mm
         parameters[work.COLUMNS] = array.columns
+        parameters[work.ANCHOR] = array.span_mm / 2 if anchor_mm is None else anchor_mm
         parameters[work.DOTS_PER_MM] = 1 / geometry.dot_width_mm
         parameters[work.DOT_SPACING] = geometry.dot_spacing_mm
         parameters[work.PROFILE] = profile
@@ -101,7 +107,7 @@ class Renderer:
         Parameters
         ----------
         x_mm
-            Where the left column is; anything that is not on the line, NaN
+            Where the array's centre is; anything that is not on the line, NaN
             among it, gives the idle frame.
         out : float[rows, columns]
             Deflections, 0 … 1. It need not be contiguous, but each new kind of
@@ -122,7 +128,7 @@ class Renderer:
         Parameters
         ----------
         x_mm : float64[n]
-            Where the left column is.
+            Where the array's centre is.
         out : float32[n, rows, columns], optional
             Where to put them; made if not given.
 

@@ -6,6 +6,7 @@
     CELL_PITCH,
     COLUMN_PITCH,
     COLUMNS,
+    ANCHOR,  # from the left column to where a place is of: half the array's width, or 0
     DOTS_PER_MM,
     DOT_SPACING,
     PROFILE,
@@ -17,5 +18,5 @@
     _S4,
     _S5,
     IDLE,  # deflection of each row off the dots
-) = range(15)
+) = range(16)
 SWING, SLOT = 1, 2  # further rows of work

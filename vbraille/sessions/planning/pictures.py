@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Stimulus
 
 
-def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Renderer:
-    """Picture of a stimulus."""
+def render(
+    protocol: Protocol, stimulus: Stimulus, tuning: Tuning, *, anchor_mm: float | None = None
+) -> Renderer:
+    """Picture of a stimulus, for places of the array's centre, or of the anchor that is given."""
     return Renderer(
         np.array(protocol.line(stimulus.masks), np.uint8),
         array=protocol.model.array,
@@ -23,4 +25,5 @@ def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Renderer:
         mapping=protocol.mapping,
         geometry=stimulus.geometry,
         tuning=tuning,
+        anchor_mm=anchor_mm,
     )

@@ -96,6 +96,9 @@ class OnDevice:
     tie
         Tells which line of the journal is on the disk, for the traces to be tied to; None in a
         session of format 1.
+    centred
+        Whether the traces have places of the array's centre; else, in a session of format 1 or 2,
+        of its left column.
 
     Attributes
     ----------
@@ -115,6 +118,7 @@ class OnDevice:
         *,
         keeps: bool,
         tie: Callable[[], Tie] | None = None,
+        centred: bool = True,
     ) -> None:
         self.engine = engine
         self.line = 0
@@ -123,6 +127,7 @@ class OnDevice:
         self._folder = folder
         self._keeps = keeps
         self._tie = tie
+        self._left_mm = None if centred else self._span_mm / 2
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
@@ -152,7 +157,7 @@ class OnDevice:
         # A run that was killed before the journal told of it has left its trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
-        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
+        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie, self._left_mm)
         self._newest = self._stimulus = None
         self._away = self._ready = False
         return _trace_name(run)
@@ -203,7 +208,7 @@ class OnDevice:
         edge_mm = first_edge_mm(
             self._protocol.line(stimulus.masks), self._protocol.mapping, stimulus.geometry
         )
-        self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm
+        self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
         self._touched = self._read = False
         self.retune(tuning)
         self.engine.paused = False
@@ -255,7 +260,7 @@ class OnDevice:
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self._newest = ticks[-1]
         # A carriage that a machine moves may be there for some ticks only.
-        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm
+        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
         well = ticks["flags"] & _AWAY == 0
         self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
