@@ -39,7 +39,8 @@ def keep_compiled() -> bool:
     _log.info("what is compiled is kept in %s", folder)
     from numba import config
 
-    config.CACHE_DIR = str(folder)
+    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    config.reload_config()
     for other in place.glob("vbraille-compiled-*"):
         if other != folder:
             shutil.rmtree(other, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""Frames and positions in HDF5: one layout for `render`, sessions and playback.
+"""Frames and poses in HDF5: one layout for `render` and playback.
 
 `docs/recording.md` describes it.
 """
@@ -11,9 +11,10 @@ import os
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import h5py
+import numpy as np
 
 from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
@@ -21,7 +22,6 @@ from vbraille.errors import InputError, VbrailleError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
     from _typeshed import ReadableBuffer as Buffer
     from _typeshed import WriteableBuffer
     from numpy.typing import NDArray
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.models import Model
 
+FORMAT = 2
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
 
@@ -65,14 +66,16 @@ class Recorder:
             )
 
         self._time = growing("t_s", "f8")
-        self._place = growing("x_mm", "f8")
+        self._pose = [growing(name, "f8") for name in ("x_mm", "y_mm", "theta_rad")]
         self._line = growing("line", "i8")
+        self._part = growing("part", "i8")
         self._frames = growing("frames", "f4", rows, columns)
         self._cells = growing("page/cells", "u1", width, chunk=_CHUNK_LINES)
         self._length = growing("page/length", "i8", chunk=_CHUNK_LINES)
         file.attrs["column_offset_mm"] = display.column_offsets_mm()
         file.attrs["row_offset_mm"] = display.row_offsets_mm()
         file.attrs["vbraille_version"] = __version__
+        file.attrs["format"] = FORMAT
 
     def describe(
         self,
@@ -98,7 +101,7 @@ class Recorder:
     @property
     def stored_bytes(self) -> int:
         """What the frames and their places take on the disk so far, compressed."""
-        kept = (self._time, self._place, self._line, self._frames)
+        kept = (self._time, *self._pose, self._line, self._part, self._frames)
         return sum(dataset.id.get_storage_size() for dataset in kept)
 
     def add_line(self, masks: NDArray[np.uint8]) -> int:
@@ -116,29 +119,107 @@ class Recorder:
         x_mm: NDArray[np.float64],
         line: int,
         frames: NDArray[np.float32],
+        *,
+        y_mm: NDArray[np.float64] | float = 0.0,
+        theta_rad: NDArray[np.float64] | float = 0.0,
+        part: NDArray[np.int64] | int = 0,
     ) -> None:
         """Append the frames of a stretch of one line.
 
         Parameters
         ----------
         t_s, x_mm : float64[n]
-            When, and where the array's left column was.
+            When, and where the array's centre was.
         line
             Row of ``page/cells``.
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
+        y_mm, theta_rad : float64[n]
+            The rest of the pose, see `vbraille.pose`.
+        part : int64[n]
+            Which part of a picture that has several was under the array.
         """
         before = self._time.shape[0]
         after = before + t_s.size
         for dataset, values in (
             (self._time, t_s),
-            (self._place, x_mm),
+            *zip(self._pose, (x_mm, y_mm, theta_rad), strict=True),
             (self._line, line),
+            (self._part, part),
             (self._frames, frames),
         ):
             dataset.resize(after, 0)
             dataset[before:after] = values
         self._file.check()
+
+
+class Poses(NamedTuple):
+    """Where the array was at each frame of a recording.
+
+    Parameters
+    ----------
+    t_s : float64[n]
+        When, from 0.
+    x_mm, y_mm, theta_rad : float64[n]
+        Its pose, see `vbraille.pose`.
+    """
+
+    t_s: NDArray[np.float64]
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64]
+    theta_rad: NDArray[np.float64]
+
+
+def poses_of(file: h5py.File) -> Poses:
+    """Poses of a recording of any format.
+
+    One of format 1, without the attribute ``format``, has the place of the array's left column.
+
+    Raises
+    ------
+    InputError
+        If it is of a newer format.
+    """
+    if _format_of(file) > 1:
+        return Poses(*(_numbers(file, name) for name in Poses._fields))
+    left_mm = _numbers(file, "x_mm")
+    nothing = np.zeros(left_mm.size)
+    return Poses(_numbers(file, "t_s"), left_mm + _half_mm(file), nothing, nothing)
+
+
+def anchor_mm(file: h5py.File) -> float:
+    """How far right of the left column the point of the array is whose ``x_mm`` a recording has.
+
+    A `vbraille.render.renderer.Renderer` with this anchor makes of ``x_mm`` as it stands in the
+    file the same frames, bit for bit.
+
+    Raises
+    ------
+    InputError
+        If it is of a newer format.
+    """
+    return 0.0 if _format_of(file) == 1 else _half_mm(file)
+
+
+def _numbers(file: h5py.File, name: str) -> NDArray[np.float64]:
+    dataset = file[name]
+    assert isinstance(dataset, h5py.Dataset)
+    return dataset[:]
+
+
+def _half_mm(file: h5py.File) -> float:
+    """From the array's left column to its centre."""
+    return float(np.asarray(file.attrs["column_offset_mm"])[-1]) / 2
+
+
+def _format_of(file: h5py.File) -> int:
+    found = int(np.asarray(file.attrs.get("format", 1)))
+    if found > FORMAT:
+        raise InputError(
+            f"{file.filename} is a recording of format {found}, and this vbraille knows format "
+            f"{FORMAT}; use the vbraille that made it, or a newer one"
+        )
+    return found
 
 
 @contextmanager

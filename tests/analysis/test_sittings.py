@@ -76,11 +76,12 @@ def test_a_pattern_has_an_example_to_draw(folder):
     assert {example.start_s, example.end_s} <= set(example.time_s.tolist())
     assert example.time_s[0] == 0.0
     assert (np.diff(example.time_s) > 0).all()
-    assert example.time_s.size == example.x_mm.size <= MOST_PICKED
+    assert example.time_s.size == example.left_mm.size <= MOST_PICKED
     ticks = read_trace(folder / "trace-001.gz").ticks
     ticks = ticks[ticks["line"] == example.trial]
     at = np.searchsorted(ticks["time_ns"], ticks["time_ns"][0] + example.time_s * 1e9 - 0.5)
-    assert (ticks["x_mm"][at] == example.x_mm).all()
+    half_mm = sitting.protocol.model.array.span_mm / 2
+    assert (ticks["x_mm"][at] - half_mm == example.left_mm).all()
     # A blank cell, c, what was asked for, c; of a dot 2 mm wide.
     geometry = sitting.protocol.geometry
     pitch_mm, spacing_mm = geometry.cell_pitch_mm, geometry.dot_spacing_mm
@@ -193,7 +194,7 @@ def test_of_a_damaged_journal_what_comes_before_is_read(folder, tmp_path):
 def test_a_hand_that_never_came_to_the_string_has_not_read(folder, tmp_path):
     copy = cut(folder, tmp_path / "s", "end", 0)
     ticks = read_trace(copy / "trace-001.gz").ticks
-    ticks["x_mm"][ticks["line"] == 2] = -7.7
+    ticks["x_mm"][ticks["line"] == 2] = -7.7 / 2
     (copy / "trace-001.gz").unlink()
     trace = TraceWriter(copy / "trace-001.gz")
     trace.add(ticks)

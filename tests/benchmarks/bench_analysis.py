@@ -152,8 +152,9 @@ def _sit(session: Session, random: np.random.Generator) -> None:
         log("run", why="start", trace="trace-001.gz", versions=versions())
         for trial in session.plan.trials:
             line = session.protocol.line(trial.stimuli[0].masks)
-            end_mm = session.protocol.geometry.extent_mm(len(line)) - array.span_mm / 2
-            still = np.full(round(GAP_S * TICKS_A_S), -array.span_mm)
+            middle_mm = array.span_mm / 2  # of the array, right of the left column that hands move
+            end_mm = session.protocol.geometry.extent_mm(len(line)) - middle_mm
+            still = np.full(round(GAP_S * TICKS_A_S), -middle_mm)
             waiting = _ticks(still, ticks, trial.number - 1, Flag.PAUSED | Flag.RESTING, random)
             ticks += waiting.size
             log("presented", trial, attempt=1, stimulus=0, line=trial.number)
@@ -161,7 +162,8 @@ def _sit(session: Session, random: np.random.Generator) -> None:
             motion = hand.read_line(-array.span_mm, end_mm)
             # As it reads, but stretched: all trials are of one length.
             at_s = np.linspace(0.0, motion.duration_s, round(TRIAL_S * TICKS_A_S))
-            felt = _ticks(np.interp(at_s, motion.t_s, motion.x_mm), ticks, trial.number, 0, random)
+            x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + middle_mm
+            felt = _ticks(x_mm, ticks, trial.number, 0, random)
             for part in np.array_split(np.concatenate([waiting, felt]), 25):
                 trace.add(part)
             ticks += felt.size
@@ -176,7 +178,7 @@ def _sit(session: Session, random: np.random.Generator) -> None:
 def _ticks(
     x_mm: NDArray[np.float64], first: int, line: int, flags: int, random: np.random.Generator
 ) -> NDArray[np.void]:
-    """Ticks of a way, woken as late as on a real machine."""
+    """Ticks of a way of the array's centre, woken as late as on a real machine."""
     made = np.zeros(x_mm.size, TRACE)
     made["tick"] = first + np.arange(x_mm.size)
     made["device_ns"] = made["tick"] * _NS_A_TICK
@@ -184,7 +186,7 @@ def _ticks(
     made["line"] = line
     made["flags"] = flags
     made["x_mm"] = np.round(x_mm * _COUNTS_PER_MM) / _COUNTS_PER_MM
-    speed_mm_s = np.gradient(made["x_mm"]) * TICKS_A_S
-    made["speed_mm_s"] = np.convolve(speed_mm_s, np.full(20, 1 / 20), "same")
+    velocity_mm_s = np.gradient(made["x_mm"]) * TICKS_A_S
+    made["vx_mm_s"] = np.convolve(velocity_mm_s, np.full(20, 1 / 20), "same")
     made["share"] = 1.0
     return made

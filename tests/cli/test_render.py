@@ -15,6 +15,7 @@ from tests.shown import rendered
 from vbraille import __version__
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
+from vbraille.recording import anchor_mm, poses_of
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
 from vbraille.render.reference import deflections
 from vbraille.translate import Book, Document, Table
@@ -34,6 +35,7 @@ def from_the_file_alone(file):
         "mapping": MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
         "geometry": Geometry(**json.loads(attributes["geometry"])),
         "tuning": Tuning(**json.loads(attributes["tuning"])),
+        "anchor_mm": anchor_mm(file),
     }
     np.testing.assert_array_equal(attributes["column_offset_mm"], model.display.column_offsets_mm())
     np.testing.assert_array_equal(attributes["row_offset_mm"], model.display.row_offsets_mm())
@@ -85,7 +87,13 @@ def test_the_file_holds_all_that_was_rendered(
         array = MODELS[model].display
         assert frames.dtype == np.float32
         assert frames.shape == (t_s.size, array.rows, array.columns)
-        assert t_s.shape == x_mm.shape == line.shape
+        assert t_s.shape == x_mm.shape == line.shape == file["part"].shape
+        assert file.attrs["format"] == 2
+        assert not file["part"][:].any()
+        poses = poses_of(file)
+        np.testing.assert_array_equal(poses.t_s, t_s)
+        np.testing.assert_array_equal(poses.x_mm, x_mm)
+        assert not np.any((poses.y_mm, poses.theta_rad))
         np.testing.assert_allclose(t_s, np.arange(t_s.size) / rate, rtol=0, atol=1e-9)
 
         cells, length = file["page/cells"][:], file["page/length"][:]
@@ -102,9 +110,10 @@ def test_the_file_holds_all_that_was_rendered(
         if "recorded" not in options:
             for row in range(len(masks)):  # each line from the left stop to its end and back
                 there = x_mm[line == row]
-                assert there[0] == pytest.approx(-array.span_mm)
-                assert there[-1] < -array.span_mm + 250 / rate
-                end_mm = geometry.extent_mm(length[row])
+                home_mm = -array.span_mm / 2
+                assert there[0] == pytest.approx(home_mm)
+                assert there[-1] < home_mm + 250 / rate
+                end_mm = geometry.extent_mm(length[row]) + array.span_mm / 2
                 assert end_mm - 1000 / rate < there.max() < end_mm + 1e-9
         assert frames.max() > 0.5
         again, twin = from_the_file_alone(file)

@@ -96,7 +96,7 @@ def test_a_trace_that_was_replaced_is_seen_by_the_sum_that_the_journal_has(folde
     path.unlink()
     writer = TraceWriter(path, lambda: trace.ties[-1])
     ticks = trace.ticks.copy()
-    ticks["speed_mm_s"] = 0.0
+    ticks["vx_mm_s"] = 0.0
     writer.add(ticks)
     writer.close()
     with path.open("ab") as file:  # of the same length

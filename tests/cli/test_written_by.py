@@ -18,10 +18,11 @@ import pytest
 
 from tests.cli.test_render import from_the_file_alone
 from tests.cli.test_session_bad_input import contents
+from vbraille.recording import poses_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.replay import frames
-from vbraille.sessions.record.traces import read_trace
+from vbraille.sessions.record.traces import LEFT_TRACE, read_trace
 from vbraille.translate.cells import Cells
 
 WRITTEN = Path(__file__).parent.parent / "written-by"
@@ -67,7 +68,9 @@ def test_there_is_of_every_kind():
         "answer", "undo", "repeat", "fault", "pause", "go", "note", "stop", "end", "tuning",
         "break", "device", "closed",
     }  # fmt: skip
-    assert [folder.name for folder in SESSIONS if load(folder).told.torn] == ["letters-torn"]
+    assert {folder.name for folder in SESSIONS if load(folder).told.torn} == {"letters-torn"}
+    of = {form: sum(load(folder).told.format == form for folder in SESSIONS) for form in (1, 2)}
+    assert of == {1: 9, 2: 9}
     assert {ended(folder) for folder in SESSIONS} == {True, False}
     assert len({h5py.File(path).attrs["model"] for path in RECORDINGS}) == 2
 
@@ -76,16 +79,22 @@ def test_there_is_of_every_kind():
 def test_a_recording_opens_and_is_what_is_rendered_today(path):
     with h5py.File(path) as file:
         again, twin = from_the_file_alone(file)
-        kept = file["frames"][:]
+        kept, left_mm = file["frames"][:], file["x_mm"][:]
+        half_mm = file.attrs["column_offset_mm"][-1] / 2
+        poses = poses_of(file)
     assert kept.max() > 0.5
     np.testing.assert_array_equal(kept, again)
     np.testing.assert_allclose(kept, twin, rtol=0, atol=1e-6)
+    # Its places are the left column's, and poses the centre's.
+    assert left_mm[0] == -2 * half_mm
+    np.testing.assert_array_equal(poses.x_mm, left_mm + half_mm)
+    assert not np.any((poses.y_mm, poses.theta_rad))
 
 
 @pytest.mark.parametrize("path", PLANS, ids=named)
 def test_a_plan_that_was_printed_is_that_of_the_session(path):
     printed = [line for line in path.read_text().splitlines() if line.startswith("trial ")]
-    for folder in SESSIONS:
+    for folder in sorted(path.parent.parent.glob("sessions/*")):
         text = (folder / "plan.json").read_text()
         plan = Plan.from_json(text)
         assert plan.to_json() == text
@@ -175,6 +184,8 @@ def test_a_session_is_gone_on_with_in_its_own_format(call, folder, tmp_path):
     if formats[1] == 1:
         assert not any("up_s" in event for event in load(copy).told.events)
         assert not any(read_trace(path).ties for path in copy.glob("trace-*.gz"))
+    for path in copy.glob("trace-*.gz"):
+        assert read_trace(path).ticks.dtype == LEFT_TRACE
 
 
 @pytest.mark.parametrize("folder", [f for f in SESSIONS if ended(f)], ids=named)

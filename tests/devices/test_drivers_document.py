@@ -82,7 +82,7 @@ def test_what_it_sends_and_reads(driver, peer, address):
         while sample is None:
             sample = device.read()
         assert sample.time_ns == 1_000_000
-        assert sample.x_mm == pytest.approx(0.5 - 10.8)
+        assert sample.x_mm == pytest.approx(0.5 - 10.8 / 2)
         assert peer.frames[0] == np.rint(np.linspace(0, 255, 60)).astype(np.uint8).tobytes()
 
 

@@ -37,6 +37,7 @@ from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.simulator import split
 
 SPAN_MM = 10.8
+HOME_MM = -SPAN_MM / 2  # of the array's centre at the left stop
 HALF = np.full((6, 10), 0.5)
 REST = np.zeros((6, 10))
 NO_FRAME = "device: no frame reached it in time, so it went to rest; reading goes on"
@@ -211,7 +212,7 @@ def test_the_handshake(bench):
         assert made.controller.greetings == 2  # the first INFO came behind what was old
         assert device.display == info()
         assert device.placing is Placing.DONE
-        assert made.run(device, 50).x_mm == pytest.approx(5.0 - SPAN_MM)
+        assert made.run(device, 50).x_mm == pytest.approx(HOME_MM + 5.0)
         assert made.controller.frames > 10
         assert made.kinds() == [Hello, Frame]
         assert sum(device.counts().values()) == 1
@@ -350,7 +351,7 @@ def test_places_by_every_encoder(bench, encoder, sign):
     made.begin(device)
     for way_mm in (0.0, 0.005, 150.0, 300.0, 280.0, 60.0, 0.0):
         made.way_mm = way_mm
-        assert made.run(device, 3).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 3).x_mm == pytest.approx(HOME_MM + way_mm)
     assert made.controller.frames > 10
     assert device.rested == 0
     device.close()
@@ -364,7 +365,7 @@ def test_a_count_of_eight_bits_goes_round_and_round(bench):
     device.set_zero()
     for way_mm in np.arange(0.0, 20.0, 0.5):
         made.way_mm = way_mm
-        assert made.run(device, 2).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 2).x_mm == pytest.approx(HOME_MM + way_mm)
     device.close()
 
 
@@ -396,7 +397,7 @@ def test_the_newest_of_several_states_wins_and_gaps_are_counted(bench):
     for way_mm in (6.0, 7.0, 8.0):
         made.way_mm = way_mm
         made.pause(0.001)
-    assert device.read().x_mm == pytest.approx(8.0 - SPAN_MM)
+    assert device.read().x_mm == pytest.approx(HOME_MM + 8.0)
     assert device.read() is None
     made.mute = True
     made.pause(0.007)
@@ -430,7 +431,7 @@ def test_silence_of_100_ms_brings_rest_and_less_than_500_ms_goes_on(bench):
     made.mute = False
     made.way_mm = 8.0
     # The encoder has kept count, and needs no zero again.
-    assert made.run(device, 50).x_mm == pytest.approx(3.0 - SPAN_MM)
+    assert made.run(device, 50).x_mm == pytest.approx(HOME_MM + 3.0)
     assert made.kinds() == [Frame]
     assert device.rested == 1
     assert device.take_notes() == ["device: back"]
@@ -463,7 +464,7 @@ def test_silence_of_500_ms_begins_a_new_conversation(bench):
     assert [note[:14] for note in notes] == ["device: silent", "device: back"]
     assert device.counts()["reconnections"] == 1
     device.set_zero()
-    assert made.run(device, 5).x_mm == pytest.approx(-SPAN_MM)
+    assert made.run(device, 5).x_mm == pytest.approx(HOME_MM)
     device.close()
 
 
@@ -549,7 +550,7 @@ def test_what_a_stopped_host_has_not_read_is_not_taken_for_the_place(bench, made
         sample = device.read()
         device.write(HALF)
     assert not any(made.controller.levels)
-    assert sample.x_mm == pytest.approx(120.0 - SPAN_MM)
+    assert sample.x_mm == pytest.approx(HOME_MM + 120.0)
     device.close()
 
 
@@ -802,7 +803,7 @@ def test_unplugged_and_plugged_in_a_hundred_times(bench):
         made.controller = Controller(shown())
         made.plug()
         made.way_mm = time
-        assert made.back(device).x_mm == pytest.approx(time - SPAN_MM)
+        assert made.back(device).x_mm == pytest.approx(HOME_MM + time)
         assert device.take_notes() == ["device: back"]
         assert device.rested == device.counts()["reconnections"] == time
     assert open_descriptors() == before
@@ -944,7 +945,7 @@ def test_what_is_otherwise_with_a_device_that_came_back_is_said_and_minded(bench
         device.set_zero()
     for way_mm in (0.0, 7.0, 30.0):
         made.way_mm = way_mm
-        assert made.run(device, 3).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 3).x_mm == pytest.approx(HOME_MM + way_mm)
     made.run(device, 300)
     levels = made.controller.levels.tolist()
     assert levels[0] == {"gain": 257, "enabled": 0, "inverted": 511}.get(next(iter(changes)), 512)

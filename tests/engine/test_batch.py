@@ -22,7 +22,7 @@ from vbraille.simulation.steering import ReadLine, Steering
 SHEARED = replace(STRESS2, mapping=MAPPINGS["sheared"])  # some of its rows are idle at 1
 LINE_MM = 12.0
 EXACT = ("tick", "time_ns", "device_ns", "lateness_ns", "work_ns", "late", "overruns", "line")
-EXACT += ("flags", "x_mm", "share")
+EXACT += ("part", "flags", "x_mm", "y_mm", "theta_rad", "vy_mm_s", "shown_s", "share")
 
 
 def device(model, hand, now_ns=time.monotonic_ns):
@@ -116,7 +116,7 @@ def assert_same(model, hand, got, script, rate_hz):
     assert got.dtype == want.dtype == tick_dtype(model.display.shape)
     for field in EXACT:
         np.testing.assert_array_equal(got[field], want[field], field)
-    for field in ("speed_mm_s", "forward_mm", "forward_s"):
+    for field in ("vx_mm_s", "forward_mm", "forward_s"):
         np.testing.assert_allclose(got[field], want[field], rtol=0, atol=1e-9, err_msg=field)
     np.testing.assert_allclose(got["frame"], want["frame"], rtol=0, atol=1e-6)
 
@@ -297,7 +297,7 @@ def test_a_poll_is_over_when_the_hand_is_done():
         assert blocks[-1].size < 700
         assert engine.newest is not None
         assert engine.newest["tick"] == engine.tally.ticks - 1
-        assert engine.x_mm == pytest.approx(-10.8, abs=1 / 200)
+        assert engine.x_mm == pytest.approx(-5.4, abs=1 / 200)
     assert engine.poll().size == 700  # done since long
 
 

@@ -11,7 +11,7 @@ from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.hosted import Hosted, warm_up
 from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Flag
+from vbraille.engine.ring import Flag, Ring, RingReader
 from vbraille.render import VBD
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.steering import ReadLine
@@ -26,10 +26,12 @@ class Bench:
         memory = memoryview(bytearray(EXTENT.total_bytes))
         self.clock = ManualClock()
         self.device = Recording(self.clock, hand)
-        theirs, ring = shared.divide(memory, EXTENT)
+        theirs, records = shared.divide(memory, EXTENT)
+        ring = Ring(records, EXTENT.shape, EXTENT.ticks)
         self.loop = Loop(self.device, self.clock, ring=ring)
         self.hosted = Hosted(self.loop, theirs, EXTENT, os.getppid())
-        self.mailbox, self.ring = shared.divide(memory, EXTENT)
+        self.mailbox, _ = shared.divide(memory, EXTENT)
+        self.ring = RingReader(records, EXTENT.shape, EXTENT.ticks)
         self.memory = memory
 
     def run(self, seconds):
@@ -64,7 +66,7 @@ def test_a_new_picture_fades_in_and_the_old_one_is_forgotten(bench):
         bench.run(0.15)
     assert biggest_step(bench.device.sent) <= 1 / 100 + 1e-9
     want = np.zeros((6, 10))
-    picture((5,) * 16, mapping="sheared").frame(bench.loop.x_mm, want)
+    picture((5,) * 16, mapping="sheared").frame(bench.loop.pose.x_mm, want)
     np.testing.assert_array_equal(bench.loop.output, want)
 
 

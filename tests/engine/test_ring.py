@@ -1,24 +1,50 @@
-"""The ring: every record once and whole, or counted as lost."""
+"""The ring: every record once and whole to each reader, or counted as lost."""
 
+import json
+import subprocess
+import sys
 import threading
 
 import numpy as np
 import pytest
 
-from vbraille.engine.ring import Flag, Ring
+from vbraille.engine import shared
+from vbraille.engine.ring import Flag, Ring, RingReader
 
 SHAPE = (2, 3)
+# A reader in another process: it drains as soon as so many ticks are new, up to the last tick.
+APART = """
+import json, sys
+from vbraille.engine import shared
+from vbraille.engine.ring import RingReader
+descriptor, last, slow = map(int, sys.argv[1:])
+extent = shared.Extent(2, 3, 1, 64)
+_, memory = shared.divide(shared.attach(descriptor, extent), extent)
+reader = RingReader(memory.toreadonly(), extent.shape, extent.ticks)
+print("joined", flush=True)
+told = {"ticks": 0, "wrong": 0, "before": -1}
+while told["before"] < last:
+    for _ in range(slow):
+        pass
+    for tick in reader.drain():
+        told["ticks"] += 1
+        told["wrong"] += tick["time_ns"] != 10 * tick["tick"] or tick["tick"] <= told["before"]
+        told["wrong"] += (tick["frame"] != tick["tick"] / 1024).any()
+        told["before"] = int(tick["tick"])
+print(json.dumps({**told, "wrong": int(told["wrong"]), "lost": reader.lost}), flush=True)
+"""
 
 
 def pair(size):
     """Both ends over the same memory."""
     memory = memoryview(bytearray(Ring.bytes_needed(SHAPE, size)))
-    return Ring(memory, SHAPE, size), Ring(memory, SHAPE, size)
+    return Ring(memory, SHAPE, size), RingReader(memory, SHAPE, size)
 
 
 def append(ring, n):
-    fields = (10 * n, 20 * n, 3, 4, 5, 6, 7, int(Flag.PAUSED), n / 2, -n / 4, 8.0, 9.0, 0.5)
-    ring.append(np.full(SHAPE, n / 1024), *fields)
+    numbers = (10 * n, 20 * n, 3, 4, 5, 6, 7, 8, int(Flag.PAUSED))
+    pose, velocity = (n / 2, n / 4, n / 8), (-n / 4, -n / 8)
+    ring.append(np.full(SHAPE, n / 1024), *numbers, *pose, *velocity, 9.0, 10.0, 11.0, 0.5)
 
 
 def test_a_record_has_every_field_in_its_place():
@@ -29,9 +55,11 @@ def test_a_record_has_every_field_in_its_place():
     tick = reader.drain()[1]
     want = {
         "tick": 1, "time_ns": 10, "device_ns": 20, "lateness_ns": 3, "work_ns": 4, "late": 5,
-        "overruns": 6, "line": 7, "flags": 1, "x_mm": 0.5, "speed_mm_s": -0.25,
-        "forward_mm": 8.0, "forward_s": 9.0, "share": 0.5,
+        "overruns": 6, "line": 7, "part": 8, "flags": 1, "x_mm": 0.5, "y_mm": 0.25,
+        "theta_rad": 0.125, "vx_mm_s": -0.25, "vy_mm_s": -0.125, "forward_mm": 9.0,
+        "forward_s": 10.0, "shown_s": 11.0, "share": 0.5,
     }  # fmt: skip
+    assert tick.dtype.names == (*want, "frame")
     assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want
     np.testing.assert_array_equal(tick["frame"], np.full(SHAPE, 1 / 1024, np.float32))
 
@@ -99,3 +127,68 @@ def test_beside_a_writer_that_does_not_wait_records_are_whole_and_counted():
     np.testing.assert_array_equal(ticks["time_ns"], 10 * ticks["tick"])
     frames = ticks["frame"].reshape(-1, 6)
     np.testing.assert_array_equal(frames, np.repeat(ticks["tick"][:, None] / 1024, 6, axis=1))
+
+
+def test_each_reader_has_a_pace_of_its_own_and_holds_up_nobody():
+    size, count = 9, 100
+    memory = memoryview(bytearray(Ring.bytes_needed(SHAPE, size)))
+    writer = Ring(memory, SHAPE, size)
+    # Memory that cannot be written: whatever a reader does, the writer and others do not see it.
+    every, fast, slow = (RingReader(memory.toreadonly(), SHAPE, size) for _ in range(3))
+    seen = {every: [], fast: [], slow: []}
+    for n in range(count):
+        append(writer, n)
+        writer.publish()
+        for reader, pace in ((every, 1), (fast, 8), (slow, 50)):
+            if (n + 1) % pace == 0:
+                seen[reader] += reader.drain()["tick"].tolist()
+    assert seen[every] == list(range(count))
+    assert seen[fast] == list(range(96))
+    assert fast.drain()["tick"].tolist() == [96, 97, 98, 99]
+    assert seen[slow] == [*range(42, 50), *range(92, 100)]
+    assert (every.lost, fast.lost, slow.lost) == (0, 0, 84)
+
+
+def test_a_reader_that_joins_late_begins_with_the_newest_record():
+    memory = memoryview(bytearray(Ring.bytes_needed(SHAPE, 8)))
+    writer, reader = Ring(memory, SHAPE, 8), RingReader(memory, SHAPE, 8)
+    for n in range(30):
+        append(writer, n)
+    writer.publish()
+    late = RingReader(memory, SHAPE, 8)
+    assert late.drain()["tick"].tolist() == [29]
+    append(writer, 30)
+    writer.publish()
+    assert late.drain()["tick"].tolist() == [30]
+    assert (late.lost, late.cursor) == (0, 31)
+    assert reader.drain()["tick"].tolist() == list(range(24, 31))
+
+
+@pytest.mark.no_cover
+def test_readers_in_other_processes_see_whole_records_or_count_them():
+    count = 30_000
+    extent = shared.Extent(*SHAPE, 1, 64)
+    descriptor = shared.create()
+    _, memory = shared.divide(shared.attach(descriptor, extent), extent)
+    writer, here = Ring(memory, SHAPE, extent.ticks), RingReader(memory, SHAPE, extent.ticks)
+    command = [sys.executable, "-c", APART, str(descriptor), str(count - 1)]
+    pipe = {"stdout": subprocess.PIPE, "text": True, "pass_fds": (descriptor,)}
+    with (
+        subprocess.Popen([*command, "0"], **pipe) as fast,
+        subprocess.Popen([*command, "100000"], **pipe) as slow,
+    ):
+        assert [process.stdout.readline() for process in (fast, slow)] == ["joined\n"] * 2
+        ticks = 0
+        for n in range(count):
+            append(writer, n)
+            if n % 32 == 0:
+                ticks += here.drain().size
+        writer.publish()
+        ticks += here.drain().size
+        assert (ticks, here.lost) == (count, 0)
+        for process in (fast, slow):
+            told = json.loads(process.stdout.read())
+            assert told["ticks"] + told["lost"] == count
+            assert (told["wrong"], told["before"]) == (0, count - 1)
+            assert told["ticks"] > 0
+        assert told["lost"] > 0  # the slow one

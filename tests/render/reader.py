@@ -18,7 +18,7 @@ def read_back(frames, x_mm, *, array, mapping, geometry):
     frames : float[n, rows, columns]
         What the actuators did.
     x_mm : float64[n]
-        Where the carriage was at each frame.
+        Where the array's centre was at each frame.
     array, mapping, geometry
         What the frames were felt with.
 
@@ -36,7 +36,7 @@ def read_back(frames, x_mm, *, array, mapping, geometry):
     idle[: mapping.rows] = mapping.inverted
     swings = (frames - idle[:, None]) * (1 - 2 * idle)[:, None]
     raised = swings > swings.max() / 2
-    surface = x_mm[:, None] + array.column_offsets_mm()
+    surface = (x_mm - array.span_mm / 2)[:, None] + array.column_offsets_mm()
     radius = geometry.dot_width_mm / 2
     reach = surface.max() - geometry.dot_spacing_mm - geometry.dot_width_mm
     masks = np.zeros(1 + int(reach // geometry.cell_pitch_mm), np.uint8)

@@ -75,6 +75,7 @@ class Scene:
             "mapping": self.mapping,
             "geometry": self.geometry,
             "tuning": self.tuning,
+            "anchor_mm": 0.0,  # places of the scenes are the left column's
         }
 
     def renderer(self):

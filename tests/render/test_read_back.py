@@ -21,7 +21,8 @@ def every_cell(rng):
 
 def hand(rng, array, geometry, cells):
     """Positions of a hand that goes over the line and back, at no even speed."""
-    start, end = -array.span_mm - 3, geometry.extent_mm(cells) + 1
+    beyond_mm = array.span_mm / 2
+    start, end = -beyond_mm - 3, geometry.extent_mm(cells) + beyond_mm + 1
     even = np.arange(start, end, STEP_MM)
     there, back = even + rng.uniform(0, STEP_MM, (2, even.size))
     return np.concatenate([there, back[::-1]])

@@ -9,6 +9,7 @@ from vbraille.simulation.simulated import APPROACH_MM_S, SimulatedDevice
 from vbraille.simulation.steering import ReadLine, Steering
 
 SPAN_MM = 10.8
+HOME_MM = -SPAN_MM / 2  # of the array's centre at the left stop
 
 
 @pytest.fixture
@@ -22,7 +23,7 @@ def device(clock):
 
 
 def test_it_begins_at_the_left_stop(device):
-    assert device.read().x_mm == pytest.approx(-SPAN_MM)
+    assert device.read().x_mm == pytest.approx(HOME_MM)
     assert not device.moving
 
 
@@ -33,7 +34,7 @@ def test_the_hand_moves_in_the_clock_s_time_to_the_encoder_s_count(clock, device
         clock.advance_ns(1_000_000)
         sample = device.read()
         assert sample.time_ns == clock.now_ns()
-        seen.add(round((sample.x_mm + SPAN_MM) * 200, 6))
+        seen.add(round((sample.x_mm - HOME_MM) * 200, 6))
     assert seen == set(range(21))  # 0.1 mm at 200 counts a mm
     assert not device.moving
 
@@ -45,7 +46,8 @@ def test_a_hand_elsewhere_goes_to_where_its_motion_begins(clock, device):
         places.append(device.read().x_mm)
         clock.advance_ns(1_000_000)
     assert np.abs(np.diff(places)).max() <= APPROACH_MM_S / 1000 + 1 / 200
-    assert max(places) == pytest.approx(60, abs=1 / 200)
+    # A motion is of the left column.
+    assert max(places) == pytest.approx(60 + SPAN_MM / 2, abs=1 / 200)
 
 
 def test_the_carriage_stops_at_its_ends(clock, device):
@@ -54,8 +56,8 @@ def test_the_carriage_stops_at_its_ends(clock, device):
     for _ in range(3000):
         places.append(device.read().x_mm)
         clock.advance_ns(1_000_000)
-    assert max(places) == pytest.approx(300 - SPAN_MM)
-    assert min(places) == pytest.approx(-SPAN_MM)
+    assert max(places) == pytest.approx(HOME_MM + 300)
+    assert min(places) == pytest.approx(HOME_MM)
 
 
 @pytest.mark.parametrize(
@@ -117,9 +119,9 @@ def test_a_motion_goes_on_by_another_clock(clock, device):
     other = ManualClock()
     device.go_by(other.now_ns)
     clock.advance_ns(500_000_000)
-    assert device.read()[:2] == (0, pytest.approx(-SPAN_MM + 5))
+    assert device.read()[:2] == (0, pytest.approx(HOME_MM + 5))
     other.advance_ns(250_000_000)
-    assert device.read()[:2] == (250_000_000, pytest.approx(-SPAN_MM + 7.5))
+    assert device.read()[:2] == (250_000_000, pytest.approx(HOME_MM + 7.5))
 
 
 def test_levels_are_as_coarse_as_it_says():

@@ -194,13 +194,13 @@ def examples(sittings: Sequence[Sitting]) -> tuple[Table, Picture] | None:
             "counts": int(example.start_s <= time_s <= example.end_s),
         }
         for session, example in chosen
-        for time_s, x_mm in zip(example.time_s.tolist(), example.x_mm.tolist(), strict=True)
+        for time_s, x_mm in zip(example.time_s.tolist(), example.left_mm.tolist(), strict=True)
     ]
     paths = tuple(
         Path(
             f"{example.pattern}: {example.participant}, {name_string(example.presented)}",
             tuple(example.time_s.tolist()),
-            tuple(example.x_mm.tolist()),
+            tuple(example.left_mm.tolist()),
             example.start_s,
             example.end_s,
             example.span_mm,

@@ -108,9 +108,9 @@ def read(trajectory: Trajectory) -> Reading:
     """Tell what the hand did in a trial, within the time that counts."""
     found = trajectory.duration
     counts = slice(found.start, found.end + 1)
-    known = np.isfinite(trajectory.x_mm[counts])
-    x_mm = trajectory.x_mm[counts][known]
-    made = strokes(x_mm, trajectory.time_ns[counts][known])
+    known = np.isfinite(trajectory.left_mm[counts])
+    left_mm = trajectory.left_mm[counts][known]
+    made = strokes(left_mm, trajectory.time_ns[counts][known])
     first_mm = trajectory.edges_mm[0]
     last_mm = trajectory.edges_mm[-1] + trajectory.dot_mm
     half_mm = trajectory.span_mm / 2
@@ -126,7 +126,7 @@ def read(trajectory: Trajectory) -> Reading:
     passes = sum(part >= PASS_SHARE for part in shares)
     rescans = sum(RESCAN_SHARE <= part < PASS_SHARE for part in shares)
     return Reading(
-        _pattern(share(float(x_mm.min()), float(x_mm.max())), passes, rescans),
+        _pattern(share(float(left_mm.min()), float(left_mm.max())), passes, rescans),
         found.seconds,
         found.returned,
         passes,

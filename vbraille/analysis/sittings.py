@@ -47,7 +47,7 @@ class Example:
         Of its reading.
     time_s : float64[n]
         Since the first tick of the attempt; n is at most `MOST_PICKED`.
-    x_mm : float64[n]
+    left_mm : float64[n]
         Where the array's left column was at these ticks.
     start_s, end_s
         The time that counts for the duration; both are among ``time_s``.
@@ -63,7 +63,7 @@ class Example:
     presented: str
     pattern: str
     time_s: NDArray[np.float64]
-    x_mm: NDArray[np.float64]
+    left_mm: NDArray[np.float64]
     start_s: float
     end_s: float
     span_mm: float
@@ -182,7 +182,7 @@ def pick(x_mm: NDArray[np.float64], kept: Sequence[int]) -> NDArray[np.intp]:
 
 def _picture(trajectory: Trajectory, trial: Trial, participant: str, pattern: str) -> Example:
     found, begun_ns = trajectory.duration, trajectory.time_ns[0]
-    ticks = pick(trajectory.x_mm, (found.start, found.end))
+    ticks = pick(trajectory.left_mm, (found.start, found.end))
     start_s, end_s = (trajectory.time_ns[[found.start, found.end]] - begun_ns) / 1e9
     return Example(
         trial.number,
@@ -191,7 +191,7 @@ def _picture(trajectory: Trajectory, trial: Trial, participant: str, pattern: st
         trial.presented,
         pattern,
         (trajectory.time_ns[ticks] - begun_ns) / 1e9,
-        trajectory.x_mm[ticks],
+        trajectory.left_mm[ticks],
         float(start_s),
         float(end_s),
         trajectory.span_mm,

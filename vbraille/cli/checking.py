@@ -154,7 +154,7 @@ class _Check:
             self._say("place: none was told")
             return []
         info = self._device.display
-        low_mm, high_mm = (round(x_mm + info.span_mm, 1) + 0.0 for x_mm in rate.x_mm)
+        low_mm, high_mm = (round(x_mm + info.span_mm / 2, 1) + 0.0 for x_mm in rate.x_mm)
         self._say(
             f"place: {low_mm:.1f} to {high_mm:.1f} mm from the left stop, of "
             f"{info.travel_mm:g} mm; {_PLACE_SLACK_MM:g} mm beyond either end are allowed"

@@ -99,14 +99,15 @@ def run(arguments: argparse.Namespace) -> int:
 def _walk(
     page: Page, hand: Hand | Recorded, rate_hz: float
 ) -> Iterator[tuple[Line, NDArray[np.float64]]]:
-    """Lines, each with the places of the array's left column while it is under the hand."""
+    """Lines, each with the places of the array's centre while it is under the hand."""
     span_mm = page.model.display.span_mm
-    recorded = hand.motion().sample(rate_hz) if isinstance(hand, Recorded) else None
+    middle_mm = span_mm / 2  # hands move the left column
+    recorded = hand.motion().sample(rate_hz) + middle_mm if isinstance(hand, Recorded) else None
     for line in page.lines():
         end_mm = page.model.style.geometry.extent_mm(len(line))
         if recorded is None:
             assert not isinstance(hand, Recorded)
-            yield line, hand.read_line(-span_mm, end_mm).sample(rate_hz)
+            yield line, hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm
             continue
         if not recorded.size:
             return

@@ -101,6 +101,7 @@ class Sitting:
                     keeps=answers.felt,
                     tie=tie,
                     steering=self._steering,
+                    centred=record.centred,
                 )
             sound = self._sound(answers)
             course = Course(

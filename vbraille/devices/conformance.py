@@ -57,10 +57,11 @@ def check_samples(open_device: Open) -> None:
             if sample is None:
                 continue
             assert isinstance(sample, Pose), "read gives a Pose or None"
-            assert math.isfinite(sample.x_mm), "a place is a number"
+            assert all(map(math.isfinite, sample[1:])), "a place is a number"
             slack = 1 / info.counts_per_mm
-            assert -info.span_mm - slack <= sample.x_mm, "the left stop is at -span"
-            assert sample.x_mm <= info.travel_mm - info.span_mm + slack, "the travel ends"
+            way_mm = sample.x_mm + info.span_mm / 2
+            assert -slack <= way_mm, "at the left stop the array's centre is at -span_mm / 2"
+            assert way_mm <= info.travel_mm + slack, "the travel ends"
             assert last_ns is None or sample.time_ns >= last_ns, "time never goes back"
             last_ns = sample.time_ns
 

@@ -32,7 +32,8 @@ class Place:
         self._bits = info.count_bits
         self._encoder = info.encoder
         self._stop = info.left_stop_count
-        self._home_mm = -(info.columns - 1) * info.column_pitch_nm / 1e6
+        # At the left stop the whole array stands before the line.
+        self._home_mm = -(info.columns - 1) * info.column_pitch_nm / 2e6
         self._mm_per_count = info.count_sign * 1000 / info.counts_per_m
         self._count: int | None = None  # the one that does not wrap
         self._zero: int | None = None if self._encoder is Encoder.INCREMENTAL else self._stop
@@ -44,7 +45,7 @@ class Place:
         }[self._encoder]
 
     def x_mm(self, state: State) -> float | None:
-        """Place of column 0 by a STATE, which must be newer than those before; None if unknown."""
+        """Place of the array's centre by a STATE newer than those before; None if unknown."""
         if self._encoder is Encoder.INDEX and not state.placed:
             self._count, self.known, self.placing = None, False, Placing.MARK
             return None

@@ -15,25 +15,25 @@ HOME_MM = 1.0
 class EndOfLine:
     """Watch a hand read a line.
 
-    The line is reached its end when the middle of the array passes the last
+    The hand has reached the line's end when the array's centre passes the last
     dot, and is done when the array is then back at the left stop, to a
     millimetre.
 
     Parameters
     ----------
     span_mm
-        Of the array.
+        From the array's left column to its right one.
     end_mm
         Right edge of the line's last dot.
     """
 
     def __init__(self, span_mm: float, end_mm: float) -> None:
         self.reached = False
-        self._end_mm = end_mm - span_mm / 2
-        self._home_mm = HOME_MM - span_mm
+        self._end_mm = end_mm
+        self._home_mm = HOME_MM - span_mm / 2
 
     def find(self, x_mm: NDArray[np.float64]) -> int | None:
-        """First of these places, float64[n], at which the line is done; None if it is not yet."""
+        """First of these places, float64[n], that ends the line; None if none does."""
         start = 0
         if not self.reached:
             at_end = np.flatnonzero(x_mm >= self._end_mm)

@@ -46,7 +46,7 @@ class Rate:
     clock_s
         Seconds that the device's clock goes on in one second of the computer's.
     x_mm
-        Where its left column was: leftmost and rightmost.
+        Where the array's centre was: leftmost and rightmost.
     """
 
     ticks: int

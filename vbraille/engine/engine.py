@@ -34,7 +34,7 @@ class Engine(Protocol):
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column was at the last poll; None before it is known."""
+        """Where the array's centre was at the last poll; None before it is known."""
         ...
 
     @property
@@ -77,7 +77,7 @@ class Engine(Protocol):
 
 
 def place_of(tick: np.void | None) -> float | None:
-    """Where the array's left column was in a record; None if that was not known."""
+    """Where the array's centre was in a record; None if that was not known."""
     if tick is None or math.isnan(tick["x_mm"]):
         return None
     return float(tick["x_mm"])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
+from vbraille.engine.ring import RingReader
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 
@@ -208,7 +209,7 @@ class Host:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column was at the last poll; None before it is known."""
+        """Where the array's centre was at the last poll; None before it is known."""
         return place_of(self.newest)
 
     @property

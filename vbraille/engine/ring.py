@@ -77,33 +77,38 @@ class Ring:
 
 
 class RingReader:
-    """One reader's end; there may be any number, in any process, and none holds up another.
+    """A reader's end; there may be many on one memory, in this process and in others.
+
+    It begins with the newest record that is there when it joins; one that joins before the
+    writer's first sees all.
 
     Parameters
     ----------
     buffer, shape, size
-        As the writer's.
+        As the writer's. Nothing is written to the memory, which may be read-only.
 
     Attributes
     ----------
+    cursor : int
+        Number of the tick that comes next.
     lost : int
-        Records that were overwritten before this reader had them.
+        Records that were overwritten before this reader drained them.
     """
 
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
         self.lost = 0
         self._size = size
-        self._published = np.frombuffer(buffer, np.int64, 1)
+        self._published = buffer[:_HEADER_BYTES].cast("q")
         self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
-        self._drained = int(self._published[0])
+        self.cursor = max(self._published[0] - 1, 0)
 
     def drain(self) -> NDArray[np.void]:
-        """Records since the last call, oldest first; `vbraille.engine.record.tick_dtype`[n]."""
-        end = int(self._published[0])
-        first = max(self._drained, end - self._size)
+        """Records since the last call, oldest first: copies, of `tick_dtype`."""
+        end = self._published[0]
+        first = max(self.cursor, end - self._size)
         ticks = self._records[np.arange(first, end) % self._size]
         # The slot after the last published one may be in the writing.
-        whole = max(first, int(self._published[0]) + 1 - self._size)
-        self.lost += min(whole, end) - self._drained
-        self._drained = end
+        whole = min(max(first, self._published[0] + 1 - self._size), end)
+        self.lost += whole - self.cursor
+        self.cursor = end
         return ticks[whole - first :]

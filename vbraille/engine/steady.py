@@ -11,14 +11,13 @@ from __future__ import annotations
 
 import errno
 
-import numpy as np
 from numba import njit
 
 from vbraille import libc
 from vbraille.caching import keep_compiled
 from vbraille.devices import steady
 from vbraille.engine.kernels import POSE_X, POSED, advance
-from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK
+from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
 
 # Why it ended, beside that the ticks asked for are done.
 DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
@@ -46,7 +45,7 @@ _EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _changed(orders, known):
     """Whether there is anything new in the mailbox."""
-    for word in range(orders.size):
+    for word in range(orders.size):  # noqa: SIM110
         if orders[word] != known[word]:
             return True
     return False

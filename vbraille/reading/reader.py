@@ -142,7 +142,7 @@ class Reader:
             if not self._finished:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
                     self._say(sentence)
-        self._watch_speed(float(ticks["speed_mm_s"].max()))
+        self._watch_speed(float(ticks["vx_mm_s"].max()))
 
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does by itself."""
@@ -181,7 +181,7 @@ class Reader:
         line, x_mm = self._line, self.engine.x_mm
         cell = None
         if line is not None and x_mm is not None:
-            cell = locate(line, self.style.geometry, x_mm + self._model.display.span_mm / 2)
+            cell = locate(line, self.style.geometry, x_mm)
         word = line.word(cell) if line is not None and cell is not None else ""
         self._say(f"word: {word}" if word else "word: none here")
 

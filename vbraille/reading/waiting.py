@@ -54,8 +54,7 @@ class Waiting:
         self, span_mm: float, end_mm: float, number: int, *, by_hand: bool, keys: bool
     ) -> None:
         self.hopeless: str | None = None
-        self._middle_mm = span_mm / 2
-        self._home_mm = HOME_MM - span_mm
+        self._home_mm = HOME_MM - span_mm / 2
         self._end_mm = end_mm
         self._number = number
         self._by_hand = by_hand
@@ -140,7 +139,7 @@ class Waiting:
                 f"comes, or {self._otherwise}"
             )
         return (
-            f"waiting: the finger is still at {max(self._at_mm + self._middle_mm, 0):.0f} mm, and "
+            f"waiting: the finger is still at {max(self._at_mm, 0):.0f} mm, and "
             f"line {self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to "
             f"the left, or {self._otherwise}"
         )
@@ -160,9 +159,8 @@ class Waiting:
             self._farthest_mm = max(self._farthest_mm, float(np.fmax.reduce(away)))
         if not home.size:
             return
-        place_mm = self._farthest_mm + self._middle_mm
-        if self._farthest_mm > self._home_mm + LEAST_WAY_MM and place_mm < self._end_mm:
-            self._turns_mm.append(place_mm)
+        if self._home_mm + LEAST_WAY_MM < self._farthest_mm < self._end_mm:
+            self._turns_mm.append(self._farthest_mm)
             last = self._turns_mm[-TURNS:]
             if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
                 self.hopeless = (

@@ -57,9 +57,13 @@ SWINGS = {Profile.HALF_SINE: half_sine, Profile.RAISED_COSINE: raised_cosine}
 
 
 def deflections(
-    x_mm: ArrayLike, masks: NDArray[np.uint8], style: BrailleStyle, display: Display
+    x_mm: ArrayLike,
+    masks: NDArray[np.uint8],
+    style: BrailleStyle,
+    display: Display,
+    anchor_mm: float | None = None,
 ) -> NDArray[np.float64]:
-    """Frames of a line for places of the array's left column.
+    """Frames of a line for places of the array's centre.
 
     Parameters
     ----------
@@ -69,15 +73,19 @@ def deflections(
         The line.
     style, display
         How it is shown, and on what.
+    anchor_mm
+        How far right of the left column the point is whose places are given; the centre if
+        nothing is said.
 
     Returns
     -------
     float64[n, rows, columns]
         Deflections, 0 … 1.
     """
+    anchor_mm = display.span_mm / 2 if anchor_mm is None else anchor_mm
     x = np.atleast_1d(np.asarray(x_mm, np.float64))
     geometry, mapping, tuning = style.geometry, style.mapping, style.tuning
-    surface = x[:, None] + display.column_offsets_mm()  # eq. 3.1
+    surface = (x - anchor_mm)[:, None] + display.column_offsets_mm()  # eq. 3.1
     swing = np.zeros((x.size, display.rows, display.columns))
     own = style.rows_on(display)
     for cell, mask in enumerate(masks):

@@ -133,6 +133,7 @@ class BrailleStyle:
         own = self.rows_on(display)
         slots = 2 * (max(len(masks) for masks in lines) + 2)
         numbers = head(display, kind, work.IDLE + 2 * display.rows, geometry.line_pitch_mm / 2)
+        numbers[work.ANCHOR] = display.span_mm / 2
         numbers[work.COLUMN_PITCH] = display.column_pitch_mm
         numbers[work.ROW_PITCH] = display.row_pitch_mm
         numbers[work.LINE_PITCH] = geometry.line_pitch_mm

@@ -152,15 +152,15 @@ class SimulatedDevice(Device):
         info = self._info
         way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
-        return Pose(now_ns, counts / info.counts_per_mm - info.span_mm)
+        return Pose(now_ns, counts / info.counts_per_mm - info.span_mm / 2)
 
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Where `read` finds it at times of its clock if nothing comes between; float64[n]."""
+        """Where `read` finds the centre at these times, if nothing comes between; float64[n]."""
         # Said twice: for the one place of a `read`, arrays would take several times as long.
         info = self._info
         hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm)
         way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
-        return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm
+        return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
 
     def _hand_mm(self, now_ns: int) -> float:
         return float(np.interp((now_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm))

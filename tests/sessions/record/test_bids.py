@@ -85,7 +85,7 @@ def test_every_column_is_described(files):
         assert sidecar[name].get("Units") == unit
     sidecar = json.loads(files[f"{RECORDING}.json"])
     assert (sidecar["SamplingFrequency"], sidecar["StartTime"]) == (1000.0, 0.0)
-    assert sidecar["Columns"] == ["x_mm", "speed_mm_s", "frame", "line", "flags"]
+    assert sidecar["Columns"] == ["x_mm", "y_mm", "speed_mm_s", "frame", "line", "flags"]
     assert all(sidecar[name]["Description"] for name in sidecar["Columns"])
     assert (sidecar["x_mm"]["Units"], "Units" in sidecar["flags"]) == ("mm", False)
 
@@ -97,9 +97,9 @@ def test_a_recording_is_its_trace(record, files):
     assert len(read) == ticks.size  # no deadline was missed
     for name, field in (("frame", "tick"), ("line", "line"), ("flags", "flags")):
         assert [int(row[name]) for row in read] == ticks[field].tolist()
-    for name in ("x_mm", "speed_mm_s"):
+    for name, field in (("x_mm", "x_mm"), ("y_mm", "y_mm"), ("speed_mm_s", "vx_mm_s")):
         values = [np.nan if row[name] == "n/a" else float(row[name]) for row in read]
-        np.testing.assert_allclose(values, ticks[name], rtol=1e-5, atol=1e-12)
+        np.testing.assert_allclose(values, ticks[field], rtol=1e-5, atol=1e-12)
 
 
 def test_rows_are_at_regular_times_whatever_was_missed(record):

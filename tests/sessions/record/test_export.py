@@ -39,7 +39,7 @@ def test_durations_are_those_of_the_trace(sat):
     ticks = read_trace(sat.record.folder / "trace-001.gz").ticks
     protocol = sat.record.protocol
     # Whatever is shown begins with c, after a blank cell; S is 11 pitches of 0.7 mm.
-    edge_mm = protocol.geometry.cell_pitch_mm - 11 * 0.7
+    edge_mm = protocol.geometry.cell_pitch_mm - 11 * 0.7 / 2
     for row in rows(sat.record):
         x_mm = ticks["x_mm"][ticks["line"] == row["trial"]]
         t_s = ticks["time_ns"][ticks["line"] == row["trial"]] / 1e9

@@ -14,9 +14,13 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Stimulus
 
 
-def render(protocol: Protocol, stimulus: Stimulus, tuning: Tuning) -> Program:
-    """Picture of a stimulus."""
+def render(
+    protocol: Protocol, stimulus: Stimulus, tuning: Tuning, *, anchor_mm: float | None = None
+) -> Program:
+    """Picture of a stimulus, for places of the array's centre, or of the anchor that is given."""
     style = replace(
         protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry, tuning=tuning
     )
-    return style.render(np.array(protocol.line(stimulus.masks), np.uint8), protocol.model.display)
+    masks = np.array(protocol.line(stimulus.masks), np.uint8)
+    program = style.render(masks, protocol.model.display)
+    return program if anchor_mm is None else program.with_anchor(anchor_mm)

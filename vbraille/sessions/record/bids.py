@@ -18,6 +18,7 @@ from vbraille.sessions.record.anonymous import anonymous, number_of
 from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
 from vbraille.sessions.record.export import COLUMNS, Traces, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
+from vbraille.sessions.record.traces import posed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,10 +31,12 @@ _ROWS = 1000  # formatted at once
 _LEVEL = 3  # of gzip: higher ones take longer than all the rest
 _UNITS = {name: unit for name in COLUMNS for unit in ("s", "mm") if name.endswith(f"_{unit}")}
 SESSION = "SessionNumber"  # by which a session is known to be in a dataset
+_CHANGED = "What was exported before 22 November 2026 has the place of the left column"
 # Column of a recording: where it comes from, how it is printed, and what it is.
 _RECORDED = {
-    "x_mm": ("x_mm", "%.6g", "mm", "place of the array's left column"),
-    "speed_mm_s": ("speed_mm_s", "%.6g", "mm/s", "of the hand, to the right"),
+    "x_mm": ("x_mm", "%.6g", "mm", f"place of the array's centre along the line. {_CHANGED}"),
+    "y_mm": ("y_mm", "%.6g", "mm", "place across the lines, to the reader; 0 if not measured"),
+    "speed_mm_s": ("vx_mm_s", "%.6g", "mm/s", "of the hand, to the right"),
     "frame": ("tick", "%d", "", "number of the frame, from 0"),
     "line": ("line", "%d", "", "number of what was shown last, as in the journal; 0 before"),
     "flags": ("flags", "%d", "", "bits, as docs/session-format.md has them"),
@@ -91,7 +94,7 @@ def files(
         if ticks is None or not ticks.size:
             continue
         name += "_recording-carriage_physio"
-        made[f"{name}.tsv.gz"] = _recording(ticks)
+        made[f"{name}.tsv.gz"] = _recording(posed(ticks, record.protocol.model.display.span_mm / 2))
         made[f"{name}.json"] = _json(
             {
                 "SamplingFrequency": record.head["rate_hz"],
@@ -130,7 +133,7 @@ def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
 
 
 def _recording(ticks: NDArray[np.void]) -> bytes:
-    """Columns of a trace at regular times: a row a deadline, n/a where it was missed."""
+    """Columns of `TRACE`[n] at regular times: a row a deadline, n/a where it was missed."""
     due = ticks["tick"] + ticks["late"]
     row = "\t".join(form for _, form, _, _ in _RECORDED.values()) + "\n"
     missing = "\t".join(["n/a"] * len(_RECORDED)) + "\n"

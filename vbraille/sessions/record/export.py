@@ -21,6 +21,7 @@ from vbraille.sessions.planning.spelling import to_braille
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.traces import left_places_mm
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
 
 if TYPE_CHECKING:
@@ -306,22 +307,23 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
         return "no dot of it is shown"
     felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
     ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
-    x_mm, time_ns = ticks["x_mm"].copy(), ticks["time_ns"].copy()
-    span_mm = protocol.model.display.span_mm
+    span_mm, time_ns = protocol.model.display.span_mm, ticks["time_ns"].copy()
+    left_mm = left_places_mm(ticks, span_mm / 2)
 
     def moved() -> NDArray[np.bool_]:
         # Few sessions need it, and numba takes its time to be imported.
         from vbraille.sessions.planning.pictures import render
 
-        renderer = render(protocol, stimulus, replace(stimulus.tuning, **told.tuning))
-        frames = renderer.path(x_mm)
+        tuning = replace(stimulus.tuning, **told.tuning)
+        renderer = render(protocol, stimulus, tuning, anchor_mm=0.0)
+        frames = renderer.path(left_mm)
         idle = renderer.path(np.full(1, np.nan))
         return (frames != idle).any(axis=(1, 2))
 
-    found = duration(x_mm, time_ns, moved, edge_mm=edges[0], span_mm=span_mm)
+    found = duration(left_mm, time_ns, moved, edge_mm=edges[0], span_mm=span_mm)
     if found is None:
         return NEVER_CAME
-    return Trajectory(x_mm, time_ns, edges, stimulus.geometry.dot_width_mm, span_mm, found)
+    return Trajectory(left_mm, time_ns, edges, stimulus.geometry.dot_width_mm, span_mm, found)
 
 
 def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:

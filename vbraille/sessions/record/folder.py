@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.record.journal import Tie, Told
 
-FORMAT = 2
+FORMAT = 3
+_CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -60,6 +61,11 @@ class Record:
     protocol: Protocol
     plan: Plan
     told: Told
+
+    @property
+    def centred(self) -> bool:
+        """Whether its traces have places of the array's centre; else they are its left column's."""
+        return self.told.format >= _CENTRED_FROM
 
 
 def check_free(folder: Path) -> None:

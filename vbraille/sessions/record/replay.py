@@ -56,8 +56,8 @@ class Replay:
 
         Parameters
         ----------
-        ticks : `vbraille.sessions.record.traces.TRACE`[n]
-            Those after the ones before.
+        ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
+            Those after the ones before, as they were written; the pictures are for their places.
 
         Returns
         -------
@@ -104,8 +104,8 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
     ------
     line : int
         Number of what was shown, as the journal has it; 0 before the first of a run.
-    ticks : `vbraille.sessions.record.traces.TRACE`[n]
-        Of a stretch of that line.
+    ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
+        Of a stretch of that line, as they were written.
     deflections : float64[n, rows, columns]
         Their frames, 0 … 1.
 
@@ -132,6 +132,7 @@ class _Pictures:
 
     def __init__(self, record: Record, progress: Progress) -> None:
         self._protocol = record.protocol
+        self._anchor_mm = None if record.centred else 0.0
         self._shown = {
             showing.line: (trial.stimuli[showing.stimulus], showing.tuning)
             for trial in (*record.plan.practice, *record.plan.trials)
@@ -141,4 +142,5 @@ class _Pictures:
     def of(self, line: int) -> Program:
         """Picture of a line number."""
         stimulus, tuning = self._shown[line]
-        return render(self._protocol, stimulus, replace(stimulus.tuning, **tuning))
+        tuning = replace(stimulus.tuning, **tuning)
+        return render(self._protocol, stimulus, tuning, anchor_mm=self._anchor_mm)

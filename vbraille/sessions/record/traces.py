@@ -1,7 +1,8 @@
 """Traces: every tick of a run of the engine, appended as it happens.
 
 A trace is a chain of gzip members, each with the ticks of some part of a
-second: records of `TRACE`, little endian. A member's header has an extra field
+second: records of `TRACE`, little endian, or in sessions of formats 1 and 2 of
+`LEFT_TRACE`, which have the place of the array's left column. A member's header has an extra field
 with its length and its checksum, so that a trace can be read to the last whole
 one after a crash, and no bit of it flips unseen; gzip itself reads it too. A
 second field names the last line of the journal that was on the disk by then, so
@@ -38,29 +39,44 @@ TRACE = np.dtype(
         ("device_ns", "<i8"),  # of the sample, by the device's clock
         ("late", "<i8"),  # deadlines missed so far
         ("line", "<i8"),  # number of what is under the hand; 0 before the first
+        ("part", "<i8"),  # which part of a picture that has several is under the array
         ("flags", "<i8"),  # of `vbraille.engine.record.Flag`
-        ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
-        ("speed_mm_s", "<f8"),
+        ("x_mm", "<f8"),  # where the array is, a `vbraille.pose.Pose`; NaN before the first sample
+        ("y_mm", "<f8"),
+        ("theta_rad", "<f8"),
+        ("vx_mm_s", "<f8"),  # velocity of the hand
+        ("vy_mm_s", "<f8"),
+        ("shown_s", "<f8"),  # the picture's own time since its start, if it moves by itself
         ("share", "<f8"),  # how much of a change has faded in: 1 is all
     ]
 )
+LEFT_TRACE = np.dtype(
+    [
+        *((name, "<i8") for name in ("tick", "time_ns", "device_ns", "late", "line", "flags")),
+        ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
+        ("speed_mm_s", "<f8"),  # to the right
+        ("share", "<f8"),
+    ]
+)
 CHUNK_TICKS = 1000
-_FIELDS: tuple[str, ...] = TRACE.names or ()
 _LEVEL = 1  # the fastest; higher ones gain little on counts
-# RFC 1952: no name, no time, level 1, Unix, extra fields. The first, "vb" of 8 bytes, has the
-# length of the member and the checksum of what comes after the field; format 1 has no other. The
-# second, "vj" of 8 bytes, has the tie to the journal: the number of a line, and its checksum.
+# RFC 1952: no name, no time, level 1, Unix, extra fields. The first, of 8 bytes, has the length of
+# the member and the checksum of what comes after the field; it is called "vp" before records of
+# `TRACE`, and "vb" before those of `LEFT_TRACE`. Format 1 has no other. The second, "vj" of 8
+# bytes, has the tie to the journal: the number of a line, and its checksum.
 _START = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3))
-_LENGTH_FIELD = b"vb\x08\x00"
 _TIE_FIELD = b"vj\x08\x00"
-_LOOSE = _START + b"\x0c\x00" + _LENGTH_FIELD
-_TIED = _START + b"\x18\x00" + _LENGTH_FIELD
+_RECORDS = {b"vp\x08\x00": TRACE, b"vb\x08\x00": LEFT_TRACE}
+_LOOSE = {_START + b"\x0c\x00" + name: record for name, record in _RECORDS.items()}
+_TIED = {_START + b"\x18\x00" + name: record for name, record in _RECORDS.items()}
+_HEADS = _LOOSE | _TIED
+_HEAD_BYTES = len(_START) + 6
 _EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
 _SIZE = struct.Struct("<I")  # the last of a member: of what was deflated
 _MOST_THREADS = 4
 _WORTH_A_THREAD = 16  # members
-_AFTER_LENGTH = len(_LOOSE) + _EXTRA.size
+_AFTER_LENGTH = _HEAD_BYTES + _EXTRA.size
 _AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + _EXTRA.size
 
 
@@ -74,6 +90,9 @@ class TraceWriter:
     tie
         Tells which line of the journal is on the disk; None in a session of format 1, whose
         traces are not tied.
+    left_mm
+        How far the array's left column is left of its centre, in a session of format 1 or 2,
+        whose traces have places of the left column; None in others.
 
     Raises
     ------
@@ -81,9 +100,12 @@ class TraceWriter:
         If the disk does not take it.
     """
 
-    def __init__(self, path: Path, tie: Callable[[], Tie] | None = None) -> None:
+    def __init__(
+        self, path: Path, tie: Callable[[], Tie] | None = None, left_mm: float | None = None
+    ) -> None:
         self._path = path
         self._tie = tie
+        self._left_mm = left_mm
         self._tied: Tie | None = None
         self._bytes = 0
         self._sum = sha256()
@@ -97,13 +119,20 @@ class TraceWriter:
     def add(self, ticks: NDArray[np.void]) -> None:
         """Take records of the engine's ring; what makes a chunk is written."""
         if ticks.size:
-            part = np.empty(ticks.size, TRACE)
-            for name in _FIELDS:
-                part[name] = ticks[name]
-            self._waiting.append(part)
+            self._waiting.append(self._records(ticks))
             self._count += ticks.size
         if self._count >= CHUNK_TICKS:
             self.flush()
+
+    def _records(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
+        """Records as the session's format has them."""
+        record = TRACE if self._left_mm is None else LEFT_TRACE
+        made = np.empty(ticks.size, record)
+        for name in record.names or ():
+            made[name] = ticks["vx_mm_s" if name == "speed_mm_s" else name]
+        if self._left_mm is not None:
+            made["x_mm"] -= self._left_mm
+        return made
 
     def flush(self) -> None:
         """Write what is waiting."""
@@ -112,7 +141,7 @@ class TraceWriter:
 
     def _write(self, ticks: bytes) -> None:
         tie = None if self._tie is None else self._tie()
-        chunk = _squeeze(ticks, tie)
+        chunk = _squeeze(ticks, tie, TRACE if self._left_mm is None else LEFT_TRACE)
         self._waiting, self._count, self._tied = [], 0, tie
         try:
             written = self._file.write(chunk)
@@ -159,8 +188,8 @@ class Trace:
 
     Parameters
     ----------
-    ticks : `TRACE`[n]
-        Of its whole chunks.
+    ticks : `TRACE`[n] or `LEFT_TRACE`[n]
+        Of its whole chunks, as they were written; `posed` and `left_places_mm` are of both kinds.
     torn_bytes
         Length of a last chunk that a crash cut short.
     damage
@@ -169,7 +198,7 @@ class Trace:
         The journal's lines that its whole chunks name, each once.
     loose
         Whether a whole chunk of it names none.
-    later : `TRACE`[m], …
+    later : `TRACE`[m] or `LEFT_TRACE`[m], …
         Of the whole chunks after the damage, a stretch after each place that is damaged.
     """
 
@@ -184,6 +213,7 @@ class Trace:
 class _Member(NamedTuple):
     """A whole gzip member: its length, what was deflated, the size of that in bytes, its tie."""
 
+    record: np.dtype
     length: int
     deflated: memoryview
     size: int
@@ -205,14 +235,16 @@ def read_trace(path: Path) -> Trace:
     view = memoryview(trace)
     stretches: list[list[_Member]] = [[]]
     at, damage, torn_bytes = 0, None, 0
+    record = None
     while at < len(trace):
         try:
-            member = _check_member(view[at:])
+            member = _check_member(view[at:], record)
             after = at if member is None else at + member.length
         except ValueError:
             member, after = None, _next_start(trace, at + 1)
         if member is not None:
             stretches[-1].append(member)
+            record = member.record
         elif after == at and (after := _next_start(trace, at + 1)) == len(trace):
             torn_bytes = len(trace) - at if damage is None else 0
         elif damage is None:
@@ -222,7 +254,7 @@ def read_trace(path: Path) -> Trace:
             stretches.append([])
         at = after
     ties = [member.tie for members in stretches for member in members]
-    first, *later = (_inflate([(m.deflated, m.size) for m in members]) for members in stretches)
+    first, *later = (_inflate(members, record or TRACE) for members in stretches)
     return Trace(
         first,
         torn_bytes,
@@ -246,8 +278,8 @@ def read_last_tie(path: Path) -> Tie | None:
             while at + _AFTER_TIE <= size:
                 file.seek(at)
                 head = file.read(_AFTER_TIE)
-                length, _ = _EXTRA.unpack_from(head, len(_TIED))
-                if not head.startswith(_TIED) or length < _AFTER_TIE or at + length > size:
+                length, _ = _EXTRA.unpack_from(head, _HEAD_BYTES)
+                if head[:_HEAD_BYTES] not in _TIED or not _AFTER_TIE <= length <= size - at:
                     break
                 last = Tie(*_EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD)))
                 at += length
@@ -256,40 +288,75 @@ def read_last_tie(path: Path) -> Tie | None:
     return last
 
 
-def _squeeze(chunk: bytes, tie: Tie | None) -> bytes:
+def posed(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.void]:
+    """Ticks of a trace of any format, with places of the array's centre.
+
+    Parameters
+    ----------
+    ticks : `TRACE`[n] or `LEFT_TRACE`[n]
+        As they were written.
+    left_mm
+        How far the array's left column is left of its centre.
+
+    Returns
+    -------
+    `TRACE`[n]
+        Where the hand was measured along x only, y and its velocity are 0.
+    """
+    if ticks.dtype == TRACE:
+        return ticks
+    made = np.zeros(ticks.size, TRACE)
+    for name in LEFT_TRACE.names or ():
+        made["vx_mm_s" if name == "speed_mm_s" else name] = ticks[name]
+    made["x_mm"] += left_mm
+    unknown = np.isnan(made["x_mm"])
+    made["y_mm"][unknown] = made["theta_rad"][unknown] = np.nan
+    return made
+
+
+def left_places_mm(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.float64]:
+    """Where the array's left column was, by a trace of any format; float64[n], a copy.
+
+    These are to the bit the places that its frames were made of.
+    """
+    return ticks["x_mm"] - (left_mm if ticks.dtype == TRACE else 0.0)
+
+
+def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
     """One gzip member."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
     body = squeeze.compress(chunk) + squeeze.flush() + _TRAILER.pack(zlib.crc32(chunk), len(chunk))
     if tie is not None:
         body = _TIE_FIELD + _EXTRA.pack(*tie) + body
-    head = _LOOSE if tie is None else _TIED
+    heads = _LOOSE if tie is None else _TIED
+    head = next(head for head, kind in heads.items() if kind == record)
     return head + _EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def _check_member(trace: memoryview) -> _Member | None:
+def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
     """The first gzip member; None if it is cut short.
 
     Raises
     ------
     ValueError
-        If it is not what was written.
+        If it is not what was written, or has other records than those before it.
     """
-    start = bytes(trace[: len(_LOOSE)])
-    if not (_LOOSE.startswith(start) or _TIED.startswith(start)):
+    start = bytes(trace[:_HEAD_BYTES])
+    if not any(head.startswith(start) for head, kind in _HEADS.items() if record in (None, kind)):
         raise ValueError
     if len(trace) < _AFTER_LENGTH:
         return None
-    length, crc = _EXTRA.unpack_from(trace, len(_LOOSE))
+    length, crc = _EXTRA.unpack_from(trace, _HEAD_BYTES)
     if len(trace) < length:
         return None
-    deflated = _AFTER_LENGTH if start == _LOOSE else _AFTER_TIE
+    deflated = _AFTER_LENGTH if start in _LOOSE else _AFTER_TIE
     if length < deflated + _TRAILER.size or zlib.crc32(trace[_AFTER_LENGTH:length]) != crc:
         raise ValueError
     (size,) = _SIZE.unpack_from(trace, length - _SIZE.size)
     tie = None
-    if start == _TIED:
+    if start in _TIED:
         tie = Tie(*_EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
-    return _Member(length, trace[deflated : length - _TRAILER.size], size, tie)
+    return _Member(_HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
 
 
 def _next_start(trace: bytes, after: int) -> int:
@@ -297,24 +364,22 @@ def _next_start(trace: bytes, after: int) -> int:
     at = trace.find(_START, after)
     while at >= 0:
         with suppress(ValueError):
-            if _check_member(memoryview(trace)[at:]) is not None:
+            if _check_member(memoryview(trace)[at:], None) is not None:
                 return at
         at = trace.find(_START, at + 1)
     return len(trace)
 
 
-def _inflate(members: list[tuple[memoryview, int]]) -> NDArray[np.void]:
-    """Ticks of checked members, given as what was deflated and its whole size in bytes."""
-    stops = list(accumulate(size for _, size in members))
-    ticks = np.empty((stops[-1] if stops else 0) // TRACE.itemsize, TRACE)
+def _inflate(members: list[_Member], record: np.dtype) -> NDArray[np.void]:
+    """Ticks of checked members, which have such records."""
+    stops = list(accumulate(member.size for member in members))
+    ticks = np.empty((stops[-1] if stops else 0) // record.itemsize, record)
     room = ticks.view(np.uint8)
 
     def fill(first: int) -> None:
-        for (deflated, size), stop in zip(
-            members[first::threads], stops[first::threads], strict=True
-        ):
-            chunk = zlib.decompress(deflated, -zlib.MAX_WBITS, size)
-            room[stop - size : stop] = np.frombuffer(chunk, np.uint8)
+        for member, stop in zip(members[first::threads], stops[first::threads], strict=True):
+            chunk = zlib.decompress(member.deflated, -zlib.MAX_WBITS, member.size)
+            room[stop - member.size : stop] = np.frombuffer(chunk, np.uint8)
 
     # zlib lets other threads run meanwhile; a short trace is not worth one.
     threads = min(len(os.sched_getaffinity(0)), _MOST_THREADS, 1 + len(members) // _WORTH_A_THREAD)

@@ -45,7 +45,7 @@ class Trajectory:
 
     Parameters
     ----------
-    x_mm : float64[n]
+    left_mm : float64[n]
         Where the array's left column was, NaN where that is not known; up to the answer.
     time_ns : int64[n]
         When, by the host's clock.
@@ -59,7 +59,7 @@ class Trajectory:
         Which of the ticks count.
     """
 
-    x_mm: NDArray[np.float64]
+    left_mm: NDArray[np.float64]
     time_ns: NDArray[np.int64]
     edges_mm: tuple[float, ...]
     dot_mm: float
@@ -84,7 +84,7 @@ def first_edge_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) ->
 
 
 def duration(
-    x_mm: NDArray[np.float64],
+    left_mm: NDArray[np.float64],
     time_ns: NDArray[np.int64],
     moved: Callable[[], NDArray[np.bool_]],
     *,
@@ -93,13 +93,13 @@ def duration(
 ) -> Duration | None:
     """Duration of a trial, by the rule of the thesis as it was made exact.
 
-    It starts with the first tick at which the rightmost actuator, x + S, is at
-    the left edge of the leftmost dot or past it, and ends with the one at which
+    It starts with the first tick at which the rightmost actuator, S right of the
+    left column, is at the left edge of the leftmost dot or past it, and ends with the one at which
     it has crossed that edge downwards for the last time.
 
     Parameters
     ----------
-    x_mm : float64[n]
+    left_mm : float64[n]
         Where the array's left column was.
     time_ns : int64[n]
         When.
@@ -113,7 +113,7 @@ def duration(
     Duration or None
         None if the hand never came to the dot.
     """
-    on = x_mm + span_mm >= edge_mm  # False where the place is not known
+    on = left_mm + span_mm >= edge_mm  # False where the place is not known
     if not on.any():
         return None
     start = int(np.argmax(on))

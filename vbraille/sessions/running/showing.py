@@ -100,6 +100,9 @@ class OnDevice:
         session of format 1.
     steering
         Of the simulated hand that reads; None if a person's hand does.
+    centred
+        Whether the traces have places of the array's centre; else, in a session of format 1 or 2,
+        of its left column.
 
     Attributes
     ----------
@@ -120,6 +123,7 @@ class OnDevice:
         keeps: bool,
         tie: Callable[[], Tie] | None = None,
         steering: Steering | None = None,
+        centred: bool = True,
     ) -> None:
         self.engine = engine
         self.line = 0
@@ -129,6 +133,7 @@ class OnDevice:
         self._keeps = keeps
         self._tie = tie
         self._steering = steering
+        self._left_mm = None if centred else self._span_mm / 2
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
@@ -158,7 +163,7 @@ class OnDevice:
         # A run that was killed before the journal told of it has left its trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
-        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie)
+        self._trace = TraceWriter(self._folder / _trace_name(run), self._tie, self._left_mm)
         self._newest = self._stimulus = None
         self._away = self._ready = False
         return _trace_name(run)
@@ -209,7 +214,7 @@ class OnDevice:
         edge_mm = first_edge_mm(
             self._protocol.line(stimulus.masks), self._protocol.mapping, stimulus.geometry
         )
-        self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm
+        self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
         self._touched = self._read = False
         self.retune(tuning)
         self.engine.paused = False
@@ -263,7 +268,7 @@ class OnDevice:
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self._newest = ticks[-1]
         # A carriage that a machine moves may be there for some ticks only.
-        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm
+        at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
         well = ticks["flags"] & _AWAY == 0
         self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:

@@ -9,9 +9,10 @@ tests, and is no claim about anybody's skin: the model is ours.
 from its idle end; rows that show the same dots are averaged. Between
 neighbours i and i + 1 the skin is strained (Lévesque 2009, fig. 3.10)
 
-    s(u) = [w_{i+1} - w_i] / p,    u = x + (i + 1/2) p,                      (1)
+    s(u) = [w_{i+1} - w_i] / p,    u = x - S/2 + (i + 1/2) p,                (1)
 
-a function of the place u alone, whichever pair feels it and whenever. The
+a function of the place u alone, whichever pair feels it and whenever; x is the
+place of the array's centre, and S its width. The
 reconstruction filters (200 Hz, Lévesque 2009, 6.2) smooth it: at speed v by a
 Gaussian that is 3 dB down at 200 Hz / v, on top of one of 0.02 mm, finer than
 any texture that the program makes:
@@ -127,7 +128,16 @@ class Observer:
         nothing, or noise is out of range.
     """
 
-    __slots__ = ("_channels", "_pairs", "_steps", "_swings", "array", "geometry", "noise")
+    __slots__ = (
+        "_channels",
+        "_half_mm",
+        "_pairs",
+        "_steps",
+        "_swings",
+        "array",
+        "geometry",
+        "noise",
+    )
 
     def __init__(
         self, array: Display, mapping: Mapping, geometry: Geometry, *, noise: float = 0.0
@@ -144,6 +154,7 @@ class Observer:
         self.array = array
         self.geometry = geometry
         self.noise = noise
+        self._half_mm = array.span_mm / 2
         self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
         # Rows that show the same dots are one channel: its number by bit of the dot mask.
         tables = mapping.left, mapping.right
@@ -185,17 +196,17 @@ class Observer:
         if not near.x_mm.size:
             return Touch(evidence)
         strain = self._felt(near, self._pairs)
-        wave = Wave.best(near.x_mm + pitch_mm / 2, strain, pitch_mm, self._steps)
+        between_mm = near.x_mm - self._half_mm + pitch_mm / 2
+        wave = Wave.best(between_mm, strain, pitch_mm, self._steps)
         rates = Rates(wave, pitch_mm / self._steps, geometry.dot_width_mm / 2)
         speeds = near.speeds_mm_s()
         moving = speeds > STILL_MM_S
+        reach_mm = self._half_mm - pitch_mm / 2  # of the outermost pair, from the centre
         for place in range(places):
             for side in (0, 1):
                 left_mm = place * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
                 right_mm = left_mm + geometry.dot_width_mm
-                over = (near.x_mm >= left_mm - self.array.span_mm + pitch_mm / 2) & (
-                    near.x_mm <= right_mm - pitch_mm / 2
-                )
+                over = (near.x_mm >= left_mm - reach_mm) & (near.x_mm <= right_mm + reach_mm)
                 over &= moving
                 speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
                 rms = rates.rms(left_mm, right_mm, smoothing_mm(speed_mm_s))
@@ -230,7 +241,8 @@ class Observer:
             return math.nan, math.nan
         swing = self._felt(near, self._swings)
         swing -= swing.min(axis=1, keepdims=True)
-        wave = Wave.best(near.x_mm, swing, self.array.column_pitch_mm, self._steps)
+        left_mm = near.x_mm - self._half_mm
+        wave = Wave.best(left_mm, swing, self.array.column_pitch_mm, self._steps)
         strength = wave.felt.max(axis=1)
         at = np.flatnonzero(strength > LEAST_SWING * strength.max())
         if not at.size:
@@ -302,7 +314,8 @@ class Observer:
                 f"it must be {self.array.shape}"
             )
         aside_mm = self.geometry.dot_width_mm
-        return exploration.within(-self.array.span_mm - aside_mm, right_mm + aside_mm)
+        beside_mm = self._half_mm + aside_mm
+        return exploration.within(-beside_mm, right_mm + beside_mm)
 
     def _felt(self, exploration: Exploration, weights: NDArray[np.float32]) -> NDArray[np.float32]:
         """Strains or swings, float32[n, pairs or columns, channels]."""

@@ -32,7 +32,7 @@ class Exploration:
     frames : float[n, rows, columns]
         Deflections sent, 0 … 1.
     x_mm : float64[n]
-        Where the left column was; NaN where that was not known.
+        Where the array's centre was; NaN where that was not known.
     time_s : float64[n]
         When, from anywhere.
 
@@ -57,7 +57,7 @@ class Exploration:
             raise ValueError("time goes back or is not a number; it must increase")
 
     def within(self, low_mm: float, high_mm: float) -> Exploration:
-        """The ticks with the left column between two places; those without a place are none."""
+        """The ticks with the array's centre between two places; those without a place are none."""
         near = (self.x_mm >= low_mm) & (self.x_mm <= high_mm)
         if near.all():
             return self
