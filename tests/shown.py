@@ -15,13 +15,14 @@ def array(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
     return Display("array", rows, columns, column_pitch_mm, row_pitch_mm)
 
 
-def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None):
-    """A line on a display."""
+def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=None):
+    """A line on a display, for places of the array's centre, or of the anchor that is given."""
     style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
-    return style.render(masks, array)
+    program = style.render(masks, array)
+    return program if anchor_mm is None else program.with_anchor(anchor_mm)
 
 
-def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None):
-    """The frames of a line in plain numpy, for places of the left column."""
+def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=None):
+    """The frames of a line in plain numpy, for the same places."""
     style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
-    return deflections(x_mm, masks, style, array)
+    return deflections(x_mm, masks, style, array, anchor_mm)

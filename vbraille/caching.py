@@ -39,8 +39,8 @@ def keep_compiled() -> bool:
     _log.info("what is compiled is kept in %s", folder)
     from numba import config
 
-    os.environ["NUMBA_CACHE_DIR"] = str(folder)
-    config.reload_config()
+    # Not in the environment, where a child would take it for its user's wish.
+    config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
     for other in place.glob("vbraille-compiled-*"):
         if other != folder:
             shutil.rmtree(other, ignore_errors=True)
