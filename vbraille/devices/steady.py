@@ -45,13 +45,14 @@ CONVERSATION = np.dtype(
         ("count", "<i8"),  # of the encoder, without its wraps
         ("count_bits", "<i8"),
         ("zero", "<i8"),  # count at the left stop
-        ("home_mm", "<f8"),  # where the left column is then
+        ("home_mm", "<f8"),  # where the array's centre is then
         ("mm_per_count", "<f8"),
+        ("buttons", "<i8"),  # that are pressed, a bit each
         ("must_be_placed", "<i8"),  # 1 if the encoder may lose its place and say so
         ("device_us", "<i8"),  # the device's clock, without its wraps
         ("offset_ns", "<i8"),  # what is added to it, for it goes on over a restart
         ("device_ns", "<i8"),  # when the last sample was taken, by that clock
-        ("x_mm", "<f8"),  # where the array's left column was then
+        ("x_mm", "<f8"),  # where the array's centre was then
         # Of the FRAMEs.
         ("sequence", "<i8"),  # of the last
         ("sent_ns", "<i8"),  # when it went out; NEVER if none has since or it is acknowledged
@@ -99,9 +100,9 @@ _STATE = _CODES[State]
 _NAMES = [name for name, _ in fields_of(State)]
 _PLACES = places_of(State)
 # Place of each field, as `number` takes it, and how far the last goes.
-_SEQUENCE, _TIME_US, _COUNT, _FRAME_SEQUENCE, _FLAGS = (
+_SEQUENCE, _TIME_US, _COUNT, _FRAME_SEQUENCE, _FLAGS, _BUTTONS = (
     _PLACES[_NAMES.index(name)]
-    for name in ("sequence", "time_us", "count", "frame_sequence", "flags")
+    for name in ("sequence", "time_us", "count", "frame_sequence", "flags", "buttons")
 )
 _STATE_BYTES = _PLACES[-1][0] + _PLACES[-1][1]
 _UNSTEADY = RESTING | FAULTY | TRIPPED
@@ -150,7 +151,7 @@ def take(received, size, now_ns, talk, work):
         Bytes that were consumed: all to the last delimiter. The rest is kept and given again, with
         what comes after it. SOMETHING_ELSE if these bytes, or their absence, are not for here.
     states : int64
-        How many STATEs were in them. Unless it is 0, ``device_ns`` and ``x_mm`` are a new sample.
+        How many STATEs were in them. Unless it is 0, ``device_ns`` and ``x_mm`` are a new pose.
     """
     if stalled(talk, now_ns):
         return SOMETHING_ELSE, 0
@@ -172,6 +173,8 @@ def take(received, size, now_ns, talk, work):
             return SOMETHING_ELSE, 0
         flags = number(work, *_FLAGS)
         if flags & _UNSTEADY != 0 or (talk.must_be_placed != 0 and flags & PLACED == 0):
+            return SOMETHING_ELSE, 0
+        if number(work, *_BUTTONS) != talk.buttons:
             return SOMETHING_ELSE, 0
         sequence = _unwrap(number(work, *_SEQUENCE), state_sequence, _SEQUENCE_BITS)
         missed += max(sequence - state_sequence - 1, 0)

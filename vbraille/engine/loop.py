@@ -7,22 +7,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
+from vbraille.engine import steady
 from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag
 from vbraille.engine.ring import Ring
 from vbraille.engine.state import State
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError
+from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device
+    from vbraille.devices.base import Device, Lent
     from vbraille.engine.clock import Clock
+    from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program
 
 # By plain numbers: a flag of an enumeration takes a microsecond to join.
 _HELD = int(Flag.HELD)
+# How often compiled ticks are left to look for signals, for the parent and for events.
+_LOOK_S = 0.02
+_SAME_RATE = 0.01
+# A STATE may have a tick begin by so much of a period before or after its deadline.
+_GUARD = 4
 _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
@@ -88,6 +96,13 @@ class Loop:
         self._fade_ns = int(fade_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
+        self._told = np.zeros(15, np.int64)
+        self._told[steady.MOST] = max(1, round(_LOOK_S * rate_hz))
+        self._told[steady.PERIOD] = self._period_ns
+        # A device that tells its place as often as there are ticks has each begin with that.
+        same = abs(display.rate_hz - rate_hz) <= _SAME_RATE * rate_hz
+        self._told[steady.GUARD] = self._period_ns // _GUARD if same else 0
+        self._silence = np.zeros(1, np.int64), np.zeros(1, np.int64)
 
     def show(self, program: Program | None, line: int = 0) -> None:
         """Put something else under the hand; it fades in. None is rest. Records tell the line."""
@@ -130,6 +145,23 @@ class Loop:
         """Whether every actuator was at rest in the frame last sent."""
         return not self.output.any()
 
+    def run(self, mailbox: Mailbox | None = None) -> None:
+        """Do some ticks, until the mailbox says something new or it is time to look around.
+
+        They are done by compiled code as long as the device lends itself to that; whatever is not
+        steady is a tick of Python's.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone, or says that its carriage is where none can be.
+        """
+        lent = self.device.lend()
+        if lent is None:
+            self.tick()
+        else:
+            self._run_steadily(lent, mailbox)
+
     def tick(self) -> None:
         """Wait for the next deadline; then read, make the frame and write it.
 
@@ -140,12 +172,15 @@ class Loop:
         """
         self.clock.sleep_until_ns(self._deadline_ns)
         now_ns = self.clock.now_ns()
+        self._tick(now_ns, now_ns - self._deadline_ns, None)
+
+    def _tick(self, now_ns: int, lateness_ns: int, taken: Pose | None) -> None:
+        """Do the tick that woke now; a pose may have been taken for it."""
         busy_ns = self.clock.busy_ns()
-        lateness_ns = now_ns - self._deadline_ns
         device, ring = self.device, self.ring
         times_ns, pose = self._times_ns, self._poses[0]
         times_ns[0, 0] = now_ns
-        sample = device.read()
+        sample = device.read() or taken
         if sample is None:
             pose[POSED] = 0.0
         else:
@@ -156,29 +191,69 @@ class Loop:
             times_ns, self._poses, device.rested, device.taking, ring.columns, slot
         )
         if not done:
-            raise DeviceError(
-                f"{device.display.name} says that its carriage is at {pose[POSE_X]} mm, where it "
-                f"cannot be; switch it off and on, and if it says so again, look at its encoder "
-                f"and at the counts that its INFO tells, with 'vbraille device check'"
-            )
+            raise self._nowhere()
         device.write(self.state.output)
+        done_ns = self.clock.now_ns()
+        if done_ns - now_ns > self._period_ns and self.clock.busy_ns() - busy_ns > self._period_ns:
+            self.overruns += 1
+        self._finish(slot, now_ns, lateness_ns, done_ns)
+
+    def _finish(self, slot: int, now_ns: int, lateness_ns: int, done_ns: int) -> None:
+        """Say of a tick when it was done, and when the next is due."""
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
-        done_ns = self.clock.now_ns()
-        work_ns = done_ns - now_ns
-        if work_ns > self._period_ns and self.clock.busy_ns() - busy_ns > self._period_ns:
-            self.overruns += 1
         behind_ns = done_ns - self._deadline_ns
         if behind_ns >= self._period_ns:
             missed = behind_ns // self._period_ns
             self.late += missed
             self._deadline_ns += missed * self._period_ns
+        device, ring = self.device, self.ring
         whole = ring.columns[0][slot]
-        whole[LATENESS], whole[WORK] = lateness_ns, work_ns
+        whole[LATENESS], whole[WORK] = lateness_ns, done_ns - now_ns
         whole[LATE], whole[OVERRUNS] = self.late, self.overruns
         held = 0 if device.taking else _HELD
         whole[FLAGS] = (int(whole[FLAGS]) & ~_HELD) | held | _PLACING[device.placing]
         ring.end()
+
+    def _nowhere(self) -> DeviceError:
+        return DeviceError(
+            f"{self.device.display.name} says that its carriage is at {self._poses[0, POSE_X]} mm, "
+            f"where it cannot be; switch it off and on, and if it says so again, look at its "
+            f"encoder and at the counts that its INFO tells, with 'vbraille device check'"
+        )
+
+    def _run_steadily(self, lent: Lent, mailbox: Mailbox | None) -> None:
+        """Do ticks in compiled code, and in Python the one that it leaves to it."""
+        told, ring = self._told, self.ring
+        told[steady.DESCRIPTOR], told[steady.HELD] = lent.descriptor, lent.begun
+        told[steady.DEADLINE], told[steady.APPENDED] = self._deadline_ns, ring.appended
+        told[steady.LATE_SO_FAR], told[steady.OVERRUNS_SO_FAR] = self.late, self.overruns
+        told[steady.UNSENT], told[steady.RESTED] = 0, self.device.rested
+        orders, known = self._silence if mailbox is None else (mailbox.orders, mailbox.obeyed)
+        why = self.state.run_steadily(
+            told, orders, known, lent, self._times_ns, self._poses, ring
+        )
+        done = int(told[steady.APPENDED]) - ring.appended
+        ring.end(done)
+        self.late = int(told[steady.LATE_SO_FAR])
+        self._deadline_ns = int(told[steady.DEADLINE])
+        woken_ns, lateness_ns = int(told[steady.WOKEN]), int(told[steady.LATENESS_OF_IT])
+        torn = bytes(lent.out[told[steady.WRITTEN] : told[steady.SIZE]]) if why == steady.TORN else b""
+        self.device.take_back(lent, int(told[steady.HELD]), int(told[steady.UNSENT]), torn)
+        if why == steady.NOWHERE:
+            raise self._nowhere()
+        if why == steady.UNMADE:
+            slot = ring.begin()
+            self.device.write(self.state.output)
+            self._finish(slot, woken_ns, lateness_ns, self.clock.now_ns())
+        elif woken_ns:
+            pose = self._poses[0]
+            taken = None
+            if pose[POSED]:
+                taken = Pose(int(self._times_ns[0, 1]), float(pose[POSE_X]))
+            self._tick(woken_ns, lateness_ns, taken)
+        elif not done:
+            self.tick()
 
     def restart_clock(self) -> None:
         """Let the next tick be due now: the time before it was not the loop's."""

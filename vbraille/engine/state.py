@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine import kernels
+from vbraille.engine import kernels, steady
 from vbraille.engine.constants import (
     DIFFERENCE,
     FADE_S,
@@ -22,7 +22,9 @@ from vbraille.render.program import nothing, scratch_for
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from vbraille.devices.base import Lent
     from vbraille.display import Display
+    from vbraille.engine.ring import Ring
     from vbraille.render.program import Program
 
 _STATE = np.dtype(
@@ -190,4 +192,41 @@ class State:
             taking,
             *columns,
             first,
+        )
+
+    def run_steadily(
+        self,
+        told: NDArray[np.int64],
+        orders: NDArray[np.int64],
+        known: NDArray[np.int64],
+        lent: Lent,
+        times_ns: NDArray[np.int64],
+        poses: NDArray[np.float64],
+        ring: Ring,
+    ) -> int:
+        """Do ticks of a device that is lent; see `vbraille.engine.steady.run`."""
+        return steady.run(
+            told,
+            orders,
+            known,
+            lent.received,
+            lent.work,
+            lent.out,
+            lent.talk,
+            lent.actuators,
+            self._numbers,
+            self._window_ns,
+            self._window_mm,
+            self._velocities,
+            self.output,
+            self._held,
+            self._target,
+            self._at,
+            self._program.numbers,
+            self._program.table,
+            self._scratch,
+            times_ns,
+            poses,
+            ring.published,
+            *ring.columns,
         )

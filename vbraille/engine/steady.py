@@ -101,7 +101,7 @@ def run(
     received,
     work,
     out,
-    talk,
+    talks,
     actuators,
     state,
     window_ns,
@@ -133,8 +133,8 @@ def run(
         What was received and not consumed, at its beginning; room for more.
     work, out : uint8[bytes]
         Room to work in, and for a FRAME as it goes over the line.
-    talk, actuators
-        Of `vbraille.devices.steady`.
+    talks, actuators
+        Of `vbraille.devices.steady`; the first has one record.
     state and on
         As of `vbraille.engine.kernels.advance`; the last three are a ring's, and ``published``
         tells its readers.
@@ -147,7 +147,7 @@ def run(
         is no FRAME to send; TORN, for a part of it went out; GONE, for the line is.
     """
     size = ints.shape[0]
-    talk = talk[0]
+    talk = talks[0]
     for _ in range(told[MOST]):
         if _changed(orders, known):
             return ORDERS

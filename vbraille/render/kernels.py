@@ -46,6 +46,7 @@ from vbraille.render.work import (
     THETA,
     TIME,
     X,
+    Y,
 )
 
 VIBRATION = 2.0  # the kind; the others are braille
@@ -258,6 +259,20 @@ def path(numbers, table, scratch, x_mm, out):
         _swings(numbers, scratch, count * columns, 3)
         for n in range(count):
             _write(numbers, table, 0, scratch, n * columns, out[first + n], 0, rows)
+
+
+@_compiled
+def poses(numbers, table, scratch, at, parts, out):
+    """Fill a frame for each pose of a way over a picture, and the part that belongs under it.
+
+    ``at`` is float64[n, 6], as of `frame`; ``parts`` int64[n], to fill; out is
+    float[n, rows, columns].
+    """
+    part = NO_PART
+    for n in range(at.shape[0]):
+        part = part_of(numbers, at[n, Y], part)
+        parts[n] = part
+        frame(numbers, table, scratch, part, at[n], out[n])
 
 
 @_compiled

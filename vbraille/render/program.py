@@ -142,6 +142,32 @@ class Program:
         kernels.path(self.numbers, self.table, self._scratch, x_mm, out)
         return out
 
+    def poses(
+        self,
+        x_mm: NDArray[np.float64],
+        y_mm: NDArray[np.float64],
+        theta_rad: NDArray[np.float64] | float = 0.0,
+    ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Fill the frames of a way over the canvas.
+
+        Parameters
+        ----------
+        x_mm, y_mm, theta_rad : float64[n]
+            Where the array's centre is, and how far it is turned.
+
+        Returns
+        -------
+        int64[n], float32[n, rows, columns]
+            The part that belongs under the array, and deflections, 0 … 1. Nothing fades where one
+            part follows another: that is the engine's, which knows how much time goes by.
+        """
+        at = np.zeros((x_mm.size, 6))
+        at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
+        parts = np.zeros(x_mm.size, np.int64)
+        out = np.empty((x_mm.size, *self.shape), np.float32)
+        kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)
+        return parts, out
+
     def with_anchor(self, anchor_mm: float) -> Program:
         """The same braille for places that tell another point of the array than its centre.
 
