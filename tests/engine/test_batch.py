@@ -15,8 +15,8 @@ from vbraille.engine.local import LocalEngine
 from vbraille.engine.ring import Flag, tick_dtype
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
-from vbraille.simulation.hand import parse_hand
 from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import ReadLine, Steering
 
 SHEARED = replace(STRESS2, mapping=MAPPINGS["sheared"])  # some of its rows are idle at 1

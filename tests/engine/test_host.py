@@ -16,6 +16,7 @@ from tests.engine.test_loop import info, picture
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.ring import Flag
 from vbraille.errors import DeviceError, InputError
+from vbraille.simulation.steering import ReadLine, Steering
 
 PATIENCE_S = 60.0
 
@@ -112,6 +113,25 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
     unused.open()
     unused.close()  # one that waits to be told how long lines are ends, too
     assert descriptors() == before
+
+
+def test_a_simulated_hand_is_steered_past_the_engine():
+    steering = Steering()
+    spec = f"sim:?hand=sweep:1000&steering={steering.descriptor}"
+    with Host(spec, info(), 26, pass_fds=[steering.descriptor]) as host:
+        (home_mm,) = set(until(host, lasting(100))["x_mm"])
+        steering.give(ReadLine(50.0))
+        ticks = until(host, lambda new: new.size and steering.done_at(int(new["device_ns"][-1])))
+        assert 45 < ticks["x_mm"].max() - home_mm - info().span_mm <= 50
+        assert ticks["x_mm"][-1] == home_mm
+        os.kill(host.process_id, signal.SIGKILL)
+        with pytest.raises(HostDiedError):
+            until(host, lambda _new: False)
+        steering.give(ReadLine(50.0))  # while there is nobody to take it
+        host.start()
+        assert set(until(host, lasting(100))["x_mm"]) == {home_mm}
+        steering.give(ReadLine(50.0))
+        until(host, lambda new: new.size and steering.done_at(int(new["device_ns"][-1])))
 
 
 def test_keys_of_the_terminal_do_not_stop_the_process_that_drives_the_device():

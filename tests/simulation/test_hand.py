@@ -16,9 +16,9 @@ from vbraille.simulation.hand import (
     Hand,
     HumanHand,
     Sweep,
-    parse_hand,
 )
 from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.specs import parse_hand
 
 START_MM, END_MM = -10.8, 270.0  # a line of 24 cells of 11.1 mm
 LENGTH_MM = END_MM - START_MM

@@ -24,8 +24,9 @@ def load(tmp_path):
     return load_text
 
 
-def motion(t_s, x_mm):
-    return Motion(np.array(t_s, float), np.array(x_mm, float))
+def motion(t_s, x_mm, **more):
+    more = {name: np.array(values, float) for name, values in more.items()}
+    return Motion(np.array(t_s, float), np.array(x_mm, float), **more)
 
 
 @pytest.mark.parametrize(
@@ -45,6 +46,14 @@ def motion(t_s, x_mm):
 def test_a_motion_checks_itself(t_s, x_mm, said):
     with pytest.raises(ValueError, match=said):
         motion(t_s, x_mm)
+
+
+@pytest.mark.parametrize("name", ["y_mm", "theta_rad"])
+def test_a_motion_checks_its_other_axes(name):
+    with pytest.raises(ValueError, match=rf"{name} has shape \(1,\) and times have \(2,\)"):
+        motion([0, 1], [0, 1], **{name: [0]})
+    with pytest.raises(ValueError, match="not finite"):
+        motion([0, 1], [0, 1], **{name: [0, np.nan]})
 
 
 def test_samples_stand_at_multiples_of_a_tick():
@@ -130,6 +139,27 @@ def test_columns_are_found_by_name_or_are_two(load, text):
     assert list(hand.motion().x_mm) == [1, 2.5, -4]
 
 
+@pytest.mark.parametrize(
+    ("text", "y_mm", "theta_rad"),
+    [
+        ("0,1,7\n0.1,2,8\n", [7, 8], None),
+        ("0,1,7,90\n0.1,2,8,-180\n", [7, 8], [np.pi / 2, -np.pi]),
+        ("t_s,theta_deg,x_mm\n0,90,1\n0.1,-180,2\n", None, [np.pi / 2, -np.pi]),
+        ("y_mm,note,x_mm,t_s\n7,,1,0\n8,a,2,0.1\n", [7, 8], None),
+        ("t_s,x_mm\n0,1\n0.1,2\n", None, None),
+    ],
+)
+def test_a_second_axis_and_the_angle_may_be_there(load, text, y_mm, theta_rad):
+    hand = load(text)
+    for motion in (hand, hand.motion()):
+        assert list(motion.x_mm) == [1, 2]
+        for got, want in ((motion.y_mm, y_mm), (motion.theta_rad, theta_rad)):
+            if want is None:
+                assert got is None
+            else:
+                np.testing.assert_allclose(got, want)
+
+
 @given(
     steps=st.lists(
         st.tuples(st.floats(0.001, MAX_GAP_S), st.floats(-300, 300)), min_size=2, max_size=20
@@ -163,8 +193,14 @@ def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
         ("t_s;x_mm\n0;1\n", "line 1 does not name one column t_s"),
         ("t_s,pos\n0,1\n", "line 1 does not name one column x_mm"),
         ("t_s,x_mm,t_s\n0,1,0\n", "line 1 does not name one column t_s"),
-        ("0,1,2\n0.1,1,2\n", "line 1 has neither names nor two numbers"),
-        ("0\n0.1\n", "line 1 has neither names nor two numbers"),
+        ("0,1,2,3,4\n", "line 1 has neither names nor two to four numbers"),
+        ("0\n0.1\n", "line 1 has neither names nor two to four numbers"),
+        ("t_s,x_mm,y_mm,y_mm\n0,1,2,2\n", "line 1 does not name one column y_mm"),
+        ("t_s,x_mm,theta_deg\n0,1,\n", "line 2: theta_deg is empty"),
+        ("0,1,inf\n0.1,1,2\n", "line 1: y_mm is 'inf'"),
+        ("0,1,1e5\n", "line 1: y_mm is 100000; it must be -10000 to 10000 mm"),
+        ("0,1,2,4e5\n", "line 1: theta_deg is 400000; it must be -360000 to 360000 degrees"),
+        ("0,1,2\n0.1,1\n", "line 2 has more or fewer fields than the first line; give it 3"),
         ("0,one\n", "line 1: x_mm is 'one'"),
         (HEADER + "0,1\n0.1\n", "line 3 has more or fewer fields than the first line; give it 2"),
         (

@@ -1,5 +1,6 @@
 """Orders to a simulated hand: taken once, whole, and answered; by whoever shares the memory."""
 
+import math
 import os
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from tests.engine.test_loop import info
 from vbraille.devices import open_device
 from vbraille.errors import InputError
-from vbraille.simulation.steering import ReadLine, Steering
+from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
 
 
 @pytest.fixture
@@ -31,6 +32,32 @@ def test_an_order_is_taken_once_and_answered(ends):
     assert ours.done_at(500)
     ours.give(ReadLine(7.0))
     assert not ours.done_at(10**12)
+
+
+@pytest.mark.parametrize(
+    "order", [ReadLine(3.5), ReadPage(25, 14.0, 270.0), BeAt(1.5, -2.0, 0.25), BeAt(1.0)]
+)
+def test_any_order_arrives_as_it_was_given(ends, order):
+    ours, theirs = ends
+    ours.give(order)
+    taken = theirs.take()
+    assert taken == order
+    assert type(taken) is type(order)
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers"),
+    [
+        (BeAt, (math.nan, 0, 0)),
+        (BeAt, (0, math.inf, 0)),
+        (ReadPage, (0, 14, 1)),
+        (ReadPage, (2, 0, 1)),
+        (ReadPage, (2, math.nan, 1)),
+    ],
+)
+def test_an_order_that_cannot_be_done_is_not_given(kind, numbers):
+    with pytest.raises(ValueError, match="it must"):
+        kind(*numbers)
 
 
 def test_of_several_orders_the_last_counts(ends):

@@ -14,7 +14,8 @@ PLOTS = ("profile", "mapping", "wave", "strain", "page")
 
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
-    "(device is its older name), fluent as on paper, and recorded:FILE.csv moves as recorded"
+    "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, and "
+    "wander:SPEED goes about without reading"
 )
 SPEC = "Name the device, such as serial:/dev/ttyACM0, or sim for a simulated one"
 

@@ -33,8 +33,8 @@ from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS, model_of
-from vbraille.simulation.hand import parse_hand
 from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.specs import parse_hand
 from vbraille.wording import printable
 
 if TYPE_CHECKING:

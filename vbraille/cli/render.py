@@ -23,7 +23,8 @@ from vbraille.errors import InputError
 from vbraille.reading.reader import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
-from vbraille.simulation.hand import Recorded, parse_hand
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.specs import parse_hand
 from vbraille.wording import count, duration
 
 if TYPE_CHECKING:

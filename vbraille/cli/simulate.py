@@ -13,9 +13,9 @@ from vbraille.devices.messages import Encoder
 from vbraille.errors import InputError
 from vbraille.render.models import MODELS
 from vbraille.simulation.firmware import describe
-from vbraille.simulation.hand import parse_hand
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Defect, Faults, Simulator
+from vbraille.simulation.specs import parse_hand
 from vbraille.wording import printable
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import numpy as np
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import NS_PER_S
 from vbraille.engine.engine import place_of
-from vbraille.engine.kernels import POSE_X, POSED
+from vbraille.engine.kernels import POSE_THETA, POSE_X, POSED
 from vbraille.engine.record import columns_of, tick_dtype
 from vbraille.engine.state import State
 from vbraille.engine.tally import Tally
@@ -126,7 +126,7 @@ class BatchEngine:
         due_ns = due_ns[: self.device.until_done(due_ns)]
         poses = np.zeros((due_ns.size, 4))
         poses[:, POSED] = 1.0
-        poses[:, POSE_X] = self.device.places_mm(due_ns)
+        poses[:, POSE_X : POSE_THETA + 1] = self.device.poses_at(due_ns).T
         self._clock.sleep_until_ns(int(due_ns[-1]))
         self.device.read()  # which tells whoever steers the hand that it has come to its end
         ticks = np.zeros(due_ns.size, self._dtype)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
 from vbraille.engine import steady
+from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
 from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag
 from vbraille.engine.ring import Ring
@@ -230,15 +230,15 @@ class Loop:
         told[steady.LATE_SO_FAR], told[steady.OVERRUNS_SO_FAR] = self.late, self.overruns
         told[steady.UNSENT], told[steady.RESTED] = 0, self.device.rested
         orders, known = self._silence if mailbox is None else (mailbox.orders, mailbox.obeyed)
-        why = self.state.run_steadily(
-            told, orders, known, lent, self._times_ns, self._poses, ring
-        )
+        why = self.state.run_steadily(told, orders, known, lent, self._times_ns, self._poses, ring)
         done = int(told[steady.APPENDED]) - ring.appended
         ring.end(done)
         self.late = int(told[steady.LATE_SO_FAR])
         self._deadline_ns = int(told[steady.DEADLINE])
         woken_ns, lateness_ns = int(told[steady.WOKEN]), int(told[steady.LATENESS_OF_IT])
-        torn = bytes(lent.out[told[steady.WRITTEN] : told[steady.SIZE]]) if why == steady.TORN else b""
+        torn = (
+            bytes(lent.out[told[steady.WRITTEN] : told[steady.SIZE]]) if why == steady.TORN else b""
+        )
         self.device.take_back(lent, int(told[steady.HELD]), int(told[steady.UNSENT]), torn)
         if why == steady.NOWHERE:
             raise self._nowhere()

@@ -1,4 +1,4 @@
-"""How a finger moves along a line: sweeping, reading as people do, or as recorded.
+"""How a finger moves along a line, and from line to line: sweeping, or reading as people do.
 
 A made-up hand says by where it goes that it is done with a line: it touches
 the end once, as the last thing before it returns to the start. Reading again,
@@ -13,13 +13,10 @@ from typing import Protocol
 
 import numpy as np
 
-from vbraille.errors import InputError
-from vbraille.simulation.motion import Motion, Way
-from vbraille.simulation.recorded import MOST_MM, Recorded, load_recorded
+from vbraille.simulation.motion import RETURN_MM_S, SPEED_BOUNDS_MM_S, Motion, Way
+from vbraille.simulation.paging import Area, Drift, read_lines
+from vbraille.simulation.recorded import MOST_MM
 
-SPEED_BOUNDS_MM_S = (0.1, 1000.0)
-# Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
-RETURN_MM_S = 250.0
 EMPTY_LINE_S = 0.25
 # A hand that is not done comes no nearer to the start, once away from it, and turns no nearer to
 # the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
@@ -32,7 +29,7 @@ LEAST_MOVE_MM = 0.05  # what is left of a way when it is shorter is gone in the 
 
 
 class Hand(Protocol):
-    """A hand that reads line after line."""
+    """A hand that reads line after line, or a page."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """The next line: from where the hand is, at start, to its end and back to the start.
@@ -47,8 +44,18 @@ class Hand(Protocol):
         """
         ...
 
+    def read_page(self, area: Area) -> Motion:
+        """All lines of a page, from the first to the last, with y and θ where they change.
 
-def _along(start_mm: float, end_mm: float) -> Way:
+        Raises
+        ------
+        ValueError
+            As `read_line` does.
+        """
+        ...
+
+
+def along(start_mm: float, end_mm: float) -> Way:
     """A way that begins at the start of a line, once that is seen to be one."""
     if not -MOST_MM <= start_mm <= end_mm <= MOST_MM:
         raise ValueError(
@@ -84,12 +91,16 @@ class Sweep:
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """The next line; see `Hand`."""
-        way = _along(start_mm, end_mm)
+        way = along(start_mm, end_mm)
         if start_mm == end_mm:
             way.wait(EMPTY_LINE_S)
         way.move(end_mm, self.speed_mm_s)
         way.move(start_mm, RETURN_MM_S)
         return way.motion()
+
+    def read_page(self, area: Area) -> Motion:
+        """All lines of a page, each along its middle; see `Hand`."""
+        return read_lines(self.read_line, area)
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,9 +195,6 @@ FLUENT = Habits(
 )
 
 
-SLOW = ("slow", "device")  # what the hand that reads so is called; the second is its older name
-
-
 class HumanHand:
     """A hand that reads by habits; the same seed reads the same lines in the same way.
 
@@ -203,10 +211,11 @@ class HumanHand:
             raise ValueError(f"seed is {seed}; it must be 0 or more")
         self.habits = habits
         self._random = np.random.default_rng(seed)
+        self._drifting = np.random.default_rng((seed, 1))  # lines are read alike on any carriage
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """The next line; see `Hand`. Each call draws further."""
-        way = _along(start_mm, end_mm)
+        way = along(start_mm, end_mm)
         length_mm, passes = end_mm - start_mm, 1
         if length_mm >= LEAST_REREAD_MM:
             passes = int(self._random.integers(*self.habits.passes, endpoint=True))
@@ -223,6 +232,10 @@ class HumanHand:
         self._pause(way)
         way.move(start_mm, RETURN_MM_S)
         return way.motion()
+
+    def read_page(self, area: Area) -> Motion:
+        """All lines of a page, drifting a little off each; see `Hand`. Each call draws further."""
+        return read_lines(self.read_line, area, Drift(self._drifting))
 
     def _read(self, way: Way, start_mm: float, to_mm: float) -> None:
         """One pass to the right, with what holds it up."""
@@ -260,44 +273,3 @@ class HumanHand:
 
     def _pause(self, way: Way) -> None:
         way.wait(self._random.uniform(*self.habits.pause_s))
-
-
-def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
-    """Hand of a spec.
-
-    Parameters
-    ----------
-    spec
-        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent`` or ``recorded:FILE``.
-    seed
-        Of the two that are drawn.
-
-    Raises
-    ------
-    InputError
-        If there is no such hand, a number is out of range, or the file cannot be used.
-    """
-    kind, _, rest = spec.partition(":")
-    try:
-        if spec in SLOW:
-            return HumanHand(DEVICE, seed)
-        if spec == "fluent":
-            return HumanHand(FLUENT, seed)
-        if kind == "recorded" and rest:
-            return load_recorded(rest)
-        if kind == "sweep":
-            return Sweep(_speed(rest))
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    raise InputError(
-        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE"
-    )
-
-
-def _speed(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        least, most = SPEED_BOUNDS_MM_S
-        wanted = f"it must be a number, {least:g} to {most:g} mm/s"
-        raise ValueError(f"sweep speed is {text!r}; {wanted}") from None

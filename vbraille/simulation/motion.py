@@ -14,28 +14,38 @@ if TYPE_CHECKING:
 LEAST_KNOT_S = 1e-6  # what is shorter takes as long, so that time always increases
 # Rounding: what ticks and samples at tenths or thousandths of a second may be off.
 SLACK = 1e-9
+SPEED_BOUNDS_MM_S = (0.1, 1000.0)
+# Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
+RETURN_MM_S = 250.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """A way along the surface, straight between its knots.
+    """A way over the surface, straight between its knots.
 
     Parameters
     ----------
     t_s : float64[n]
         Time of each knot, from 0, increasing; at least 2.
     x_mm : float64[n]
-        Where the array's left column is then.
+        Where the array is then: half its span left of its centre. As long as it is not turned
+        that is where its left column is.
+    y_mm : float64[n] or None
+        Where its centre is then, from the top of the page; None if it stays where it is.
+    theta_rad : float64[n] or None
+        How far it is turned then, as in `vbraille.pose`; None if it stays as it is.
 
     Raises
     ------
     ValueError
-        If the two differ in length, a value is not finite, or time does not
+        If they differ in length, a value is not finite, or time does not
         begin at 0 and increase.
     """
 
     t_s: NDArray[np.float64]
     x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+    theta_rad: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         if self.t_s.ndim != 1 or self.t_s.shape != self.x_mm.shape or self.t_s.size < 2:
@@ -43,7 +53,15 @@ class Motion:
                 f"times and positions have shapes {self.t_s.shape} and {self.x_mm.shape}; "
                 f"they must be as many, 2 or more"
             )
-        if not (np.isfinite(self.t_s).all() and np.isfinite(self.x_mm).all()):
+        for name in ("y_mm", "theta_rad"):
+            values = getattr(self, name)
+            if values is not None and values.shape != self.t_s.shape:
+                raise ValueError(
+                    f"{name} has shape {values.shape} and times have {self.t_s.shape}; "
+                    f"they must be as many"
+                )
+        given = (self.t_s, self.x_mm, self.y_mm, self.theta_rad)
+        if not all(np.isfinite(values).all() for values in given if values is not None):
             raise ValueError("a time or a position is not finite; they must be numbers")
         if self.t_s[0] != 0:
             raise ValueError(f"time begins at {self.t_s[0]:g} s; it must begin at 0")
@@ -58,7 +76,7 @@ class Motion:
     def sample(
         self, rate_hz: float, first: int = 0, count: int | None = None
     ) -> NDArray[np.float64]:
-        """Positions at multiples of 1 / rate, up to the end.
+        """Positions along x at multiples of 1 / rate, up to the end.
 
         Parameters
         ----------

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 # Ours: what a hand does in half a second cannot be told from its two ends.
 MAX_GAP_S = 0.5
 MOST_MM = 10_000.0  # as far as any carriage goes
-COLUMNS = ("t_s", "x_mm")
+COLUMNS = ("t_s", "x_mm", "y_mm", "theta_deg")  # the last two may be left out
+_NEEDED = 2
+_MOST_DEG = 360_000.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,8 +38,8 @@ class Recorded:
     ----------
     t_s : float64[n]
         Time of each sample, from anywhere, increasing by at most `MAX_GAP_S`.
-    x_mm : float64[n]
-        Where the array's left column was then.
+    x_mm, y_mm, theta_rad : float64[n]
+        Where the array was then, as in `Motion`; the last two are None if nobody recorded them.
 
     Raises
     ------
@@ -47,6 +49,8 @@ class Recorded:
 
     t_s: NDArray[np.float64]
     x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+    theta_rad: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         gap_s = float(np.diff(self.motion().t_s).max())
@@ -55,7 +59,7 @@ class Recorded:
 
     def motion(self) -> Motion:
         """Return the whole reading, its times shifted to begin at 0."""
-        return Motion(self.t_s - self.t_s[:1], self.x_mm)
+        return Motion(self.t_s - self.t_s[:1], self.x_mm, self.y_mm, self.theta_rad)
 
 
 def load_recorded(path: Path | str) -> Recorded:
@@ -65,8 +69,13 @@ def load_recorded(path: Path | str) -> Recorded:
     ----------
     path
         UTF-8, commas between fields. Either a header names the columns
-        ``t_s`` and ``x_mm``, and others are passed over, or each row is just
-        these two numbers. Blank lines are passed over.
+        ``t_s`` and ``x_mm``, perhaps ``y_mm`` and ``theta_deg``, and others are
+        passed over; or each row is just these numbers, two to four in that
+        order. Blank lines are passed over. ``x_mm`` is where the array is along
+        its lines: half its span left of its centre, which is where its left
+        column is as long as it is not turned. ``y_mm`` is where its centre is
+        below the top of the page. ``theta_deg`` is how far it is turned,
+        against the clock as the reader sees it.
 
     Returns
     -------
@@ -77,50 +86,53 @@ def load_recorded(path: Path | str) -> Recorded:
     ------
     InputError
         If the file is missing, a directory, unreadable, not text or empty;
-        if a column is missing; if a field is not a number or not finite, or
-        a position beyond `MOST_MM`; if time does not increase, or leaves a gap.
+        if a column is missing, or named twice; if a field is not a number or
+        not finite, or a position beyond `MOST_MM`, or an angle beyond 1000
+        turns; if time does not increase, or leaves a gap.
     """
     rows = _rows(path)
     where, fields = next(rows, ("", []))
     if not fields:
         raise InputError(f"{path} is empty; give a CSV file with the columns t_s and x_mm")
     if any(_is_number(field) for field in fields):
-        if len(fields) != len(COLUMNS):
+        if not _NEEDED <= len(fields) <= len(COLUMNS):
             raise InputError(
-                f"{where} has neither names nor two numbers; name the columns t_s and x_mm there"
+                f"{where} has neither names nor two to four numbers; name the columns t_s and "
+                f"x_mm there"
             )
-        names, rows = list(COLUMNS), chain([(where, fields)], rows)
+        names, rows = list(COLUMNS[: len(fields)]), chain([(where, fields)], rows)
     else:
         names = [field.strip() for field in fields]
-        for name in COLUMNS:
-            if names.count(name) != 1:
+        for number, name in enumerate(COLUMNS):
+            if names.count(name) > 1 or (number < _NEEDED and name not in names):
                 raise InputError(
                     f"{where} does not name one column {name}; "
                     f"name one t_s and one x_mm, with a comma between"
                 )
-    t_place, x_place = (names.index(name) for name in COLUMNS)
-    t_s, x_mm = array("d"), array("d")
+    places = {name: names.index(name) for name in COLUMNS if name in names}
+    t_s = array("d")
+    where_it_was = {name: array("d") for name in places if name != "t_s"}
     origin_s = 0.0
     for where, fields in rows:
         if len(fields) != len(names):
             raise InputError(
                 f"{where} has more or fewer fields than the first line; give it {len(names)}"
             )
-        time_s = _number(fields[t_place], "t_s", where)
-        place_mm = _number(fields[x_place], "x_mm", where)
-        if abs(place_mm) > MOST_MM:
-            raise InputError(
-                f"{where}: x_mm is {place_mm:g}; it must be {-MOST_MM:g} to {MOST_MM:g} mm"
-            )
+        time_s = _number(fields[places["t_s"]], "t_s", where)
+        for name, values in where_it_was.items():
+            values.append(_bounded(fields[places[name]], name, where))
         if t_s:
             _check_step(time_s - origin_s - t_s[-1], where)
         else:
             origin_s = time_s
         t_s.append(time_s - origin_s)
-        x_mm.append(place_mm)
     if len(t_s) < 2:
         raise InputError(f"{path} has fewer than 2 samples; record for longer")
-    return Recorded(np.array(t_s), np.array(x_mm))
+    x_mm, y_mm, theta_deg = (
+        np.array(where_it_was[name]) if name in where_it_was else None for name in COLUMNS[1:]
+    )
+    assert x_mm is not None, "it was seen to be named"
+    return Recorded(np.array(t_s), x_mm, y_mm, None if theta_deg is None else np.deg2rad(theta_deg))
 
 
 def _rows(path: Path | str) -> Iterator[tuple[str, list[str]]]:
@@ -165,6 +177,15 @@ def _number(field: str, name: str, where: str) -> float:
     if not math.isfinite(value):
         shown = repr(shorten(field, 40)) if field.strip() else "empty"
         raise InputError(f"{where}: {name} is {shown}; give a number, or leave the line out")
+    return value
+
+
+def _bounded(field: str, name: str, where: str) -> float:
+    """Value of a field that says where the array is, no farther than it can be."""
+    value = _number(field, name, where)
+    most, unit = (_MOST_DEG, "degrees") if name == "theta_deg" else (MOST_MM, "mm")
+    if abs(value) > most:
+        raise InputError(f"{where}: {name} is {value:g}; it must be {-most:g} to {most:g} {unit}")
     return value
 
 

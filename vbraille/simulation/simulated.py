@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qsl
@@ -11,29 +12,34 @@ import numpy as np
 from vbraille.devices.base import Device
 from vbraille.errors import InputError
 from vbraille.pose import Pose
-from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.steering import Steering
+from vbraille.simulation.specs import parse_hand
+from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.display import Display
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.motion import Motion
+    from vbraille.simulation.steering import Order
 
 NS_PER_S = 1_000_000_000
-# How a hand goes to where its next motion begins.
+# How a hand goes to where its next motion begins, or to where somebody has it be, and turns.
 APPROACH_MM_S = 250.0
+HELD_MM_S = 1000.0
+TURN_RAD_S = 2 * math.pi
 
 
 class SimulatedDevice(Device):
     """A device without hardware; a hand moves its carriage in the time of a clock.
 
-    Its encoder counts, its levels are as coarse as it says, and it rests on
-    close, as other devices do.
+    Its encoders count, its levels are as coarse as it says, and it rests on
+    close, as other devices do. It has the axes that it says: y from the top of
+    the page down, and the angle, to any fraction.
 
     Parameters
     ----------
@@ -65,15 +71,15 @@ class SimulatedDevice(Device):
         self._info = info
         self._hand = hand
         self._steering = steering
-        self._has_set_out = False
+        self._has_set_out = False  # of a hand that was recorded
         self._ordered = False  # whether something is to be done that is not known to be done yet
         self._now_ns = now_ns
         self.levels = np.zeros((info.rows, info.columns), np.int64)
         self.frames = 0
         self._begun_ns = now_ns()
-        home = -info.span_mm
         self._t_s: NDArray[np.float64] = np.zeros(1)
-        self._x_mm: NDArray[np.float64] = np.full(1, home)
+        # x as in `Motion`, y and θ at these times; each float64[n].
+        self._way = tuple(np.full(1, place) for place in (-info.span_mm, 0.0, 0.0))
 
     @property
     def display(self) -> Display:
@@ -105,12 +111,12 @@ class SimulatedDevice(Device):
         steering = self._steering
         if steering is None:
             if self.frames and not self.moving:
-                self._read_line(self._info.travel_mm - self._info.span_mm)
+                self._do(ReadLine(self._info.travel_mm - self._info.span_mm))
             return
         order = steering.take()
         if order is not None:
             self._ordered = True
-            self._read_line(order.end_mm)
+            self._do(order)
         if self._ordered and not self.moving:
             self._ordered = False
             steering.answer(self._now_ns())
@@ -125,45 +131,102 @@ class SimulatedDevice(Device):
             return times_ns.size
         return int(done.argmax()) + 1
 
-    def _read_line(self, end_mm: float) -> None:
-        """Have the hand read a line; a recorded one sets out with the first, and goes on."""
-        if isinstance(self._hand, Recorded):
+    def _do(self, order: Order) -> None:
+        """Have the hand do something; a recorded one sets out with the first, and goes on."""
+        hand, home_mm = self._hand, -self._info.span_mm
+        if isinstance(order, BeAt):
+            x_mm = order.x_mm - self._info.span_mm / 2
+            self._set_out([x_mm, order.y_mm, order.theta_rad], HELD_MM_S)
+        elif isinstance(hand, Recorded):
             if not self._has_set_out:
-                self.move(self._hand.motion())
-        elif self._hand is not None:
-            self.move(self._hand.read_line(-self._info.span_mm, end_mm))
-        self._has_set_out = True
+                self.move(hand.motion())
+            self._has_set_out = True
+        elif hand is not None and isinstance(order, ReadLine):
+            self.move(hand.read_line(home_mm, order.end_mm))
+        elif hand is not None and isinstance(order, ReadPage):
+            area = Area(order.lines, order.pitch_mm, home_mm, order.end_mm)
+            self.move(hand.read_page(area))
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion, from now on; first to where that begins."""
-        here = self._hand_mm(self._now_ns())
-        approach_s = abs(motion.x_mm[0] - here) / APPROACH_MM_S
-        self._begun_ns = self._now_ns()
+        _, y_mm, theta_rad = self._hand_at(self._now_ns())
+        count = motion.t_s.size
+        way = (
+            motion.x_mm,
+            np.full(count, y_mm) if motion.y_mm is None else motion.y_mm,
+            np.full(count, theta_rad) if motion.theta_rad is None else motion.theta_rad,
+        )
+        self._set_out([float(places[0]) for places in way], APPROACH_MM_S)
+        approach_s = float(self._t_s[-1])
         if approach_s > 0:
             self._t_s = np.concatenate(([0.0], motion.t_s + approach_s))
-            self._x_mm = np.concatenate(([here], motion.x_mm))
+            begun = zip(self._way, way, strict=True)
+            self._way = tuple(np.concatenate((here[:1], places)) for here, places in begun)
         else:
-            self._t_s, self._x_mm = motion.t_s, motion.x_mm
+            self._t_s, self._way = motion.t_s, way
+
+    def _set_out(self, to: Sequence[float], speed_mm_s: float) -> None:
+        """Move the hand straight to a place, in no time if it is there."""
+        here = self._hand_at(self._now_ns())
+        x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
+        if not self._info.height_mm:
+            y_mm = 0.0
+        if not self._info.turns:
+            theta_rad = 0.0
+        needed_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S)
+        self._begun_ns = self._now_ns()
+        self._t_s = np.array([0.0, needed_s])
+        self._way = tuple(np.array(ends) for ends in zip(here, to, strict=True))
 
     def read(self) -> Pose | None:
-        """Pose of the carriage now, to the nearest count of the encoder."""
+        """Pose of the carriage now, to the nearest count of its encoders."""
         self.obey()
         now_ns = self._now_ns()
         info = self._info
-        way = min(max(self._hand_mm(now_ns) + info.span_mm, 0.0), info.travel_mm)
+        hand_mm, y_mm, theta_rad = self._hand_at(now_ns)
+        way = min(max(hand_mm + info.span_mm, 0.0), info.travel_mm)
         counts = round(way * info.counts_per_mm)
-        return Pose(now_ns, counts / info.counts_per_mm - info.span_mm / 2)
+        x_mm = counts / info.counts_per_mm - info.span_mm / 2
+        if not info.height_mm:
+            return Pose(now_ns, x_mm, 0.0, theta_rad)
+        way = min(max(y_mm, 0.0), info.height_mm)
+        return Pose(now_ns, x_mm, round(way * info.counts_per_mm) / info.counts_per_mm, theta_rad)
 
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Where `read` finds the centre at these times, if nothing comes between; float64[n]."""
         # Said twice: for the one place of a `read`, arrays would take several times as long.
         info = self._info
-        hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm)
+        hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._way[0])
         way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
         return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
 
-    def _hand_mm(self, now_ns: int) -> float:
-        return float(np.interp((now_ns - self._begun_ns) / NS_PER_S, self._t_s, self._x_mm))
+    def poses_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """What `read` gives at times of its clock if nothing comes between.
+
+        Returns
+        -------
+        float64[3, n]
+            x and y in mm, and θ in radians, as of `Pose`.
+        """
+        info, t_s = self._info, (times_ns - self._begun_ns) / NS_PER_S
+        poses = np.zeros((3, times_ns.size))
+        poses[0] = self.places_mm(times_ns)
+        if info.height_mm:
+            way = np.clip(np.interp(t_s, self._t_s, self._way[1]), 0.0, info.height_mm)
+            poses[1] = np.rint(way * info.counts_per_mm) / info.counts_per_mm
+        if info.turns:
+            poses[2] = np.interp(t_s, self._t_s, self._way[2])
+        return poses
+
+    def _hand_at(self, now_ns: int) -> tuple[float, float, float]:
+        """Where the hand is along x and y, and how far it is turned, on the axes that there are."""
+        t_s = (now_ns - self._begun_ns) / NS_PER_S
+        knots_s, (x_mm, y_mm, theta_rad) = self._t_s, self._way
+        return (
+            float(np.interp(t_s, knots_s, x_mm)),
+            float(np.interp(t_s, knots_s, y_mm)) if self._info.height_mm else 0.0,
+            float(np.interp(t_s, knots_s, theta_rad)) if self._info.turns else 0.0,
+        )
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         np.rint(frame * (self._info.levels - 1), out=self.levels, casting="unsafe")

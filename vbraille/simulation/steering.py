@@ -10,6 +10,7 @@ where the device is in another process.
 
 from __future__ import annotations
 
+import math
 import mmap
 import os
 import struct
@@ -39,8 +40,64 @@ class ReadLine:
     end_mm: float
 
 
-Order = ReadLine
-_KINDS: Final = (ReadLine,)
+@dataclass(frozen=True, slots=True)
+class ReadPage:
+    """Read a page from its first line to its last; a hand that was recorded goes on.
+
+    Parameters
+    ----------
+    lines
+        How many there are; line n, from 0, takes y from n to n + 1 line pitches.
+    pitch_mm
+        From line to line.
+    end_mm
+        Where the last dot of the longest line ends.
+
+    Raises
+    ------
+    ValueError
+        If there is no line, or no pitch.
+    """
+
+    lines: int
+    pitch_mm: float
+    end_mm: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "lines", int(self.lines))  # in memory all are doubles
+        if self.lines < 1 or not 0 < self.pitch_mm < math.inf:
+            raise ValueError(
+                f"a page of {self.lines} lines {self.pitch_mm:g} mm apart is not possible; "
+                f"it must have 1 or more, and a pitch above 0"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class BeAt:
+    """Go straight to a pose and stay there, as if somebody had the hand in his own.
+
+    Parameters
+    ----------
+    x_mm, y_mm, theta_rad
+        As in `vbraille.pose`: the array's centre, and how far it is turned.
+
+    Raises
+    ------
+    ValueError
+        If one is not finite.
+    """
+
+    x_mm: float
+    y_mm: float = 0.0
+    theta_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not all(map(math.isfinite, astuple(self))):
+            raise ValueError(f"a hand cannot be at {astuple(self)}; it must be numbers")
+
+
+Order = ReadLine | ReadPage | BeAt
+_KINDS: Final[tuple[type[Order], ...]] = (ReadLine, ReadPage, BeAt)
 
 
 class Steering:
@@ -83,7 +140,7 @@ class Steering:
     def give(self, order: Order) -> None:
         """Have the hand do something else from now on.
 
-        To read a line it sets out at once: show the line first.
+        It sets out at once: show first what it is to read.
         """
         number = self._words[_GIVEN] + 1
         numbers = (*astuple(order), *[0.0] * _MOST_NUMBERS)[:_MOST_NUMBERS]

@@ -18,7 +18,7 @@ from vbraille.render import (
 )
 from vbraille.sessions.simulated.observer import Observer, Touch
 from vbraille.sessions.simulated.skin import Exploration, reference_per_mm2, smoothing_mm
-from vbraille.simulation.hand import parse_hand
+from vbraille.simulation.specs import parse_hand
 
 MARGIN_MM = 2.0
 WAYS = [(STRESS2, mapping) for mapping in MAPPINGS.values()]

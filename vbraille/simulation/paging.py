@@ -1,0 +1,128 @@
+"""How a hand that reads lines reads a page: from line to line, drifting a little off each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.simulation.motion import RETURN_MM_S, Motion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+# All ours. A finger drifts by less than what would bring the next line under the array's centre:
+# half a pitch, or with a hysteresis of a quarter three quarters of it.
+DRIFT_PITCHES = 0.15
+TILT_RAD = math.radians(5.0)
+_PERIODS_S = (3.0, 9.0)
+_SHARES = (0.5, 0.3, 0.2)  # of the waves that make up a drift; 1 together
+_KNOTS_S = 0.02  # between knots, so that what is straight between them is smooth
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """Where the lines of a page are, for a hand.
+
+    Parameters
+    ----------
+    lines
+        How many, 1 or more; line n, from 0, takes y from n to n + 1 line pitches.
+    pitch_mm
+        From line to line.
+    start_mm, end_mm
+        Where the array begins and ends each line, along x as in `Motion`.
+
+    Raises
+    ------
+    ValueError
+        If there is no line, or no pitch.
+    """
+
+    lines: int
+    pitch_mm: float
+    start_mm: float
+    end_mm: float
+
+    def __post_init__(self) -> None:
+        if self.lines < 1:
+            raise ValueError(f"a page has {self.lines} lines; it must have 1 or more")
+        if not 0 < self.pitch_mm < math.inf:
+            raise ValueError(f"line pitch is {self.pitch_mm:g} mm; it must be above 0")
+
+    def middle_mm(self, line: int) -> float:
+        """Where the middle of a line is along y."""
+        return (line + 0.5) * self.pitch_mm
+
+    @property
+    def height_mm(self) -> float:
+        """Of all lines together."""
+        return self.lines * self.pitch_mm
+
+
+class Drift:
+    """How a hand wanders off a line and turns a little, slowly and within bounds.
+
+    Parameters
+    ----------
+    random
+        Draws how; each drift is another one.
+    """
+
+    def __init__(self, random: np.random.Generator) -> None:
+        self._waves = [self._draw(random) for _ in range(2)]
+
+    def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far below the middle of the line at times, -`DRIFT_PITCHES` … `DRIFT_PITCHES`."""
+        return DRIFT_PITCHES * self._wave(0, t_s)
+
+    def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far it is turned at times, -`TILT_RAD` … `TILT_RAD`."""
+        return TILT_RAD * self._wave(1, t_s)
+
+    @staticmethod
+    def _draw(random: np.random.Generator) -> list[tuple[float, float, float]]:
+        return [
+            (share, random.uniform(*_PERIODS_S), random.uniform(0, 2 * math.pi))
+            for share in _SHARES
+        ]
+
+    def _wave(self, number: int, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        total = np.zeros(t_s.size)
+        for share, period_s, phase in self._waves[number]:
+            total += share * np.sin(2 * math.pi * t_s / period_s + phase)
+        return total
+
+
+def read_lines(
+    read_line: Callable[[float, float], Motion], area: Area, drift: Drift | None = None
+) -> Motion:
+    """A page, line by line: along each and back as on a line alone, then down to the next.
+
+    Parameters
+    ----------
+    read_line
+        The next line from its start to its end and back, as of `vbraille.simulation.hand.Hand`.
+    area
+        Where they are.
+    drift
+        How the hand wanders off them; None if it keeps to the middle of each.
+    """
+    times_s, places_mm, middles_mm = [], [], []
+    begun_s = 0.0
+    for line in range(area.lines):
+        motion = read_line(area.start_mm, area.end_mm)
+        times_s.append(begun_s + motion.t_s)
+        places_mm.append(motion.x_mm)
+        middles_mm.append(np.full(motion.t_s.size, area.middle_mm(line)))
+        begun_s += motion.duration_s + area.pitch_mm / RETURN_MM_S
+    t_s, x_mm, y_mm = map(np.concatenate, (times_s, places_mm, middles_mm))
+    if drift is None:
+        return Motion(t_s, x_mm, y_mm)
+    fine_s = np.union1d(t_s, np.arange(0.0, t_s[-1], _KNOTS_S))
+    y_mm = np.interp(fine_s, t_s, y_mm) + area.pitch_mm * drift.y_pitches(fine_s)
+    return Motion(fine_s, np.interp(fine_s, t_s, x_mm), y_mm, drift.theta_rad(fine_s))

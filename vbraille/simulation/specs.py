@@ -1,0 +1,62 @@
+"""Hands by their specs, as options and devices name them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
+from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
+from vbraille.simulation.recorded import load_recorded
+from vbraille.simulation.wander import Wander
+
+if TYPE_CHECKING:
+    from vbraille.simulation.hand import Hand
+    from vbraille.simulation.recorded import Recorded
+
+SLOW = ("slow", "device")  # what the hand that reads so is called; the second is its older name
+
+
+def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
+    """Hand of a spec.
+
+    Parameters
+    ----------
+    spec
+        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s or
+        ``recorded:FILE``.
+    seed
+        Of those that are drawn.
+
+    Raises
+    ------
+    InputError
+        If there is no such hand, a number is out of range, or the file cannot be used.
+    """
+    kind, _, rest = spec.partition(":")
+    try:
+        if spec in SLOW:
+            return HumanHand(DEVICE, seed)
+        if spec == "fluent":
+            return HumanHand(FLUENT, seed)
+        if kind == "recorded" and rest:
+            return load_recorded(rest)
+        if kind == "sweep":
+            return Sweep(_speed(rest, kind))
+        if kind == "wander":
+            return Wander(_speed(rest, kind), seed)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    raise InputError(
+        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
+        f"or wander:SPEED to go about without reading"
+    )
+
+
+def _speed(text: str, kind: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        least, most = SPEED_BOUNDS_MM_S
+        wanted = f"it must be a number, {least:g} to {most:g} mm/s"
+        raise ValueError(f"{kind} speed is {text!r}; {wanted}") from None
