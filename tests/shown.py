@@ -10,7 +10,7 @@ VBD_ARRAY = VBD.display
 LATERO = Display("Latero", rows=8, columns=8, column_pitch_mm=1.2, row_pitch_mm=1.6125)
 
 
-def array(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
+def array_of(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
     """Actuators, on a carriage of no consequence."""
     return Display("array", rows, columns, column_pitch_mm, row_pitch_mm)
 
@@ -19,6 +19,11 @@ def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None
     """A line on a display."""
     style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
     return style.render(masks, array)
+
+
+def from_left(masks, **manner):
+    """A line on a display, for places of the left column as the twin has them."""
+    return rendered(masks, **manner).with_anchor(0.0)
 
 
 def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None):
