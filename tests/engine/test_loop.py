@@ -7,7 +7,8 @@ from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Flag, Ring
+from vbraille.engine.record import Flag
+from vbraille.engine.ring import Ring
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
@@ -201,7 +202,8 @@ def test_a_machine_that_stalls_makes_no_fade_faster(clock, device, change):
 
 def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):
     device.move(straight((0, 3.0), (20, 3.0)))
-    ring = Ring(memoryview(bytearray(Ring.bytes_needed((6, 10), 2000))), (6, 10), 2000)
+    ring = Ring.alone((6, 10), 2000)
+    reader = ring.reader()
     loop = Loop(device, clock, ring=ring)
     loop.show(picture())
     run(loop, 0.3)
@@ -213,7 +215,7 @@ def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, dev
     run(loop, 0.2)
     assert not loop.resting
     assert biggest_step([np.zeros((6, 10)), *device.sent]) <= 1 / 100 + 1e-9
-    ticks = ring.drain()
+    ticks = reader.drain()
     resting = (ticks["flags"] & Flag.RESTING) > 0
     assert resting[301:499].all()
     assert not ticks["frame"][301:499].any()
@@ -269,9 +271,9 @@ def test_speed_and_scanning_speed(clock, device):
     device.move(straight((0, -10.0), (2, 90.0), (3, 90.0), (4, -10.0)))
     loop = Loop(device, clock)
     run(loop, 1.0)
-    assert loop.velocity.mm_s == pytest.approx(50, rel=0.01)
+    assert loop.state.now["vx_mm_s"] == pytest.approx(50, rel=0.01)
     run(loop, 2.5)
-    assert loop.velocity.mm_s == pytest.approx(-100, rel=0.01)
+    assert loop.state.now["vx_mm_s"] == pytest.approx(-100, rel=0.01)
     assert loop.tally.scanning_mm_s == pytest.approx(50, rel=0.02)
 
 
@@ -283,7 +285,7 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
         if tick % 100 == 50:
             clock.advance_ns(60 * MS)
         loop.tick()
-        fastest = max(fastest, loop.velocity.mm_s)
+        fastest = max(fastest, loop.state.now["vx_mm_s"])
     assert fastest == pytest.approx(50, rel=0.02)
     assert loop.tally.late > 500
 

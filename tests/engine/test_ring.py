@@ -5,7 +5,8 @@ import threading
 import numpy as np
 import pytest
 
-from vbraille.engine.ring import Flag, Ring
+from vbraille.engine.record import FLOATS, INTS, Flag
+from vbraille.engine.ring import Ring, RingReader
 
 SHAPE = (2, 3)
 
@@ -13,12 +14,16 @@ SHAPE = (2, 3)
 def pair(size):
     """Both ends over the same memory."""
     memory = memoryview(bytearray(Ring.bytes_needed(SHAPE, size)))
-    return Ring(memory, SHAPE, size), Ring(memory, SHAPE, size)
+    return Ring(memory, SHAPE, size), RingReader(memory, SHAPE, size)
 
 
 def append(ring, n):
-    fields = (10 * n, 20 * n, 3, 4, 5, 6, 7, int(Flag.PAUSED), n / 2, -n / 4, 8.0, 9.0, 0.5)
-    ring.append(np.full(SHAPE, n / 1024), *fields)
+    ints, floats, frames = ring.columns
+    slot = ring.begin()
+    ints[slot] = n, 10 * n, 20 * n, 3, 4, 5, 6, 7, 8, int(Flag.PAUSED)
+    floats[slot] = n / 2, n / 8, 0.25, -n / 4, 0.75, 8.0, 9.0, 10.0, 0.5
+    frames[slot] = n / 1024
+    ring.end()
 
 
 def test_a_record_has_every_field_in_its_place():
@@ -29,9 +34,11 @@ def test_a_record_has_every_field_in_its_place():
     tick = reader.drain()[1]
     want = {
         "tick": 1, "time_ns": 10, "device_ns": 20, "lateness_ns": 3, "work_ns": 4, "late": 5,
-        "overruns": 6, "line": 7, "flags": 1, "x_mm": 0.5, "speed_mm_s": -0.25,
-        "forward_mm": 8.0, "forward_s": 9.0, "share": 0.5,
+        "overruns": 6, "line": 7, "part": 8, "flags": 1, "x_mm": 0.5, "y_mm": 0.125,
+        "theta_rad": 0.25, "vx_mm_s": -0.25, "vy_mm_s": 0.75, "forward_mm": 8.0,
+        "forward_s": 9.0, "shown_s": 10.0, "share": 0.5,
     }  # fmt: skip
+    assert tuple(want) == (*INTS, *FLOATS)
     assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want
     np.testing.assert_array_equal(tick["frame"], np.full(SHAPE, 1 / 1024, np.float32))
 
@@ -74,6 +81,33 @@ def test_what_was_overwritten_is_counted():
     writer.publish()
     assert reader.drain()["tick"].tolist() == [20]
     assert reader.lost == 13
+
+
+def test_readers_follow_each_at_its_own_pace_and_hold_up_nobody():
+    ring = Ring.alone(SHAPE, 8)
+    often, seldom = ring.reader(), ring.reader()
+    seen = []
+    for n in range(20):
+        append(ring, n)
+        if n == 4:
+            late = ring.reader()  # of what comes from now on, which the last record is part of
+        seen += often.drain()["tick"].tolist()
+    ring.publish()
+    assert seen + often.drain()["tick"].tolist() == list(range(20))
+    assert seldom.drain()["tick"].tolist() == list(range(13, 20))
+    assert late.drain()["tick"].tolist() == list(range(13, 20))
+    assert (often.lost, seldom.lost, late.lost) == (0, 13, 13 - 4)
+
+
+def test_a_block_of_records_is_appended_at_once():
+    writer, reader = pair(8)
+    for first, count in ((0, 3), (3, 5), (8, 2)):
+        slot = writer.begin()
+        writer.columns[0][(slot + np.arange(count)) % 8, 0] = np.arange(first, first + count)
+        writer.end(count)
+        writer.publish()
+        assert reader.drain()["tick"].tolist() == list(range(first, first + count))
+    assert reader.lost == 0
 
 
 @pytest.mark.no_cover

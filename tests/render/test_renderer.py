@@ -151,7 +151,8 @@ def test_a_line_of_one_cell():
 
 @pytest.mark.parametrize("mapping", MAPPINGS.values(), ids=MAPPINGS)
 def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
-    says = rf"^mapping {mapping.name} needs {mapping.rows} actuator rows from row 0 on; the array has 1$"
+    needs = f"^mapping {mapping.name} needs {mapping.rows} actuator rows from row 0 on"
+    says = f"{needs}; the array has 1$"
     with pytest.raises(ValueError, match=says):
         from_left(
             line(1),
