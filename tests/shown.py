@@ -10,7 +10,7 @@ VBD_ARRAY = VBD.display
 LATERO = Display("Latero", rows=8, columns=8, column_pitch_mm=1.2, row_pitch_mm=1.6125)
 
 
-def array(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
+def array_of(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
     """Actuators, on a carriage of no consequence."""
     return Display("array", rows, columns, column_pitch_mm, row_pitch_mm)
 
@@ -22,7 +22,12 @@ def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None
     return program if anchor_mm is None else program.with_anchor(anchor_mm)
 
 
-def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=None):
-    """The frames of a line in plain numpy, for the same places."""
+def from_left(masks, **manner):
+    """A line on a display, for places of the left column as the twin has them."""
+    return rendered(masks, **manner).with_anchor(0.0)
+
+
+def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=0.0):
+    """The frames of a line in plain numpy, for places of the left column."""
     style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
     return deflections(x_mm, masks, style, array, anchor_mm)

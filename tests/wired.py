@@ -34,6 +34,10 @@ from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.wire import Decoder
 from vbraille.display import Display
 from vbraille.engine.loop import Loop
+from vbraille.engine.record import X
+from vbraille.engine.ring import Ring
+from vbraille.geometry import Geometry
+from vbraille.render import BrailleStyle, Mapping, Profile, Tuning
 from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.simulator import split
 
@@ -54,18 +58,35 @@ INFO = Display(
 )  # fmt: skip
 
 
-class Wave:
-    """A picture whose steepest slope is known; it keeps the place that it was last asked for."""
+# Dots that fill the line, each half a wave long.
+DOT_MM = 20.0
+CELLS = 30
 
-    def __init__(self, swing: float, now: Callable[[], int], length_mm: float = 40.0) -> None:
-        self.slope_per_mm = swing * 2 * math.pi / length_mm
-        self.x_mm, self.awake_us = 0.0, 0
-        self._now = now
-        self._swing, self._per_mm = swing, 2 * math.pi / length_mm
 
-    def frame(self, x_mm: float, out: NDArray[np.float64]) -> None:
-        self.x_mm, self.awake_us = x_mm, self._now()
-        out.fill(1.0 - self._swing + self._swing * math.sin(x_mm * self._per_mm))
+def waves(swing: float) -> BrailleStyle:
+    """How a line is shown that is at full deflection where it is at rest otherwise.
+
+    A dot swings the actuators down by ``swing`` and up again; 0 is the same everywhere.
+    """
+    return BrailleStyle(
+        Profile.HALF_SINE,
+        Mapping("waves", (0,), (0,), (True,)),
+        Geometry(DOT_MM, DOT_MM, DOT_MM, row_spacing_mm=20.0, line_pitch_mm=60.0),
+        Tuning(texture=0.0, contrast=swing),
+    )
+
+
+class Records(Ring):
+    """A ring that knows which record was begun last."""
+
+    slot = 0
+    begun: Callable[[], None]
+
+    def begin(self) -> int:
+        """Begin a record: the host is awake, and has read where the carriage is."""
+        self.begun()
+        self.slot = super().begin()
+        return self.slot
 
 
 class Wired:
@@ -130,11 +151,16 @@ class Wired:
         self._levels = self.controller.levels.astype(float)
         self._rest = self._levels
         self._at = 0, self.controller.levels
-        self.picture = Wave(swing, lambda: self._awake_us)
+        # The steepest slope of sin(πu/W).
+        self.slope_per_mm = swing * math.pi / DOT_MM
+        self.picture = waves(swing).render(np.full(CELLS, 0b001001, np.uint8), INFO)
         self.port = _Port(self)
         self.greeted = greet(self.port, self.now_ns, self.pause)
         self.device = device(self.port, self.greeted, self.now_ns, self.pause)
-        self.loop = Loop(self.device, self, fade_s=FADE_S)
+        self._records = Records.alone(INFO.shape, 2)
+        self._records.begun = self._note_awake
+        self._made_awake_us = 0
+        self.loop = Loop(self.device, self, fade_s=FADE_S, ring=self._records)
 
     # The clock of the loop.
 
@@ -159,14 +185,18 @@ class Wired:
             if stall_us >= WATCHDOG_MS * 1000:
                 self._awake_us = self.now_us
 
+    def _note_awake(self) -> None:
+        """A frame is made now, of what is known since the host was awake again."""
+        self._made_awake_us = self._awake_us
+
     # The line.
 
     def send_down(self, message: bytes) -> None:
         """What the host writes."""
         for event in self._sent.feed(message):
             if isinstance(event, Frame):
-                picture = self.picture
-                self._made[event.sequence] = self._ticks, picture.x_mm, picture.awake_us
+                x_mm = float(self._records.columns[1][self._records.slot, X])
+                self._made[event.sequence] = self._ticks, x_mm, self._made_awake_us
         trouble, chance = self._troubles, self._chance
         if self._begun_us is None:  # the handshake is not on trial
             trouble = Troubles()
@@ -291,7 +321,7 @@ class Wired:
         """Furthest from one FRAME to another, in levels."""
         (tick, x_mm, _), (later, later_mm, _) = self._made[before], self._made[after]
         passed_s = abs(later - tick) * PERIOD_US / 1e6
-        hand = self.picture.slope_per_mm * abs(later_mm - x_mm)
+        hand = self.slope_per_mm * abs(later_mm - x_mm)
         # A device that is slower than what is asked for lags behind, and makes up for it as it can.
         allowed = passed_s * self._slew_per_s if self._slew_per_s else passed_s / FADE_S + hand
         return allowed * TOP + 2

@@ -12,12 +12,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from vbraille.render.renderer import Renderer
 
 from tests.benchmarks.tick_host import Opened
 from vbraille.devices import DeviceInfo
 from vbraille.engine.host import Host
 from vbraille.render import STRESS2, Tuning
-from vbraille.render.renderer import Renderer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from vbraille.devices.firmware import Controller
 
 from tests.controllers import ControllerOf20261121
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
 from vbraille.devices import steady
-from vbraille.devices.firmware import Controller
 from vbraille.devices.messages import (
     FAULTY,
     PLACED,

@@ -14,11 +14,13 @@ import pytest
 from tests import drivers
 from tests.engine.test_loop import info, picture
 from vbraille.engine.host import Host, HostDiedError
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
+from vbraille.render import STRESS2
 from vbraille.simulation.steering import ReadLine, Steering
 
 PATIENCE_S = 60.0
+ROOM = STRESS2.style.room(STRESS2.display, 26)  # lines of so many cells
 
 
 def until(host, enough):
@@ -44,7 +46,7 @@ def descriptors():
 def test_a_life():
     """Start, a line, a pause, a death, another start, an end: with one process, for its time."""
     before = descriptors()
-    with Host("sim:?hand=sweep:100", info(), 26) as host:
+    with Host("sim:?hand=sweep:100", info(), ROOM) as host:
         line = picture(mapping="sheared")
         host.show(line, 7)
         ticks = until(host, lasting(400))
@@ -83,7 +85,7 @@ def test_a_life():
 def test_notes_counts_and_the_device_s_fault(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", drivers.install(tmp_path)["PYTHONPATH"])
     notes = []
-    with Host(f"logged:{tmp_path / 'log'},gone", info(), 26) as host:
+    with Host(f"logged:{tmp_path / 'log'},gone", info(), ROOM) as host:
         with pytest.raises(DeviceError, match="the device is gone"):
             until(host, lambda _new: notes.extend(host.take_notes()))
         notes += host.take_notes()
@@ -94,7 +96,7 @@ def test_notes_counts_and_the_device_s_fault(tmp_path, monkeypatch):
 def test_a_device_that_cannot_be_opened():
     before = descriptors()
     with pytest.raises(InputError, match="no device kind 'nothing'"):
-        Host("nothing:", info(), 26).__enter__()
+        Host("nothing:", info(), ROOM).__enter__()
     assert descriptors() == before
 
 
@@ -103,7 +105,7 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
     host = Host("sim:?hand=sweep:100", info(travel_mm=123.0))
     try:
         assert host.open() == info(travel_mm=123.0)
-        host.fit(host.display, 7)
+        host.fit(host.display, STRESS2.style.room(STRESS2.display, 7))
         host.start()
         host.show(picture((63,) * 7, mapping="sheared"), 1)
         until(host, lambda new: new.size and new["frame"][-1].any())
@@ -135,7 +137,7 @@ def test_a_simulated_hand_is_steered_past_the_engine():
 
 
 def test_keys_of_the_terminal_do_not_stop_the_process_that_drives_the_device():
-    with Host("sim:?hand=sweep:100", info(), 26) as host:
+    with Host("sim:?hand=sweep:100", info(), ROOM) as host:
         for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
             os.kill(host.process_id, number)
         ticks = host.tally.ticks
@@ -144,9 +146,9 @@ def test_keys_of_the_terminal_do_not_stop_the_process_that_drives_the_device():
 
 _PARENT = """
 import sys, time
-from tests.engine.test_host import info, picture
+from tests.engine.test_host import ROOM, info, picture
 from vbraille.engine.host import Host
-with Host(sys.argv[1], info(), 26) as host:
+with Host(sys.argv[1], info(), ROOM) as host:
     host.show(picture(mapping="sheared"), 1)
     while host.tally.ticks < 400:
         time.sleep(0.01)

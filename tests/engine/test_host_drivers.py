@@ -12,7 +12,7 @@ import time
 import pytest
 
 from tests import drivers
-from tests.engine.test_host import PATIENCE_S, descriptors, lasting, until
+from tests.engine.test_host import PATIENCE_S, ROOM, descriptors, lasting, until
 from tests.engine.test_loop import info
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.errors import DeviceError
@@ -56,7 +56,7 @@ def read(self):
 """,
         head='print("while it is loaded")',
     )
-    with Host("other:", info(), 26) as host:
+    with Host("other:", info(), ROOM) as host:
         until(host, lasting(300))
         assert host.display == info()
     said = capfd.readouterr()
@@ -71,7 +71,7 @@ def read(self):
 def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, tmp_path, body):
     lines = driver(body)
     before = descriptors()
-    with pytest.raises(DeviceError) as raised, Host("other:", info(), 26) as host:
+    with pytest.raises(DeviceError) as raised, Host("other:", info(), ROOM) as host:
         until(host, lambda new: new.size and host._mailbox.stop())
     said = str(raised.value)
     assert said.startswith("the driver other, which is not vbraille's own, has a fault (")
@@ -81,9 +81,9 @@ def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, t
 
 _PARENT = """
 import sys, time
-from tests.engine.test_host import info
+from tests.engine.test_host import ROOM, info
 from vbraille.engine.host import Host
-host = Host("other:", info(), 26)
+host = Host("other:", info(), ROOM)
 host.launch()
 print(host.process_id, flush=True)
 host.start()
@@ -165,7 +165,7 @@ def spent_s():
 
 def test_a_host_is_closed_while_a_child_of_its_driver_holds_the_pipe(driver, child):
     driver(_FORKS)
-    with Host("other:", info(), 26) as host:
+    with Host("other:", info(), ROOM) as host:
         until(host, lasting(30))
         begun_s, busy_s = time.monotonic(), spent_s()
     assert time.monotonic() - begun_s < 4.0  # it did not have to be killed
@@ -175,7 +175,7 @@ def test_a_host_is_closed_while_a_child_of_its_driver_holds_the_pipe(driver, chi
 
 def test_a_host_s_death_is_seen_while_a_child_of_its_driver_holds_the_pipe(driver, child):
     driver(_FORKS)
-    with Host("other:", info(), 26) as host:
+    with Host("other:", info(), ROOM) as host:
         until(host, lasting(30))
         os.kill(host.process_id, signal.SIGKILL)
         with pytest.raises(HostDiedError, match="signal 9"):
@@ -186,13 +186,13 @@ def test_a_host_s_death_is_seen_while_a_child_of_its_driver_holds_the_pipe(drive
 def test_a_host_that_dies_when_it_starts_is_seen_while_a_child_holds_the_pipe(driver, child):
     driver(_FORKS + "    os._exit(7)\n")
     with pytest.raises(HostDiedError, match="exit code 7"):
-        Host("other:", info(), 26).__enter__()
+        Host("other:", info(), ROOM).__enter__()
     assert child()
 
 
 def test_long_notes_come_whole_or_cut(driver):
     driver("def take_notes(self):\n    return ['\\U0001f600' * 9999] if self.frames == 99 else []")
     notes = []
-    with Host("other:", info(), 26) as host:
+    with Host("other:", info(), ROOM) as host:
         until(host, lambda new: notes.extend(host.take_notes()) or lasting(200)(new))
     assert [re.sub("(\U0001f600)+", "…", note) for note in notes if "\U0001f600" in note] == ["…"]

@@ -7,7 +7,8 @@ from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
-from vbraille.engine.ring import Flag, Ring, RingReader
+from vbraille.engine.record import Flag
+from vbraille.engine.ring import Ring
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
@@ -128,8 +129,8 @@ def test_position_is_to_the_encoder_s_count(clock, device):
     device.move(straight((0, 0), (1, 10)))
     loop = Loop(device, clock)
     run(loop, 0.3)
-    assert loop.pose is not None
-    counts = (loop.pose.x_mm + SPAN_MM / 2) * 200
+    assert loop.x_mm is not None
+    counts = (loop.x_mm + SPAN_MM) * 200
     assert abs(counts - round(counts)) < 1e-6
 
 
@@ -201,8 +202,8 @@ def test_a_machine_that_stalls_makes_no_fade_faster(clock, device, change):
 
 def test_while_frames_are_not_taken_the_array_rests_and_fades_in_then(clock, device):
     device.move(straight((0, 3.0), (20, 3.0)))
-    memory = memoryview(bytearray(Ring.bytes_needed((6, 10), 2000)))
-    ring, reader = Ring(memory, (6, 10), 2000), RingReader(memory, (6, 10), 2000)
+    ring = Ring.alone((6, 10), 2000)
+    reader = ring.reader()
     loop = Loop(device, clock, ring=ring)
     loop.show(picture())
     run(loop, 0.3)
@@ -270,9 +271,9 @@ def test_speed_and_scanning_speed(clock, device):
     device.move(straight((0, -10.0), (2, 90.0), (3, 90.0), (4, -10.0)))
     loop = Loop(device, clock)
     run(loop, 1.0)
-    assert loop.velocity.x_mm_s == pytest.approx(50, rel=0.01)
+    assert loop.state.now["vx_mm_s"] == pytest.approx(50, rel=0.01)
     run(loop, 2.5)
-    assert loop.velocity.x_mm_s == pytest.approx(-100, rel=0.01)
+    assert loop.state.now["vx_mm_s"] == pytest.approx(-100, rel=0.01)
     assert loop.tally.scanning_mm_s == pytest.approx(50, rel=0.02)
 
 
@@ -284,7 +285,7 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
         if tick % 100 == 50:
             clock.advance_ns(60 * MS)
         loop.tick()
-        fastest = max(fastest, loop.velocity.x_mm_s)
+        fastest = max(fastest, loop.state.now["vx_mm_s"])
     assert fastest == pytest.approx(50, rel=0.02)
     assert loop.tally.late > 500
 

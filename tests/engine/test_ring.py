@@ -9,18 +9,17 @@ import numpy as np
 import pytest
 
 from vbraille.engine import shared
-from vbraille.engine.ring import Flag, Ring, RingReader
+from vbraille.engine.record import FLOATS, INTS, Flag
+from vbraille.engine.ring import Ring, RingReader
 
 SHAPE = (2, 3)
 # A reader in another process: it drains as soon as so many ticks are new, up to the last tick.
 APART = """
 import json, sys
 from vbraille.engine import shared
-from vbraille.engine.ring import RingReader
 descriptor, last, slow = map(int, sys.argv[1:])
 extent = shared.Extent(2, 3, 1, 64)
-_, memory = shared.divide(shared.attach(descriptor, extent), extent)
-reader = RingReader(memory.toreadonly(), extent.shape, extent.ticks)
+_, reader = shared.watch(shared.attach(descriptor, extent).toreadonly(), extent)
 print("joined", flush=True)
 told = {"ticks": 0, "wrong": 0, "before": -1}
 while told["before"] < last:
@@ -42,9 +41,12 @@ def pair(size):
 
 
 def append(ring, n):
-    numbers = (10 * n, 20 * n, 3, 4, 5, 6, 7, 8, int(Flag.PAUSED))
-    pose, velocity = (n / 2, n / 4, n / 8), (-n / 4, -n / 8)
-    ring.append(np.full(SHAPE, n / 1024), *numbers, *pose, *velocity, 9.0, 10.0, 11.0, 0.5)
+    ints, floats, frames = ring.columns
+    slot = ring.begin()
+    ints[slot] = n, 10 * n, 20 * n, 3, 4, 5, 6, 7, 8, int(Flag.PAUSED)
+    floats[slot] = n / 2, n / 8, 0.25, -n / 4, 0.75, 8.0, 9.0, 10.0, 0.5
+    frames[slot] = n / 1024
+    ring.end()
 
 
 def test_a_record_has_every_field_in_its_place():
@@ -55,11 +57,11 @@ def test_a_record_has_every_field_in_its_place():
     tick = reader.drain()[1]
     want = {
         "tick": 1, "time_ns": 10, "device_ns": 20, "lateness_ns": 3, "work_ns": 4, "late": 5,
-        "overruns": 6, "line": 7, "part": 8, "flags": 1, "x_mm": 0.5, "y_mm": 0.25,
-        "theta_rad": 0.125, "vx_mm_s": -0.25, "vy_mm_s": -0.125, "forward_mm": 9.0,
-        "forward_s": 10.0, "shown_s": 11.0, "share": 0.5,
+        "overruns": 6, "line": 7, "part": 8, "flags": 1, "x_mm": 0.5, "y_mm": 0.125,
+        "theta_rad": 0.25, "vx_mm_s": -0.25, "vy_mm_s": 0.75, "forward_mm": 8.0,
+        "forward_s": 9.0, "shown_s": 10.0, "share": 0.5,
     }  # fmt: skip
-    assert tick.dtype.names == (*want, "frame")
+    assert tuple(want) == (*INTS, *FLOATS)
     assert {name: tick[name] for name in tick.dtype.names if name != "frame"} == want
     np.testing.assert_array_equal(tick["frame"], np.full(SHAPE, 1 / 1024, np.float32))
 
@@ -102,6 +104,33 @@ def test_what_was_overwritten_is_counted():
     writer.publish()
     assert reader.drain()["tick"].tolist() == [20]
     assert reader.lost == 13
+
+
+def test_readers_follow_each_at_its_own_pace_and_hold_up_nobody():
+    ring = Ring.alone(SHAPE, 8)
+    often, seldom = ring.reader(), ring.reader()
+    seen = []
+    for n in range(20):
+        append(ring, n)
+        if n == 4:
+            late = ring.reader()  # of what comes from now on, which the last record is part of
+        seen += often.drain()["tick"].tolist()
+    ring.publish()
+    assert seen + often.drain()["tick"].tolist() == list(range(20))
+    assert seldom.drain()["tick"].tolist() == list(range(13, 20))
+    assert late.drain()["tick"].tolist() == list(range(13, 20))
+    assert (often.lost, seldom.lost, late.lost) == (0, 13, 13 - 4)
+
+
+def test_a_block_of_records_is_appended_at_once():
+    writer, reader = pair(8)
+    for first, count in ((0, 3), (3, 5), (8, 2)):
+        slot = writer.begin()
+        writer.columns[0][(slot + np.arange(count)) % 8, 0] = np.arange(first, first + count)
+        writer.end(count)
+        writer.publish()
+        assert reader.drain()["tick"].tolist() == list(range(first, first + count))
+    assert reader.lost == 0
 
 
 @pytest.mark.no_cover

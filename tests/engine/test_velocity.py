@@ -1,69 +1,98 @@
-"""The velocity estimate against its equations."""
+"""The hand's velocity, as the tick estimates it, against its equations."""
 
 import numpy as np
 import pytest
 
-from vbraille.engine.velocity import Velocity
+from vbraille.display import Display
+from vbraille.engine.kernels import POSE_X, POSE_Y, POSED
+from vbraille.engine.record import VX, VY, columns_of, tick_dtype
+from vbraille.engine.state import State
 
 MS = 1_000_000
+N, M = 10, 50  # of eqs. 9.4 and 9.5
 
 
-def vectors(times_ns, x_mm, y_mm):
-    """Velocity after each sample; float64[n, 2]."""
-    velocity = Velocity()
-    seen = []
-    for time_ns, x, y in zip(times_ns, x_mm, y_mm, strict=True):
-        velocity.add(int(time_ns), float(x), float(y))
-        seen.append((velocity.x_mm_s, velocity.y_mm_s))
-    return np.array(seen)
+def estimates(times_ns, places_mm):
+    """Velocity after each pose, float64[n, 2]; the host's ticks are a millisecond apart."""
+    display = Display("table", 1, 1, 1.0, 1.0, height_mm=300.0)
+    state = State(display, 1000.0, 0)
+    n = len(times_ns)
+    times = np.stack((np.arange(1, n + 1) * MS, times_ns), axis=1)
+    poses = np.zeros((n, 4))
+    poses[:, POSED] = 1.0
+    poses[:, POSE_X : POSE_Y + 1] = places_mm
+    columns = columns_of(np.zeros(n, tick_dtype(display.shape)))
+    assert state.advance(times, poses, 0, True, columns) == n
+    return columns[1][:, VX : VY + 1]
 
 
-def estimates(times_ns, x_mm):
-    """Velocity to the right after each sample, of a hand that stays on its line; float64[n]."""
-    seen = vectors(times_ns, x_mm, np.zeros(len(times_ns)))
-    assert not seen[:, 1].any()
-    return seen[:, 0]
+def twin(times_ns, places_mm):
+    """Lévesque 2009, eqs. 9.4 and 9.5, of each component; the hand stood still before."""
+    differences = np.zeros((len(times_ns), 2))
+    elapsed_s = (times_ns[N:] - times_ns[:-N]) / 1e9
+    differences[N:] = (places_mm[N:] - places_mm[:-N]) / elapsed_s[:, None]
+    padded = np.concatenate((np.zeros((M - 1, 2)), differences))
+    return np.lib.stride_tricks.sliding_window_view(padded, M, axis=0).mean(axis=-1)
 
 
-def test_each_component_is_the_mean_of_fifty_differences_over_ten_samples(rng):
+def along(x_mm):
+    """Places of a hand that goes along x, and half as far along y."""
+    return np.stack((x_mm, -x_mm / 2), axis=1)
+
+
+def test_each_component_is_the_mean_of_fifty_differences_over_ten_poses(rng):
     times_ns = np.cumsum(rng.integers(1, 3 * MS, 400))
-    places_mm = np.cumsum(rng.normal(0.05, 0.1, (400, 2)), axis=0)
-    taken_ns = (times_ns[10:] - times_ns[:-10])[:, None]
-    differences = np.zeros((400, 2))
-    differences[10:] = (places_mm[10:] - places_mm[:-10]) / taken_ns * 1e9
-    # Before its first sample the hand stood still.
-    padded = np.concatenate((np.zeros((49, 2)), differences))
-    want = np.lib.stride_tricks.sliding_window_view(padded, 50, axis=0).mean(axis=-1)
-    np.testing.assert_allclose(vectors(times_ns, *places_mm.T), want, atol=1e-9)
+    places_mm = np.cumsum(rng.normal((0.05, -0.02), 0.1, (400, 2)), axis=0)
+    want = twin(times_ns, places_mm)
+    assert np.abs(want).max() > 10
+    np.testing.assert_allclose(estimates(times_ns, places_mm), want, rtol=1e-12, atol=1e-9)
 
 
-def test_a_hand_that_goes_round_has_no_velocity_on_the_whole():
-    # 50 ms a turn: the components average out, as a mean of angles would not.
-    n = np.arange(200)
-    angle = 2 * np.pi * n / 50
-    seen = vectors(n * MS, np.cos(angle), np.sin(angle))
-    assert np.abs(seen[60:]).max() < 1e-9
-    assert np.abs(seen[:60]).max() > 1
-
-
-def test_it_settles_in_sixty_samples_on_a_steady_hand():
+def test_it_settles_in_sixty_poses_on_a_steady_hand():
     n = np.arange(80)
-    seen = estimates(n * MS, n * 0.04)
-    assert seen[58] < 40 - 1e-6
-    assert seen[60:] == pytest.approx(40)
+    seen = estimates(n * MS, along(n * 0.04))
+    assert seen[58, 0] < 40 - 1e-6
+    assert seen[60:] == pytest.approx(np.tile((40.0, -20.0), (20, 1)))
 
 
-def test_a_sample_seen_twice_counts_once():
+def test_no_more_than_fifty_nine_poses_are_remembered(rng):
     n = np.arange(200)
-    assert estimates(n // 2 * MS, n // 2 * 0.04)[-1] == pytest.approx(40)
+    places_mm = along(n * 0.04)
+    before = places_mm + (n < 200 - M - N)[:, None] * rng.normal(0, 0.01, (200, 2))
+    assert estimates(n * MS, before)[-1] == pytest.approx(estimates(n * MS, places_mm)[-1])
+    assert estimates(n * MS, before)[100] != pytest.approx(estimates(n * MS, places_mm)[100])
+
+
+def test_a_pose_seen_twice_counts_once():
+    n = np.arange(200)
+    assert estimates(n // 2 * MS, along(n // 2 * 0.04))[-1] == pytest.approx((40, -20))
 
 
 @pytest.mark.parametrize("step_ns", [600 * MS, -500 * MS])
 def test_a_gap_and_a_clock_set_back_begin_anew(step_ns):
     n = np.arange(100)
     times_ns = n * MS + np.where(n < 70, 0, step_ns)
-    places_mm = n * 0.04 + np.where(n < 70, 0, 200.0)
-    seen = estimates(times_ns, places_mm)
-    assert seen[69] == pytest.approx(40)
-    assert seen[70] == 0
-    assert seen[70:].max() < 40
+    seen = estimates(times_ns, along(n * 0.04))
+    assert seen[69] == pytest.approx((40, -20))
+    assert (seen[70:80] == 0).all()
+    # Of the poses from then on alone.
+    np.testing.assert_allclose(seen[70:], twin(n[:30] * MS, along(n[70:] * 0.04)), atol=1e-9)
+
+
+def test_a_carriage_that_was_lost_and_found_again_has_no_speed():
+    n = np.arange(100)
+    seen = estimates(n * MS, along(n * 0.04 + np.where(n < 70, 0, 200.0)))
+    assert seen[69] == pytest.approx((40, -20))
+    assert (seen[70:80] == 0).all()
+    assert np.abs(seen[70:]).max() < 40
+
+
+def test_a_slider_has_no_velocity_along_y():
+    display = Display("slider", 1, 1, 1.0, 1.0)
+    state = State(display, 1000.0, 0)
+    poses = np.ones((80, 4))
+    poses[:, POSE_X] = poses[:, POSE_Y] = np.arange(80) * 0.04
+    columns = columns_of(np.zeros(80, tick_dtype(display.shape)))
+    times_ns = np.repeat(np.arange(80)[:, None] * MS, 2, axis=1)
+    state.advance(times_ns, poses, 0, True, columns)
+    assert columns[1][-1, [VX, VY]] == pytest.approx((40, 0))

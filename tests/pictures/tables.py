@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 
 from vbraille.page import Line
@@ -13,21 +15,20 @@ def make_line(braille, number=1, indent=0):
     return Line(number, indent, Cells.from_unicode(braille), NO_TEXT, 0, 0)
 
 
-def make_page(lines, model=STRESS2, **changes):
-    settings = {
-        "mapping": model.style.mapping,
-        "geometry": model.style.geometry,
-        "tuning": Tuning(),
-        "x_mm": 0.0,
-        **changes,
-    }
-    return page(lines, model=model, **settings)
+def with_style(model, **changes):
+    """A model that is read in a style a little different from its own."""
+    return replace(model, style=replace(model.style, **changes))
+
+
+def make_page(lines, model=STRESS2, x_mm=0.0, line_index=0):
+    model = with_style(model, tuning=Tuning())
+    return page(lines, model, x_mm=x_mm, line_index=line_index)
 
 
 TABLES = [
-    profile(VBD, VBD.style.geometry, VBD.style.tuning),
-    mapping(STRESS2.style.geometry, STRESS2.style.tuning),
-    wave(VBD, VBD.style.geometry, VBD.style.tuning),
+    profile(VBD),
+    mapping(STRESS2.style),
+    wave(VBD),
     strain(VBD.style.geometry, VBD.style.tuning),
     make_page([make_line("⠵⠁"), make_line("⠃", number=2)], x_mm=3.0),
 ]

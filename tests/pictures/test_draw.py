@@ -54,7 +54,7 @@ def test_pictures_are_grey(table):
 
 
 def test_profile_draws_a_panel_a_level():
-    figure = draw.draw(profile(STRESS2, STRESS2.style.geometry, STRESS2.style.tuning))
+    figure = draw.draw(profile(STRESS2))
     assert [axes.get_title() for axes in figure.axes] == ["T = 0 %", "T = 25 %", "T = 100 %"]
     for axes in figure.axes:
         (curve,) = curves(axes)
@@ -63,19 +63,18 @@ def test_profile_draws_a_panel_a_level():
 
 def test_mapping_draws_six_rows_a_method():
     figure = draw.draw(TABLES[1])
-    assert [axes.get_title() for axes in figure.axes] == list(MAPPINGS)
-    for axes in figure.axes:
+    panels = [axes for axes in figure.axes if axes.axison]
+    assert [axes.get_title() for axes in panels] == list(MAPPINGS)
+    for axes in panels:
         assert len(curves(axes)) == 6
         tops = [line.get_ydata().max() for line in curves(axes)]
         assert tops == sorted(tops, reverse=True)  # row 0 is the far one
 
 
 def test_mapping_draws_one_method_too():
-    table = mapping(
-        STRESS2.style.geometry, Tuning(), methods=[MAPPINGS["paired"], MAPPINGS["compact"]]
-    )
+    table = mapping(STRESS2.style, methods=[MAPPINGS["paired"], MAPPINGS["compact"]])
     assert [axes.get_title() for axes in draw.draw(table).axes] == ["paired", "compact"]
-    four = mapping(STRESS2.style.geometry, Tuning(), methods=list(MAPPINGS.values())[:4])
+    four = mapping(STRESS2.style, methods=list(MAPPINGS.values())[:4])
     assert sum(axes.axison for axes in draw.draw(four).axes) == 4
 
 

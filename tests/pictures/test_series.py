@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.pictures.tables import TABLES, make_line, make_page
+from tests.pictures.tables import TABLES, make_line, make_page, with_style
 from vbraille.pictures import Table, mapping, profile, strain, wave, write_csv
 from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
@@ -19,7 +19,7 @@ def peaks(values):
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_profile_rises_at_the_left_edge_and_is_back_at_the_right_one(model):
-    table = profile(model, model.style.geometry, model.style.tuning)
+    table = profile(model)
     u, width = table["u_mm"], model.style.geometry.dot_width_mm
     for name in table.columns:
         if name != "u_mm":
@@ -32,7 +32,7 @@ def test_profile_rises_at_the_left_edge_and_is_back_at_the_right_one(model):
 
 @pytest.mark.parametrize("cycles", [3, 7])
 def test_profile_of_texture_alone_has_k_ripples(cycles):
-    table = profile(STRESS2, STRESS2.style.geometry, Tuning(texture=1, cycles=cycles))
+    table = profile(with_style(STRESS2, tuning=Tuning(texture=1, cycles=cycles)))
     ripples = table["deflection_T100"]
     radius = STRESS2.style.geometry.dot_width_mm / 2
     at = table["u_mm"][peaks(ripples)]
@@ -45,22 +45,22 @@ def test_profile_of_texture_alone_has_k_ripples(cycles):
     ("model", "levels"), [(STRESS2, ["0", "25", "100"]), (VBD, ["0", "100"])], ids=["s", "v"]
 )
 def test_profile_shows_the_levels_of_the_source_and_the_readers_own(model, levels):
-    table = profile(model, model.style.geometry, model.style.tuning)
+    table = profile(model)
     assert list(table.columns) == ["u_mm", *(f"deflection_T{level}" for level in levels)]
-    own = profile(model, model.style.geometry, Tuning(texture=0.4))
+    own = profile(with_style(model, tuning=Tuning(texture=0.4)))
     assert "deflection_T40" in own.columns
 
 
 def test_contrast_scales_the_profile():
-    full = profile(VBD, VBD.style.geometry, Tuning())
-    half = profile(VBD, VBD.style.geometry, Tuning(contrast=0.5))
+    full = profile(with_style(VBD, tuning=Tuning()))
+    half = profile(with_style(VBD, tuning=Tuning(contrast=0.5)))
     assert half["deflection_T100"] == pytest.approx(full["deflection_T100"] / 2)
     assert "contrast 50 %" in half.title
     assert "contrast" not in full.title
 
 
 def test_mapping_compares_all_methods_on_six_rows():
-    table = mapping(STRESS2.style.geometry, Tuning())
+    table = mapping(STRESS2.style)
     assert set(table["method"]) == set(MAPPINGS)
     assert [n for n in table.columns if n.startswith("deflection")] == [
         f"deflection_row_{row}" for row in range(6)
@@ -70,9 +70,10 @@ def test_mapping_compares_all_methods_on_six_rows():
 @pytest.mark.parametrize("method", MAPPINGS.values(), ids=MAPPINGS)
 def test_mapping_idles_at_one_where_a_row_is_inverted(method):
     full_cell = np.array([0x3F], np.uint8)
-    chosen = mapping(STRESS2.style.geometry, Tuning(), full_cell, [method])
+    chosen = mapping(STRESS2.style, full_cell, [method])
+    first = (6 - method.rows) // 2
     for row, inverted in enumerate(method.inverted):
-        values = chosen[f"deflection_row_{row}"]
+        values = chosen[f"deflection_row_{first + row}"]
         assert values[0] == values[-1] == inverted
         shows_dots = {method.left[row], method.right[row]} != {-1}
         assert (np.ptp(values) > 0.9) == shows_dots
@@ -80,7 +81,7 @@ def test_mapping_idles_at_one_where_a_row_is_inverted(method):
 
 def test_mapping_swings_at_the_dots_of_the_letter():
     # z: dots 1 and 3 left, 5 and 6 right
-    chosen = mapping(STRESS2.style.geometry, Tuning()).where("method", "alternate")
+    chosen = mapping(STRESS2.style).where("method", "alternate")
     at = np.searchsorted(chosen["x_mm"], [1.295, 4.995])  # centres: one radius right of the edge
     raised = [chosen[f"deflection_row_{row}"][at] > 0.99 for row in range(6)]
     none = [False, False]
@@ -89,7 +90,7 @@ def test_mapping_swings_at_the_dots_of_the_letter():
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
-    table = wave(model, model.style.geometry, Tuning(texture=0.25))
+    table = wave(with_style(model, tuning=Tuning(texture=0.25)))
     x, pitch = table["x_mm"], model.display.column_pitch_mm
     shift = round(pitch / (x[1] - x[0]))
     assert len(table.columns) == 1 + model.display.columns
@@ -100,7 +101,7 @@ def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
 
 
 def test_wave_begins_and_ends_at_rest_and_is_at_the_dot_between():
-    table = wave(VBD, VBD.style.geometry, Tuning())
+    table = wave(with_style(VBD, tuning=Tuning()))
     for column in range(12):
         values = table[f"deflection_column_{column}"]
         assert values[0] == values[-1] == 0
@@ -178,7 +179,9 @@ def test_page_deflects_the_actuators_that_are_on_a_dot():
 
 
 def test_page_lays_a_one_row_array_on_the_row_that_it_shows():
-    table = make_page([make_line("⠿")], model=VBD, mapping=single_row(3)).where("what", "actuator")
+    table = make_page([make_line("⠿")], model=with_style(VBD, mapping=single_row(3))).where(
+        "what", "actuator"
+    )
     assert table["y_mm"] == pytest.approx(np.full(12, 8.0))
 
 
@@ -216,7 +219,7 @@ def test_a_table_refuses_columns_of_different_lengths():
 def test_the_numbers_need_neither_matplotlib_nor_the_kernels():
     code = (
         "import sys, vbraille.pictures as p; from vbraille.render import VBD;"
-        "p.wave(VBD, VBD.style.geometry, VBD.style.tuning);"
+        "p.wave(VBD);"
         "sys.exit(str({'matplotlib', 'numba', 'louis'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

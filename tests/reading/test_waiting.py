@@ -5,7 +5,7 @@ import pytest
 from tests.engine.test_loop import straight
 from tests.reading.test_reader import Bench
 from vbraille.devices.base import Placing
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 
 
 def waiting(bench):

@@ -33,7 +33,8 @@ def read_back(frames, x_mm, *, array, mapping, geometry):
         If actuators that show the same dot disagree, or the hand missed a dot.
     """
     idle = np.zeros(array.rows)
-    idle[: mapping.rows] = mapping.inverted
+    first = (array.rows - mapping.rows) // 2
+    idle[first : first + mapping.rows] = mapping.inverted
     swings = (frames - idle[:, None]) * (1 - 2 * idle)[:, None]
     raised = swings > swings.max() / 2
     surface = (x_mm - array.span_mm / 2)[:, None] + array.column_offsets_mm()
@@ -47,7 +48,7 @@ def read_back(frames, x_mm, *, array, mapping, geometry):
             if not over.any():
                 raise ValueError(f"the hand missed dot column {side} of cell {number}")
             felt = {}
-            for row, dot_row in enumerate(table):
+            for row, dot_row in enumerate(table, first):
                 if dot_row >= 0:
                     felt.setdefault(dot_row, set()).add(bool(raised[:, row][over].any()))
             for dot_row, answers in felt.items():

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, rendered
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left, twin
 from vbraille.display import Display
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.render import (
@@ -20,7 +20,6 @@ from vbraille.render import (
     Tuning,
     single_row,
 )
-from vbraille.render.reference import deflections
 
 JIT = not numba.config.DISABLE_JIT
 
@@ -53,7 +52,7 @@ def line(*masks):
 
 def frame_at(renderer, x_mm, dtype=np.float64):
     """A frame, put where something else was before."""
-    out = np.full(renderer.array.shape, np.nan, dtype)
+    out = np.full(renderer.shape, np.nan, dtype)
     renderer.frame(x_mm, out)
     return out
 
@@ -79,15 +78,21 @@ class Scene:
         }
 
     def renderer(self):
-        return rendered(self.masks, **self.manner)
+        return from_left(self.masks, **self.manner)
 
     def twin(self, x_mm):
-        return deflections(x_mm, self.masks, **self.manner)
+        return twin(x_mm, self.masks, **self.manner)
 
     def idle(self):
         """Idle ends of the array's rows, as a column."""
-        below = self.array.rows - self.mapping.rows
-        return np.array([*self.mapping.inverted, *[False] * below], np.float64)[:, None]
+        idle = np.zeros((self.array.rows, 1))
+        idle[self.first_row : self.first_row + self.mapping.rows, 0] = self.mapping.inverted
+        return idle
+
+    @property
+    def first_row(self):
+        """Where the mapping stands: in the middle, or a row above it."""
+        return (self.array.rows - self.mapping.rows) // 2
 
     def dots(self):
         """Actuator row and left edge, in mm, of each dot wherever it is shown."""
@@ -96,7 +101,9 @@ class Scene:
             for number, mask in enumerate(self.masks)
             for dot, (dot_row, side) in DOT_PLACES.items()
             if mask & cell(dot)
-            for row, shown in enumerate(self.mapping.right if side else self.mapping.left)
+            for row, shown in enumerate(
+                self.mapping.right if side else self.mapping.left, self.first_row
+            )
             if shown == dot_row
         ]
 
@@ -148,7 +155,7 @@ lines = st.binary(max_size=6).map(lambda masks: line(*masks))
 arrays = st.one_of(
     st.sampled_from([VBD_ARRAY, STRESS2_ARRAY, LATERO]),
     st.builds(
-        array,
+        array_of,
         rows=st.integers(1, 16),
         columns=st.integers(1, 12),
         column_pitch_mm=st.floats(0.05, 8),
@@ -190,10 +197,13 @@ def _drawn_mapping(numbers):
 
 
 _single_rows = st.sampled_from([single_row(1), single_row(2), single_row(3)])
-_methods = st.sampled_from([*MAPPINGS.values()])
+_methods = {
+    rows: st.sampled_from([each for each in MAPPINGS.values() if each.rows <= rows])
+    for rows in range(3, 17)
+}
 _tables = {rows: st.binary(min_size=1, max_size=rows).map(_drawn_mapping) for rows in range(1, 17)}
 mappings = {
-    rows: st.one_of(_single_rows if rows < 6 else _methods, _tables[rows]) for rows in range(1, 17)
+    rows: st.one_of(_methods.get(rows, _single_rows), _tables[rows]) for rows in range(1, 17)
 }
 
 

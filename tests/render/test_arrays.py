@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of
 
 
 def test_the_vbd_has_one_row_of_twelve_at_0_7_mm():
@@ -24,7 +24,7 @@ def test_the_latero_has_eight_rows_of_eight():
 
 
 def test_offsets_count_from_the_left_column_and_the_far_row():
-    array = array(rows=3, columns=4, column_pitch_mm=0.5, row_pitch_mm=2.0)
+    array = array_of(rows=3, columns=4, column_pitch_mm=0.5, row_pitch_mm=2.0)
     for offsets, expected in (
         (array.column_offsets_mm(), [0, 0.5, 1, 1.5]),
         (array.row_offsets_mm(), [0, 2, 4]),
@@ -36,7 +36,7 @@ def test_offsets_count_from_the_left_column_and_the_far_row():
 
 @pytest.mark.parametrize(("rows", "columns"), [(1, 1), (16, 64)])
 def test_the_smallest_and_the_largest_array(rows, columns):
-    array = array(rows, columns, column_pitch_mm=0.05, row_pitch_mm=50)
+    array = array_of(rows, columns, column_pitch_mm=0.05, row_pitch_mm=50)
     assert array.shape == (rows, columns)
     assert array.column_offsets_mm().size == columns
     assert array.row_offsets_mm().size == rows
@@ -45,17 +45,17 @@ def test_the_smallest_and_the_largest_array(rows, columns):
 @pytest.mark.parametrize(("rows", "columns"), [(0, 5), (5, 0), (17, 5), (5, 65), (-1, 5)])
 def test_impossible_numbers_of_actuators(rows, columns):
     says = (
-        f"^an array of {rows} × {columns} is not possible; "
+        f"^an array of {rows} × {columns} actuators is not possible; "
         "it must be 1 to 16 rows × 1 to 64 columns$"
     )
     with pytest.raises(ValueError, match=says):
-        array(rows, columns, 1.0, 1.0)
+        array_of(rows, columns, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("pitch", [0.0, 0.049, 50.1, -1.0, float("nan"), float("inf")])
 def test_impossible_pitches(pitch):
-    says = f"^a pitch of {pitch:g} mm is out of range 0.05 to 50 mm$"
-    with pytest.raises(ValueError, match=says):
-        array(2, 2, pitch, 1.0)
-    with pytest.raises(ValueError, match=says):
-        array(2, 2, 1.0, pitch)
+    says = f"_pitch_mm is {pitch:g}; it must be 0.05 to 50 mm$"
+    with pytest.raises(ValueError, match=f"^column{says}"):
+        array_of(2, 2, pitch, 1.0)
+    with pytest.raises(ValueError, match=f"^row{says}"):
+        array_of(2, 2, 1.0, pitch)

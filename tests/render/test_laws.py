@@ -18,7 +18,7 @@ from tests.render.scenes import (
     scenes,
     scenes_with_places,
 )
-from tests.shown import array
+from tests.shown import array_of
 from vbraille import geometry
 from vbraille.geometry import Geometry
 from vbraille.render import (
@@ -218,7 +218,7 @@ def test_rounding_never_goes_beyond_the_ends_of_the_swing(texture):
         for cycles, widths in reached.items():
             tuning = Tuning(texture=texture, cycles=cycles)
             renderer = models(line(cell(1)), tuning=tuning)[name].renderer()
-            width_mm = MODELS[name].geometry.dot_width_mm
+            width_mm = MODELS[name].style.geometry.dot_width_mm
             for u_mm in np.outer(widths, [width_mm]) + np.linspace(-2e-9, 2e-9, 21):
                 for x_mm in u_mm:
                     on_the_dot = frame_at(renderer, x_mm)[0, 0]
@@ -256,7 +256,7 @@ def test_no_slope_is_steeper_than_the_equations_allow(drawn, exponent):
 def test_the_bound_on_slopes_is_a_close_one(texture):
     for scene in models(line(cell(1)), tuning=Tuning(texture=texture)).values():
         x_mm = np.linspace(0, scene.geometry.dot_width_mm, 2001)
-        one = replace(scene, array=array(scene.array.rows, 1, 1.0, 1.0))
+        one = replace(scene, array=array_of(scene.array.rows, 1, 1.0, 1.0))
         slopes = np.abs(np.diff(frames_at(one, x_mm)[:, 0, 0]) / np.diff(x_mm))
         assert 0.9 * scene.steepest_per_mm() < slopes.max() <= scene.steepest_per_mm()
 

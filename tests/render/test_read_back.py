@@ -5,7 +5,7 @@ import pytest
 
 from tests.render.reader import read_back
 from tests.render.scenes import DOT_PLACES, JIT, cell
-from tests.shown import LATERO, rendered
+from tests.shown import LATERO, from_left
 from vbraille import geometry
 from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
 
@@ -29,7 +29,7 @@ def hand(rng, array, geometry, cells):
 
 
 def told(rng, masks, *, array, profile, mapping, geometry, tuning):
-    renderer = rendered(
+    renderer = from_left(
         masks, array=array, profile=profile, mapping=mapping, geometry=geometry, tuning=tuning
     )
     x_mm = hand(rng, array, geometry, len(masks))

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT, Scene, cell, frame_at, line
-from tests.shown import array
+from tests.shown import array_of
 from vbraille import geometry
 from vbraille.render import VBD, Tuning
 
 PITCH_MM = 0.7
-PAIR = array(rows=1, columns=2, column_pitch_mm=PITCH_MM, row_pitch_mm=1.0)
+PAIR = array_of(rows=1, columns=2, column_pitch_mm=PITCH_MM, row_pitch_mm=1.0)
 STEP_MM = 0.001 if JIT else 0.005
 
 

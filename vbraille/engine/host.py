@@ -222,7 +222,14 @@ class Host:
         self._paused = self._posted.paused = paused
 
     def show(self, picture: Program, line: int) -> None:
-        """Put a picture of a line under the hand; see `Engine`."""
+        """Put a picture of a line under the hand; see `Engine`.
+
+        Raises
+        ------
+        ValueError
+            If it was compiled for another array, or is larger than there is room for.
+        """
+        picture.check_shape(self.display.shape)
         self._shown = picture, line
         self._posted.post(picture, line)
 

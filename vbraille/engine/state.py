@@ -129,17 +129,19 @@ class State:
         self._serials = 0
 
     def want(self, program: Program | None, line: int) -> None:
-        """Have something else under the hand from the next tick on; it fades in. None is rest."""
+        """Have something else under the hand from the next tick on; it fades in. None is rest.
+
+        Raises
+        ------
+        ValueError
+            If it was compiled for another array.
+        """
         now = self.now
         now["line"] = line
         if program is None:
             now["serial"] = 0
             return
-        if program.shape != self.shape:
-            raise ValueError(
-                f"the picture is for {program.shape[0]} × {program.shape[1]} actuators; "
-                f"the device has {self.shape[0]} × {self.shape[1]}"
-            )
+        program.check_shape(self.shape)
         self._serials += 1
         now["serial"] = self._serials
         self._program = program

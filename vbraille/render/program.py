@@ -70,6 +70,20 @@ class Program:
         """Whether it moves by itself, without the hand."""
         return bool(self.numbers[work.FREQUENCY] > 0)
 
+    def check_shape(self, shape: tuple[int, int]) -> None:
+        """Hold it against the rows and columns of what it is to be shown on.
+
+        Raises
+        ------
+        ValueError
+            If it was compiled for another array.
+        """
+        if self.shape != shape:
+            raise ValueError(
+                f"the picture is for {self.shape[0]} × {self.shape[1]} actuators; "
+                f"the device has {shape[0]} × {shape[1]}"
+            )
+
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
         """Which part belongs under an array whose centre is at y, after another one or none."""
         return kernels.part_of(self.numbers, y_mm, before)

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from vbraille.render.renderer import Renderer
 
 from tests.engine.test_batch import device
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.engine.ring import Flag
 from vbraille.render import STRESS2
-from vbraille.render.renderer import Renderer
 from vbraille.sessions.record.replay import Replay
 from vbraille.sessions.record.traces import TRACE, TraceWriter, read_trace
 
