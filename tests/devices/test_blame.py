@@ -43,7 +43,7 @@ def use():
         device.follow(10.0)
         device.set_zero()
         Loop(device, ManualClock()).tick()
-        device.take_notes()
+        device.take_events()
         device.counts()
 
 
@@ -60,7 +60,7 @@ RAISES = {
     "send": ("def _send(self, frame):\n    raise ValueError('mark\\n of two lines')", ""),
     "follow": ("def follow(self, end_mm):\n    raise KeyError('mark')", ""),
     "set_zero": ("def set_zero(self):\n    assert not 'mark'", ""),
-    "notes": ("def take_notes(self):\n    return [{}['mark']]", ""),
+    "notes": ("def take_events(self):\n    return [{}['mark']]", ""),
     "counts": ("def counts(self):\n    return [][0]  # mark", ""),
     "close": ("def _release(self):\n    raise OSError('mark')", ""),
 }
@@ -115,9 +115,10 @@ def test_what_the_program_itself_raises_is_not_blamed_on_the_driver(driver):
     ("body", "sentence"),
     [
         (
-            "@property\ndef take_notes(self):\n    return []",
-            "take_notes must be a method, and",
+            "@property\ndef take_events(self):\n    return []",
+            "take_events must be a method, and",
         ),
+        ("def take_notes(self):\n    return []", "take_notes is not asked any more; take_events"),
         ("counts = {}", r"counts must be a method, and is \{\}"),
         ("def followed(self):\n    return False", "followed must be a property or a value, and"),
         ("def follow(self):\n    pass", r"can be called as follow\(self, value\)"),

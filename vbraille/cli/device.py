@@ -8,6 +8,7 @@ from vbraille.cli.checking import check
 from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import device_info
 from vbraille.devices import opened_device
+from vbraille.devices.saying import say
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
@@ -88,9 +89,9 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
 
 
 def _check(device: Device) -> int:
-    note = go_real_time()
-    if note is not None:
-        _say(note)
+    refused = go_real_time()
+    if refused is not None:
+        _say(say(refused))
     return check(device, RealClock(), _say)
 
 
