@@ -6,6 +6,7 @@ from pathlib import Path
 _MODULE = '''
 import os
 import numpy as np
+from vbraille.devices.events import Notice
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.errors import DeviceError
@@ -33,8 +34,8 @@ class Logged(SimulatedDevice):
         super()._send(frame)
         self.log.write(frame.tobytes())
 
-    def take_notes(self):
-        return ["three hundred frames"] if self.frames == 300 else []
+    def take_events(self):
+        return [Notice(255, "three hundred frames")] if self.frames == 300 else []
 
     def counts(self):
         return {"frames": self.frames}

@@ -27,8 +27,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
-from vbraille.devices.greeting import greet
+from vbraille.devices.conversation import Conversation
 from vbraille.devices.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
+from vbraille.devices.openserial import greet
 from vbraille.devices.ports import Address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.wire import Decoder
@@ -100,7 +101,7 @@ class Wired:
         What goes wrong.
     controller
         Makes the controller of its INFO.
-    device
+    conversation
         What the host has for it.
     slew_per_s
         Largest, as the device says; 0 is no limit.
@@ -115,7 +116,7 @@ class Wired:
         chance: random.Random,
         troubles: Troubles,
         controller: Callable[..., Controller] = Controller,
-        device: type[SerialDevice] = SerialDevice,
+        conversation: type[Conversation] = Conversation,
         *,
         slew_per_s: int = 0,
         swing: float = 0.0,
@@ -155,8 +156,9 @@ class Wired:
         self.slope_per_mm = swing * math.pi / DOT_MM
         self.picture = waves(swing).render(np.full(CELLS, 0b001001, np.uint8), INFO)
         self.port = _Port(self)
-        self.greeted = greet(self.port, self.now_ns, self.pause)
-        self.device = device(self.port, self.greeted, self.now_ns, self.pause)
+        begun = conversation(self.now_ns())
+        greet(self.port, begun, self.now_ns, self.pause)
+        self.device = SerialDevice(self.port, begun, self.now_ns, self.pause)
         self._records = Records.alone(INFO.shape, 2)
         self._records.begun = self._note_awake
         self._made_awake_us = 0
@@ -380,7 +382,7 @@ def reading(
     seed: int,
     kind: str,
     controller: Callable[..., Controller] = Controller,
-    device: type[SerialDevice] = SerialDevice,
+    conversation: type[Conversation] = Conversation,
 ) -> Wired:
     """Read for half a second with the troubles of the "host" or of the "line"; what came of it."""
     chance = random.Random(f"{kind} {seed}")
@@ -389,7 +391,7 @@ def reading(
         chance,
         make(chance, 400_000),
         controller,
-        device,
+        conversation,
         slew_per_s=chance.choice((0, 0, 8, 40)),
         swing=chance.choice((0.0, 0.0, 0.5)),
         speed_mm_s=chance.choice((0.0, 60.0, 300.0)),

@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from tests.devices.test_serialdevice import Bench
+from tests.devices.bench import Bench
 from tests.engine.test_loop import info
 from vbraille.cli.checking import check
 from vbraille.devices.messages import Encoder
-from vbraille.devices.openserial import open_serial
 from vbraille.engine.clock import ManualClock
 from vbraille.simulation.simulated import SimulatedDevice
 
@@ -33,23 +32,18 @@ class BenchClock:
 
 
 @pytest.fixture
-def checked(tmp_path):
+def checked():
     """Check a device of two actuators whose controller is made as it should not be."""
-    benches = []
 
     def run(spoil=lambda _bench: None, **changes):
-        bench = Bench(tmp_path / "vb0", **{**SMALL, **changes})
-        benches.append(bench)
+        bench = Bench(**{**SMALL, **changes})
         spoil(bench)
         said = []
-        device = open_serial(str(bench.link), None, now_ns=bench.now_ns, pause=bench.pause)
-        with device:
+        with bench.begin(None) as device:
             code = check(device, BenchClock(bench), said.append)
         return code, said
 
-    yield run
-    for bench in benches:
-        bench.unplug()
+    return run
 
 
 def test_what_is_as_it_should_be_is_fit_and_measured(checked):

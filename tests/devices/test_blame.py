@@ -42,7 +42,7 @@ def use():
     with opened_device("other:", info()) as device:
         device.set_zero()
         Loop(device, ManualClock()).tick()
-        device.take_notes()
+        device.take_events()
         device.counts()
 
 
@@ -58,7 +58,7 @@ RAISES = {
     "python": ("def read(self):\n    return __import__('json').loads('')  # mark", ""),
     "send": ("def _send(self, frame):\n    raise ValueError('mark\\n of two lines')", ""),
     "set_zero": ("def set_zero(self):\n    assert not 'mark'", ""),
-    "notes": ("def take_notes(self):\n    return [{}['mark']]", ""),
+    "notes": ("def take_events(self):\n    return [{}['mark']]", ""),
     "counts": ("def counts(self):\n    return [][0]  # mark", ""),
     "close": ("def _release(self):\n    raise OSError('mark')", ""),
 }
@@ -113,9 +113,10 @@ def test_what_the_program_itself_raises_is_not_blamed_on_the_driver(driver):
     ("body", "sentence"),
     [
         (
-            "@property\ndef take_notes(self):\n    return []",
-            "take_notes must be a method, and",
+            "@property\ndef take_events(self):\n    return []",
+            "take_events must be a method, and",
         ),
+        ("def take_notes(self):\n    return []", "take_notes is not asked any more; take_events"),
         ("counts = {}", r"counts must be a method, and is \{\}"),
         ("def taking(self):\n    return False", "taking must be a property or a value, and"),
         ("def _send(self):\n    pass", r"can be called as _send\(self, value\)"),

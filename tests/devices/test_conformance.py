@@ -68,8 +68,8 @@ class ZeroAtAPlace(SimulatedDevice):
 
 
 class OneNote(SimulatedDevice):
-    def take_notes(self):
-        return "too hot"
+    def take_events(self):
+        return ["too hot"]
 
 
 class CountsInHalves(SimulatedDevice):

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from vbraille.devices.firmware import Controller
 
 from tests.controllers import ControllerOf20261121
 from tests.troubles import Troubles
@@ -32,6 +31,7 @@ from vbraille.devices.messages import (
 )
 from vbraille.devices.serialdevice import IDLE_MS, SerialDevice, _Link
 from vbraille.devices.wire import CRC_BYTES, encode, frame_head, line_bytes
+from vbraille.simulation.firmware import Controller
 
 NS_PER_MS = 1_000_000
 

@@ -33,6 +33,7 @@ from vbraille.devices.messages import (
     State,
     Watchdog,
 )
+from vbraille.devices.transitions import TRANSITIONS, Stage
 from vbraille.devices.wire import (
     CRC_RESIDUE,
     MOST_FRAME_BYTES,
@@ -261,3 +262,13 @@ def test_bandwidth():
     parts = ("type and fixed fields", "levels, 60 · 10 / 8", "CRC-32", "COBS", "delimiter")
     for column, size in enumerate(sizes):
         assert sum(int(told[part][column] or 0) for part in parts) == size
+
+
+def test_the_transitions_are_those_of_the_code():
+    stages = [[stage.name, stage.value] for stage in Stage]
+    taken = [
+        [stage.name, cause.value, after.name]
+        for stage, row in TRANSITIONS.items()
+        for cause, after in row.items()
+    ]
+    assert rows_of("The conversation") == [*stages, *taken]

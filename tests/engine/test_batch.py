@@ -308,7 +308,7 @@ def test_it_says_what_a_host_says():
         ticks = engine.poll()
         engine.set_zero()
     assert engine.display.columns == 10
-    assert (engine.lost, engine.counts, list(engine.take_notes())) == (0, {}, [])
+    assert (engine.lost, engine.counts, list(engine.take_events())) == (0, {}, [])
     assert engine.newest is not None
     assert engine.newest["tick"] == ticks["tick"][-1]
     assert engine.tally.ticks == ticks.size

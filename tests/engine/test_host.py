@@ -13,6 +13,7 @@ import pytest
 
 from tests import drivers
 from tests.engine.test_loop import info, picture
+from vbraille.devices.events import Notice
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
@@ -84,12 +85,12 @@ def test_a_life():
 
 def test_notes_counts_and_the_device_s_fault(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", drivers.install(tmp_path)["PYTHONPATH"])
-    notes = []
+    told = []
     with Host(f"logged:{tmp_path / 'log'},gone", info(), ROOM) as host:
         with pytest.raises(DeviceError, match="the device is gone"):
-            until(host, lambda _new: notes.extend(host.take_notes()))
-        notes += host.take_notes()
-    assert "three hundred frames" in notes
+            until(host, lambda _new: told.extend(host.take_events()))
+        told += host.take_events()
+    assert Notice(255, "three hundred frames") in told
     assert host.counts == {"frames": 300}
 
 
@@ -186,11 +187,12 @@ def test_a_killed_parent_leaves_no_host_and_no_actuator_deflected(tmp_path):
 def test_without_the_right_to_real_time_a_sentence_says_how_to_get_it():
     script = (
         "import os, resource\n"
+        "from vbraille.devices.saying import say\n"
         "from vbraille.engine.realtime import go_real_time\n"
         "resource.setrlimit(resource.RLIMIT_MEMLOCK, (65536, 65536))\n"
         "resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
         "if os.geteuid() == 0: os.setuid(65534)\n"
-        "print(go_real_time())\n"
+        "print(say(go_real_time()))\n"
     )
     said = subprocess.run(
         [sys.executable, "-c", script], check=True, capture_output=True, text=True

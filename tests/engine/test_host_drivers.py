@@ -1,7 +1,6 @@
 """Drivers of others in a host process: what they print, raise, start and wait for."""
 
 import os
-import re
 import resource
 import select
 import signal
@@ -14,12 +13,15 @@ import pytest
 from tests import drivers
 from tests.engine.test_host import PATIENCE_S, ROOM, descriptors, lasting, until
 from tests.engine.test_loop import info
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Changed, Difference, Notice, NotInTime, Stranger
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.errors import DeviceError
 
 _HEAD = """
 import ctypes, os, subprocess, sys, time
 import numpy as np
+from vbraille.devices import events
 from vbraille.simulation.simulated import SimulatedDevice
 """
 
@@ -82,6 +84,8 @@ def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, t
 _PARENT = """
 import sys, time
 from tests.engine.test_host import ROOM, info
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Changed, Difference, Notice, NotInTime, Stranger
 from vbraille.engine.host import Host
 host = Host("other:", info(), ROOM)
 host.launch()
@@ -190,9 +194,41 @@ def test_a_host_that_dies_when_it_starts_is_seen_while_a_child_holds_the_pipe(dr
     assert child()
 
 
-def test_long_notes_come_whole_or_cut(driver):
-    driver("def take_notes(self):\n    return ['\\U0001f600' * 9999] if self.frames == 99 else []")
-    notes = []
+FACE = "\U0001f600"
+
+
+def told_by(driver, event):
+    """What comes of an event that a driver tells once, but for what the system refuses."""
+    driver(f"def take_events(self):\n    return [{event}] if self.frames == 99 else []")
+    told = []
     with Host("other:", info(), ROOM) as host:
-        until(host, lambda new: notes.extend(host.take_notes()) or lasting(200)(new))
-    assert [re.sub("(\U0001f600)+", "…", note) for note in notes if "\U0001f600" in note] == ["…"]
+        until(host, lambda new: told.extend(host.take_events()) or lasting(200)(new))
+    return [event for event in told if not isinstance(event, NotInTime)]
+
+
+@pytest.mark.parametrize(
+    ("made", "event"),
+    [
+        (f"events.Notice(3, {FACE!r} * 9999)", Notice(3, FACE * 300)),
+        (
+            f"events.Stranger({FACE!r} * 250, {FACE!r} * 250, fault={FACE!r} * 999)",
+            Stranger(FACE * 60, FACE * 60, fault=FACE * 60),
+        ),
+    ],
+)
+def test_long_texts_come_whole_or_cut(driver, made, event):
+    assert told_by(driver, made) == [event]
+
+
+def test_events_come_as_they_were_told(driver):
+    event = Changed((Difference("name", "a", "b"),), gain=3, placing=Placing.STOP, times=2)
+    made = (
+        "events.Changed((events.Difference('name', 'a', 'b'),), gain=3, "
+        "placing=events.Placing.STOP, times=2)"
+    )
+    assert told_by(driver, made) == [event]
+
+
+def test_what_is_no_event_ends_the_reading_in_a_sentence(driver):
+    with pytest.raises(DeviceError, match="tells 'too hot', which is no event of vbraille"):
+        told_by(driver, "'too hot'")

@@ -4,7 +4,7 @@ import pytest
 
 from tests.controllers import ControllerOf20261121
 from tests.wired import reading
-from vbraille.devices.serialdevice import SerialDevice
+from vbraille.devices.conversation import Conversation
 from vbraille.simulation.firmware import Controller
 
 BLOCK = 20
@@ -33,10 +33,10 @@ def test_the_troubles_are_such_that_devices_rest_and_are_read_on_again():
     assert sum(wired.shown for wired in read) > 1000
 
 
-class Heedless(SerialDevice):
+class Heedless(Conversation):
     """A host that does not mind that it was stopped."""
 
-    def _mind_stall(self, _now_ns: int) -> bool:
+    def mind_stall(self, _now_ns: int) -> bool:
         return False
 
 

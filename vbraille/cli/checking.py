@@ -9,6 +9,7 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS
+from vbraille.devices.saying import told
 from vbraille.engine.checkup import (
     NS_PER_S,
     hold_rate,
@@ -91,7 +92,7 @@ class _Check:
         return 0
 
     def _say_notes(self) -> None:
-        for sentence in self._device.take_notes():
+        for sentence in told(self._device.take_events()):
             self._say(sentence)
 
     def _but(self) -> str:

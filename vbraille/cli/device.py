@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from vbraille.cli.checking import check
 from vbraille.cli.stopping import EAR
 from vbraille.devices import opened_device
+from vbraille.devices.saying import say
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
@@ -86,9 +87,9 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
 
 
 def _check(device: Device) -> int:
-    note = go_real_time()
-    if note is not None:
-        _say(note)
+    refused = go_real_time()
+    if refused is not None:
+        _say(say(refused))
     return check(device, RealClock(), _say)
 
 

@@ -24,6 +24,7 @@ from vbraille.cli.wanted import (
 )
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
+from vbraille.devices.saying import told
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
@@ -155,8 +156,8 @@ class _Reading:
             self._page.say_note()
 
     def _step(self, ticks: NDArray[np.void]) -> None:
-        for note in self._host.take_notes():
-            _say(note)
+        for sentence in told(self._host.take_events()):
+            _say(sentence)
         if not ticks.size:
             return
         placing = placing_of(ticks[-1])

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.pose import Pose
 
@@ -65,7 +66,7 @@ class Device(ABC):
     device is let go. The rest is for devices that can do more, or fail.
 
     A device that can be lost and found (unplugged, silent) goes on by itself:
-    meanwhile `read` gives None, frames are dropped, and `take_notes` says what is.
+    meanwhile `read` gives None, frames are dropped, and `take_events` tells what is.
 
     Attributes
     ----------
@@ -123,8 +124,8 @@ class Device(ABC):
     def set_zero(self) -> None:
         """Take it that the carriage is at the left stop now: the reader says so."""
 
-    def take_notes(self) -> Sequence[str]:
-        """What there is to say to the reader since the last call, a sentence each."""
+    def take_events(self) -> Sequence[Event]:
+        """What there is to tell since the last call, by the kinds of `vbraille.devices.events`."""
         return ()
 
     def counts(self) -> Mapping[str, int]:

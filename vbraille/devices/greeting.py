@@ -1,108 +1,21 @@
-"""The handshake with a device on a serial line, and what can be wrong with it."""
+"""The greeting: HELLO, and what INFO tells of a device for those who read on it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.base import Particulars
-from vbraille.devices.messages import (
-    ANSWER_MS,
-    HELLO_PERIOD_MS,
-    VERSION,
-    Encoder,
-    Error,
-    Hello,
-    Info,
-    State,
-    Watchdog,
-)
-from vbraille.devices.ports import BAUD
-from vbraille.devices.wire import DELIMITER, Decoder, OtherVersion, encode
+from vbraille.devices.messages import Encoder, Hello
+from vbraille.devices.wire import DELIMITER, encode
 from vbraille.display import Display
-from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Iterable
 
-    from vbraille.devices.ports import Address
-    from vbraille.devices.serialport import SerialPort
-    from vbraille.devices.wire import Event
+    from vbraille.devices.messages import Info
 
 # The zero ends whatever was on the line before.
 HELLO: Final = DELIMITER + encode(Hello())
-_LISTEN_S = 0.005
-_NS_PER_MS = 1_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class Greeted:
-    """What a device answered to HELLO.
-
-    Parameters
-    ----------
-    info
-        Its INFO.
-    decoder
-        In the midst of what follows.
-    events
-        What has followed already.
-    """
-
-    info: Info
-    decoder: Decoder
-    events: Sequence[Event]
-
-
-def greet(port: SerialPort, now_ns: Callable[[], int], pause: Callable[[float], None]) -> Greeted:
-    """Say HELLO until a device answers, for some seconds: it may restart when it is opened.
-
-    Raises
-    ------
-    DeviceError
-        If none does, or it speaks another version.
-    """
-    decoder = Decoder()
-    begun_ns = hello_ns = now_ns()
-    heard = speaks = False
-    while now_ns() - begun_ns < ANSWER_MS * _NS_PER_MS:
-        if now_ns() >= hello_ns and port.write(HELLO):
-            hello_ns += HELLO_PERIOD_MS * _NS_PER_MS
-        chunk = port.read()
-        if port.gone:
-            raise DeviceError(f"{port.address.url} went away; plug the device in and try again")
-        heard = heard or bool(chunk)
-        events = decoder.feed(chunk)
-        if decoder.bad_info:
-            raise _cannot_be(decoder.bad_info, port.address)
-        for i, event in enumerate(events):
-            if isinstance(event, Info):
-                _check(event, port.address)
-                return Greeted(event, decoder, events[i + 1 :])
-            if isinstance(event, OtherVersion):
-                raise DeviceError(
-                    f"the device at {port.address.url} speaks version {event.version} of the "
-                    f"protocol and this vbraille version {VERSION}; update the older of the two"
-                )
-            speaks = speaks or isinstance(event, State | Watchdog | Error)
-        pause(_LISTEN_S)
-    raise _no_answer(port.address, heard, speaks)
-
-
-def _no_answer(address: Address, heard: bool, speaks: bool) -> DeviceError:
-    if speaks:
-        return DeviceError(
-            f"the device at {address.url} sends, but does not answer; "
-            f"switch it off and on, or check its cable"
-        )
-    if heard:
-        return DeviceError(
-            f"what {address.url} sends makes no sense: it is no vbraille device, or not set to "
-            f"{address.baud or BAUD} baud; choose another port, or ?baud="
-        )
-    return DeviceError(
-        f"nothing answers at {address.url}; see that the device is on, or choose another port"
-    )
 
 
 def misfit(info: Info) -> str:
@@ -117,19 +30,6 @@ def misfit(info: Info) -> str:
         f"travel_um is {info.travel_um}, which takes {counts} counts with a counts_per_m of "
         f"{info.counts_per_m}; it must take less than {told}, half the range of count_bits "
         f"{info.count_bits}"
-    )
-
-
-def _check(info: Info, address: Address) -> None:
-    fault = misfit(info)
-    if fault:
-        raise _cannot_be(fault, address)
-
-
-def _cannot_be(fault: str, address: Address) -> DeviceError:
-    return DeviceError(
-        f"the device at {address.url} says in its INFO what cannot be: {fault}; "
-        f"mend its firmware or its settings"
     )
 
 

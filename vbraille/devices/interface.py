@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from vbraille.devices.base import Device, Particulars, Placing
+from vbraille.devices.events import is_known
 
 # What a member is given, where it is given anything.
 _ARGUMENTS = {"write": 1, "_send": 1}
@@ -18,7 +19,7 @@ _METHODS = (
     "_send",
     "_release",
     "set_zero",
-    "take_notes",
+    "take_events",
     "counts",
 )
 _VALUES: dict[str, tuple[type, ...]] = {
@@ -47,6 +48,8 @@ def misfits(device: Device) -> Iterator[str]:
         elif not _takes(method, _given(device, name)):
             given = ", ".join(["self", *["value"] * _ARGUMENTS.get(name, 0)])
             yield f"{name} must be a method that can be called as {name}({given})"
+    if hasattr(device, "take_notes"):
+        yield "take_notes is not asked any more; take_events must give Notice(code, text) instead"
     for name in ("display", *_VALUES):
         if callable(_plain(inspect.getattr_static(device, name))):
             yield f"{name} must be a property or a value, and is a method"
@@ -59,11 +62,11 @@ def wrong_values(device: Device) -> Iterator[str]:
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             wanted = " or ".join("None" if kind is type(None) else kind.__name__ for kind in kinds)
             yield f"{name} must be {wanted}, and is {value!r}"
-    notes = device.take_notes()
-    if isinstance(notes, str) or not isinstance(notes, Sequence):
-        yield f"take_notes must give a list of sentences, and gives {notes!r}"
-    elif not all(isinstance(note, str) for note in notes):
-        yield f"take_notes must give sentences as text, and gives {notes!r}"
+    events = device.take_events()
+    if not isinstance(events, Sequence):
+        yield f"take_events must give a list of events, and gives {events!r}"
+    elif wrong := next((each for each in events if not is_known(each)), None):
+        yield f"take_events must give events of vbraille.devices.events, and gives {wrong!r}"
     counts = device.counts()
     if not isinstance(counts, Mapping) or not all(
         isinstance(name, str) and isinstance(count, int) for name, count in counts.items()

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Final
 
 import serial
 
-from vbraille.devices.greeting import greet
-from vbraille.devices.messages import STALL_MS
+from vbraille.devices.conversation import Conversation
+from vbraille.devices.events import Stranger
+from vbraille.devices.messages import STALL_MS, VERSION
 from vbraille.devices.ports import BAUD, parse_address
-from vbraille.devices.serialdevice import SerialDevice
+from vbraille.devices.serialdevice import SerialDevice, send_due
 from vbraille.devices.serialport import LOOK_S, SerialPort
+from vbraille.devices.transitions import Stage
 from vbraille.devices.wire import Levels, line_bytes
-from vbraille.errors import InputError
+from vbraille.errors import DeviceError, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 # A start bit and a stop bit with each byte.
 _BITS_PER_BYTE = 10
 _FRAME_HEAD_BYTES = 3
+_LISTEN_S = 0.005
 # A frame may be late by half a period.
 LOWEST_RATE_HZ: Final = 40
 
@@ -57,17 +60,91 @@ def open_serial(
     DeviceError
         If it cannot be opened, or no device of our protocol answers.
     """
-    port = SerialPort(parse_address(address), look_s=look_s)
+    return begin(SerialPort(parse_address(address), look_s=look_s), wanted, now_ns, pause)
+
+
+def begin(
+    port: SerialPort,
+    wanted: Display | None,
+    now_ns: Callable[[], int],
+    pause: Callable[[float], None],
+) -> SerialDevice:
+    """Begin to talk with what answers at a port, which is closed if that fails.
+
+    Raises
+    ------
+    InputError
+        If the baud rate is too slow.
+    DeviceError
+        If no device of our protocol answers.
+    """
+    rate_hz = None if wanted is None else wanted.rate_hz
     try:
-        greeted = greet(port, now_ns, pause)
-        if wanted is None:
-            return SerialDevice(port, greeted, now_ns, pause)
-        _check_rate(greeted.info, wanted.rate_hz)
-        _check_baud(port.address, greeted.info, wanted.rate_hz)
-        return SerialDevice(port, greeted, now_ns, pause, wanted.rate_hz)
+        conversation = Conversation(now_ns(), rate_hz)
+        info = greet(port, conversation, now_ns, pause)
+        if rate_hz is not None:
+            _check_rate(info, rate_hz)
+            _check_baud(port.address, info, rate_hz)
+        return SerialDevice(port, conversation, now_ns, pause)
     except BaseException:  # a signal's, too
         port.close(pause)
         raise
+
+
+def greet(
+    port: SerialPort,
+    conversation: Conversation,
+    now_ns: Callable[[], int],
+    pause: Callable[[float], None],
+) -> Info:
+    """Ask who is there until a device answers, for some seconds: it may restart when opened.
+
+    Raises
+    ------
+    DeviceError
+        If none answers, or it cannot be read on.
+    """
+    while conversation.info is None:
+        send_due(port, conversation)
+        chunk = port.read()
+        if port.gone:
+            raise DeviceError(f"{port.address.url} went away; plug the device in and try again")
+        conversation.hear(chunk, now_ns())
+        if isinstance(conversation.failure, Stranger):
+            raise _turned_away(conversation.failure, port.address)
+        if conversation.stage is Stage.FAILED:
+            raise _no_answer(conversation, port.address)
+        if conversation.info is None:
+            pause(_LISTEN_S)
+    return conversation.info
+
+
+def _turned_away(stranger: Stranger, address: Address) -> DeviceError:
+    if stranger.version is not None:
+        return DeviceError(
+            f"the device at {address.url} speaks version {stranger.version} of the "
+            f"protocol and this vbraille version {VERSION}; update the older of the two"
+        )
+    return DeviceError(
+        f"the device at {address.url} says in its INFO what cannot be: {stranger.fault}; "
+        f"mend its firmware or its settings"
+    )
+
+
+def _no_answer(conversation: Conversation, address: Address) -> DeviceError:
+    if conversation.speaks:
+        return DeviceError(
+            f"the device at {address.url} sends, but does not answer; "
+            f"switch it off and on, or check its cable"
+        )
+    if conversation.heard:
+        return DeviceError(
+            f"what {address.url} sends makes no sense: it is no vbraille device, or not set to "
+            f"{address.baud or BAUD} baud; choose another port, or ?baud="
+        )
+    return DeviceError(
+        f"nothing answers at {address.url}; see that the device is on, or choose another port"
+    )
 
 
 def _check_rate(info: Info, rate_hz: float) -> None:

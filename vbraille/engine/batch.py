@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices import Device
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.render.program import Program
 
@@ -109,9 +110,9 @@ class BatchEngine:
         """Put a picture under the hand; see `Engine`."""
         self._state.want(picture, line)
 
-    def take_notes(self) -> Sequence[str]:
-        """What the device has to say since the last call."""
-        return self.device.take_notes()
+    def take_events(self) -> Sequence[Event]:
+        """What there is to tell since the last call."""
+        return self.device.take_events()
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.tally import Tally
     from vbraille.render.program import Program
@@ -67,8 +68,8 @@ class Engine(Protocol):
         """
         ...
 
-    def take_notes(self) -> Sequence[str]:
-        """What the device has to say since the last call, a sentence each."""
+    def take_events(self) -> Sequence[Event]:
+        """What the device and the engine have to tell since the last call."""
         ...
 
     def set_zero(self) -> None:

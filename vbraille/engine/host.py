@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
+from vbraille.devices.events import from_json
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.devices.events import Event
     from vbraille.engine.mailbox import Mailbox
     from vbraille.engine.ring import RingReader
     from vbraille.render.program import Program
@@ -86,7 +88,7 @@ class Host:
         self._mailbox: Mailbox | None = None
         self._ring: RingReader | None = None
         self._shown: tuple[Program, int] | None = None
-        self._notes: list[str] = []
+        self._events: list[Event] = []
         self._heard = b""
         self._fault: VbrailleError | None = None
         self._before = Tally()
@@ -256,10 +258,10 @@ class Host:
             raise self._end()
         return ticks
 
-    def take_notes(self) -> Sequence[str]:
-        """What the device has to say since the last call, a sentence each."""
-        notes, self._notes = self._notes, []
-        return notes
+    def take_events(self) -> Sequence[Event]:
+        """What the device and its host have to tell since the last call."""
+        events, self._events = self._events, []
+        return events
 
     def close(self) -> None:
         """Have the host bring the array to rest and end; further calls do nothing."""
@@ -337,8 +339,8 @@ class Host:
         if "opened" in answer:
             self._info = Display(**answer["opened"])
         self._ready = self._ready or "ready" in answer
-        if answer.get("note"):
-            self._notes.append(answer["note"])
+        if answer.get("event"):
+            self._events.append(from_json(answer["event"]))
         if "fault" in answer:
             kind = InputError if answer["code"] == InputError.exit_code else DeviceError
             self._fault = kind(answer["fault"])

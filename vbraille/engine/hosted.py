@@ -18,12 +18,13 @@ import select
 import signal
 import sys
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from io import FileIO
 from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
+from vbraille.devices.events import is_known, shortened, to_json
 from vbraille.devices.notices import EVERY_NS, Notices
 from vbraille.display import Display
 from vbraille.engine import shared
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from vbraille.devices import Device
+    from vbraille.devices.events import Event
     from vbraille.engine.mailbox import Mailbox
 
 _PARENT_S = (
@@ -51,8 +53,11 @@ _PARENT_S = (
 )
 _WARM_TICKS = 200
 _REHEARSAL_S = 0.05
-# Characters of a note or a fault, each up to 12 bytes of JSON: a pipe takes 4096 whole or not.
+# Characters of a fault or of a text of an event, each up to 12 bytes of JSON; those of an event of
+# several texts that are no Latin. A pipe takes this many bytes whole or not.
 _MOST_SAID = 300
+_MOST_OF_SEVERAL = 60
+_WHOLE_BYTES = 4096
 _PR_SET_PDEATHSIG = 1
 
 
@@ -70,11 +75,22 @@ class Channel:
 
     def say(self, **said: Any) -> None:
         """Say something to the parent; what it has no room for is lost."""
-        for kind in ("note", "fault"):
-            if said.get(kind):
-                said[kind] = str(said[kind])[:_MOST_SAID]
+        if said.get("fault"):
+            said["fault"] = str(said["fault"])[:_MOST_SAID]
+        self._write(json.dumps(said).encode())
+
+    def tell(self, event: Event) -> None:
+        """Tell the parent of an event, with as much of its texts as there is room for."""
+        line = b""
+        for most in (_MOST_SAID, _MOST_OF_SEVERAL):
+            line = json.dumps({"event": to_json(shortened(event, most))}).encode()
+            if len(line) < _WHOLE_BYTES:
+                break
+        self._write(line)
+
+    def _write(self, line: bytes) -> None:
         with suppress(OSError):
-            os.write(self._descriptor, json.dumps(said).encode() + b"\n")
+            os.write(self._descriptor, line + b"\n")
 
     def never_wait(self) -> None:
         """Wait for no room from now on."""
@@ -164,6 +180,26 @@ def end_after(parent: int) -> None:
         signal.raise_signal(signal.SIGQUIT)
 
 
+def pass_on(device: Device, notices: Notices, channel: Channel, now_ns: int) -> None:
+    """Tell the parent what a device tells, the same once a second.
+
+    Raises
+    ------
+    DeviceError
+        If a driver tells what is no event.
+    """
+    for event in device.take_events():
+        if not is_known(event):
+            raise DeviceError(
+                f"{device.display.name} tells {event!r}, which is no event of "
+                f"vbraille.devices.events; tell whoever wrote its driver"
+            )
+        # Drivers may tell all they have to by one code; only what is alike stands for another.
+        notices.add(event, now_ns, event.kind and replace(event, times=1))
+    for event in notices.take(now_ns):
+        channel.tell(event)
+
+
 def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
     """Next line of the parent's; what the device says meanwhile is taken, and not used."""
     while not select.select([orders], [], [], 1 / rate_hz)[0]:
@@ -191,28 +227,26 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         extent = shared.Extent(**json.loads(told))
         mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
         os.close(descriptor)
-        note = go_real_time()
+        refused = go_real_time()
         rehearse(device, wanted.rate_hz)
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
-        channel.say(ready=True, note=note)
+        channel.say(ready=True, event=refused and to_json(refused))
         channel.never_wait()
         notices = Notices()
         try:
             loop.restart_clock()
             while hosted.wanted:
                 hosted.tick()
-                for note in device.take_notes():
-                    notices.add(note, note, loop.clock.now_ns())
-                for note in notices.take(loop.clock.now_ns()):
-                    channel.say(note=note)
+                pass_on(device, notices, channel, loop.clock.now_ns())
         finally:
             ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()
-            for note in (*device.take_notes(), *notices.take(loop.clock.now_ns() + EVERY_NS)):
-                channel.say(note=note)
+            pass_on(device, notices, channel, loop.clock.now_ns())
+            for event in notices.take(loop.clock.now_ns() + EVERY_NS):
+                channel.tell(event)
             channel.say(counts={str(name): int(n) for name, n in device.counts().items()})
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices import Device
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.tally import Tally
@@ -78,9 +79,9 @@ class LocalEngine:
         self.loop.ring.publish()
         return self._reader.drain()
 
-    def take_notes(self) -> Sequence[str]:
-        """What the device has to say since the last call."""
-        return self.loop.device.take_notes()
+    def take_events(self) -> Sequence[Event]:
+        """What there is to tell since the last call."""
+        return self.loop.device.take_events()
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

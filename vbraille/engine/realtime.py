@@ -8,22 +8,20 @@ import os
 import resource
 from contextlib import suppress
 
+from vbraille.devices.events import NotInTime
+
 # Above other programs, below the kernel's own threads (50).
 PRIORITY = 40
 _MCL_CURRENT, _MCL_FUTURE = 1, 2
-HOW = (
-    "to allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
-    "/etc/security/limits.d/audio.conf, join the group audio, and log in again"
-)
 
 
-def go_real_time() -> str | None:
+def go_real_time() -> NotInTime | None:
     """Have this thread run by SCHED_FIFO in locked memory, without garbage collection.
 
     Returns
     -------
-    str or None
-        One sentence if the system does not allow it, and how to have it.
+    NotInTime or None
+        What of it the system does not allow; None if it allows it.
     """
     gc.collect()
     gc.freeze()
@@ -35,12 +33,10 @@ def go_real_time() -> str | None:
         policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
         os.sched_setscheduler(0, policy, os.sched_param(PRIORITY))
     except OSError:
-        refused.append("no real-time priority")
+        refused.append("priority")
     if not _lock_memory():
-        refused.append("no locked memory")
-    if not refused:
-        return None
-    return f"timing: {' and '.join(refused)}, so that ticks may come late; {HOW}"
+        refused.append("memory")
+    return NotInTime(tuple(refused)) if refused else None
 
 
 def _keep_awake() -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from vbraille.devices.base import Placing
+from vbraille.devices.saying import told
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
@@ -261,7 +262,8 @@ class OnDevice:
             If the engine has ended, or the disk does not take the trace.
         """
         ticks = self.engine.poll()
-        happened = [Happened("note", {"what": note}) for note in self.engine.take_notes()]
+        sentences = told(self.engine.take_events())
+        happened = [Happened("note", {"what": sentence}) for sentence in sentences]
         if not ticks.size:
             return happened
         before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]

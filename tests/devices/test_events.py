@@ -1,0 +1,111 @@
+"""Events: through JSON and back the same, and a sentence for each."""
+
+import json
+
+import pytest
+
+from vbraille.devices import events
+from vbraille.devices.base import Placing
+from vbraille.devices.events import (
+    Back,
+    Button,
+    Changed,
+    Difference,
+    Fault,
+    Knob,
+    Notice,
+    NotInTime,
+    Placed,
+    Silent,
+    Stranger,
+    Unplugged,
+    WatchdogTripped,
+    from_json,
+    is_known,
+    shortened,
+    to_json,
+)
+from vbraille.devices.saying import say, told
+
+SAID = [
+    (Unplugged(), "device: unplugged; plug it in again and reading goes on"),
+    (
+        Silent(101.5),
+        "device: silent, and sent to rest; reading goes on once it speaks",
+    ),
+    (Back(times=3), "device: back (3 times in the last second)"),
+    (
+        Stranger("A", "B", (Difference("levels", 2, 1024), Difference("rest_side", "l", "r"))),
+        "device: B came back in its place (levels 1024, not 2, rest side r, not l); plug in A "
+        "again and reading goes on",
+    ),
+    (
+        Stranger("A", version=2),
+        "device: a device of version 2 of the protocol came back; plug in A again and reading "
+        "goes on",
+    ),
+    (
+        Stranger("A", fault="rows is 0"),
+        "device: what came back says in its INFO what cannot be: rows is 0",
+    ),
+    (
+        Changed((Difference("encoder", "index", "absolute"),), gain=2, placing=Placing.MARK),
+        "device: changed, for its encoder is absolute, not index, 2 of its actuators have "
+        "another gain; if asked to, move the carriage over its mark",
+    ),
+    (
+        WatchdogTripped(4),
+        "device: no frame reached it in time, so it went to rest; reading goes on",
+    ),
+    (Notice(200, "Warm."), "device: Warm."),
+    (Notice(200, ""), "device: notice 200"),
+    (Fault("A", 3, "Too hot."), "A: Too hot."),
+    (Fault("A", 3), "A: error 3"),
+    (Fault("A"), "A has a fault; switch it off and on, and try again"),
+    (Button(1, pressed=True), "device: button 1 pressed"),
+    (Button(2, pressed=False), "device: button 2 let go"),
+    (Knob(1, 0.25), "device: knob 1 at 25%"),
+    (Placed(Placing.STOP), "device: it waits to be shown the left stop"),
+    (
+        NotInTime(("priority", "memory")),
+        "timing: no real-time priority and no locked memory, so that ticks may come late; to "
+        "allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
+        "/etc/security/limits.d/audio.conf, join the group audio, and log in again",
+    ),
+]
+
+
+@pytest.mark.parametrize(("event", "sentence"), SAID)
+def test_each_has_a_sentence_and_comes_through_json_as_it_is(event, sentence):
+    assert say(event) == sentence
+    assert is_known(event)
+    back = from_json(json.loads(json.dumps(to_json(event))))
+    assert back == event
+    assert repr(back) == repr(event)
+
+
+def test_every_kind_has_a_sentence_here():
+    assert {type(event) for event, _ in SAID} == set(events._KINDS.values())
+
+
+def test_what_a_reader_hears_of_otherwise_is_not_said():
+    quiet = [event for event, _ in SAID if not told([event])]
+    assert {type(event) for event in quiet} == {Button, Knob, Placed, Fault}
+
+
+def test_texts_are_cut_and_nothing_else():
+    event = Stranger("a" * 9, "b", (Difference("name", "c" * 9, 2.5),), 7, times=3)
+    assert shortened(event, 3) == Stranger(
+        "aaa", "b", (Difference("name", "ccc", 2.5),), 7, times=3
+    )
+
+
+class Own(events.Event):
+    """A kind of event that only a driver knows."""
+
+
+def test_a_driver_s_own_kind_is_not_known():
+    assert not is_known(Own())
+    assert not is_known("a sentence")
+    with pytest.raises(TypeError, match="no words for"):
+        say(Own())

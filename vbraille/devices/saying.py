@@ -1,0 +1,196 @@
+"""What devices and engines tell, in sentences: the one place that has words for events."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.base import Placing
+from vbraille.devices.events import (
+    Back,
+    Button,
+    Changed,
+    Difference,
+    Event,
+    Fault,
+    Knob,
+    Notice,
+    NotInTime,
+    Placed,
+    Silent,
+    Stranger,
+    Unplugged,
+    WatchdogTripped,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+# Names and units of a display's fields.
+_FIELDS: Final = {
+    "rows": ("rows of actuators", ""),
+    "columns": ("columns of actuators", ""),
+    "column_pitch_mm": ("pitch along the line", " mm"),
+    "row_pitch_mm": ("pitch across the line", " mm"),
+    "levels": ("levels", ""),
+    "rest_side": ("rest side", ""),
+    "travel_mm": ("travel", " mm"),
+    "rate_hz": ("rate", " Hz"),
+}
+_TO_DO: Final = {
+    Placing.DONE: "",
+    Placing.MARK: "; if asked to, move the carriage over its mark",
+    Placing.STOP: "; its left stop must be shown again",
+}
+_REFUSED: Final = {"priority": "no real-time priority", "memory": "no locked memory"}
+_ALLOW: Final = (
+    "to allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
+    "/etc/security/limits.d/audio.conf, join the group audio, and log in again"
+)
+# Those that a reader hears of otherwise: by what they do, by what he is asked to do, and by the
+# error that ends the reading.
+_UNSAID: Final = (Button, Knob, Placed, Fault)
+
+
+def told(events: Iterable[Event]) -> list[str]:
+    """Sentences for the reader, one for each event that is to be said."""
+    return [say(event) for event in events if not isinstance(event, _UNSAID)]
+
+
+def say(event: Event) -> str:
+    """An event as a sentence, with how often it happened if it stands for several."""
+    more = f" ({event.times} times in the last second)" if event.times > 1 else ""
+    return _say(event) + more
+
+
+@singledispatch
+def _say(event: Event) -> str:
+    raise TypeError(f"there are no words for {event!r}")
+
+
+@_say.register
+def _(_event: Unplugged) -> str:
+    return "device: unplugged; plug it in again and reading goes on"
+
+
+@_say.register
+def _(_event: Silent) -> str:
+    return "device: silent, and sent to rest; reading goes on once it speaks"
+
+
+@_say.register
+def _(_event: Back) -> str:
+    return "device: back"
+
+
+@_say.register
+def _(event: Stranger) -> str:
+    if event.version is not None:
+        return (
+            f"device: a device of version {event.version} of the protocol came back; plug in "
+            f"{event.was} again and reading goes on"
+        )
+    if event.fault:
+        return f"device: what came back says in its INFO what cannot be: {event.fault}"
+    others = ", ".join(map(_difference, event.differences))
+    if event.name != event.was:
+        return (
+            f"device: {event.name} came back in its place ({others}); plug in {event.was} again "
+            f"and reading goes on"
+        )
+    return (
+        f"device: another {event.was} came back ({others}); plug in the one that reading began "
+        f"on, or set this one as that was, and reading goes on"
+    )
+
+
+def _difference(one: Difference) -> str:
+    what, unit = _FIELDS[one.what]
+    return f"{what} {_plain(one.now)}{unit}, not {_plain(one.was)}{unit}"
+
+
+def _plain(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+@_say.register
+def _(event: Changed) -> str:
+    said = [_change(one) for one in event.what]
+    said += [
+        f"{number} of its actuators have another {what}"
+        for what, number in (
+            ("gain", event.gain),
+            ("rest level", event.inverted),
+            ("fitness for use", event.enabled),
+        )
+        if number
+    ]
+    return f"device: changed, for {', '.join(said)}{_TO_DO[event.placing]}"
+
+
+def _change(one: Difference) -> str:
+    was, now = one.was, one.now
+    match one.what:
+        case "name":
+            return f"its name is {now}, not {was}"
+        case "counts_per_m":
+            per_mm = [f"{1e6 / float(count):.6g} µm" for count in (now, was)]
+            return f"a count is {per_mm[0]}, not {per_mm[1]}"
+        case "count_sign":
+            return f"its counts grow {now}"
+        case "encoder":
+            return f"its encoder is {now}, not {was}"
+        case "left_stop_count":
+            return f"its left stop is at count {now}, not {was}"
+    return f"its actuators may move {_slew(now)}, not {_slew(was)}"
+
+
+def _slew(speed: float | str) -> str:
+    return f"{speed} swings a second" if speed else "without a limit"
+
+
+@_say.register
+def _(_event: WatchdogTripped) -> str:
+    return "device: no frame reached it in time, so it went to rest; reading goes on"
+
+
+@_say.register
+def _(event: Notice) -> str:
+    return f"device: {event.text or f'notice {event.code}'}"
+
+
+@_say.register
+def _(event: Fault) -> str:
+    if event.stuck:
+        return (
+            f"{event.name} does not go to rest, neither when it is told to nor without frames; "
+            f"switch it off, and do not read on it until that is mended"
+        )
+    if event.code is None:
+        return f"{event.name} has a fault; switch it off and on, and try again"
+    return f"{event.name}: {event.text or f'error {event.code}'}"
+
+
+@_say.register
+def _(event: Button) -> str:
+    return f"device: button {event.number} {'pressed' if event.pressed else 'let go'}"
+
+
+@_say.register
+def _(event: Knob) -> str:
+    return f"device: knob {event.number} at {event.value:.0%}"
+
+
+@_say.register
+def _(event: Placed) -> str:
+    return {
+        Placing.DONE: "device: its place is known",
+        Placing.MARK: "device: it waits for the carriage to pass its mark",
+        Placing.STOP: "device: it waits to be shown the left stop",
+    }[event.placing]
+
+
+@_say.register
+def _(event: NotInTime) -> str:
+    refused = " and ".join(_REFUSED[one] for one in event.refused)
+    return f"timing: {refused}, so that ticks may come late; {_ALLOW}"
