@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
+    from vbraille.devices.steady import Actuators
     from vbraille.display import Display
     from vbraille.pose import Pose
 
@@ -48,6 +49,30 @@ class Particulars:
     largest_slew_per_s: float
     disabled: tuple[tuple[int, int], ...]
     inverted: tuple[tuple[int, int], ...]
+
+
+class Lent(NamedTuple):
+    """What a device lends to the engine, which then does its steady ticks in compiled code.
+
+    Parameters
+    ----------
+    descriptor
+        Of its open line, which does not block.
+    begun
+        Bytes that `received` begins with: a part of a message.
+    received, work, out : uint8[bytes]
+        What has come; room to work in, and for a message that goes out.
+    talk, actuators
+        Numbers of the conversation, as of `vbraille.devices.steady`.
+    """
+
+    descriptor: int
+    begun: int
+    received: NDArray[np.uint8]
+    work: NDArray[np.uint8]
+    out: NDArray[np.uint8]
+    talk: NDArray[np.void]
+    actuators: Actuators
 
 
 class Placing(IntEnum):
@@ -127,6 +152,28 @@ class Device(ABC):
     def take_events(self) -> Sequence[Event]:
         """What there is to tell since the last call, by the kinds of `vbraille.devices.events`."""
         return ()
+
+    def lend(self) -> Lent | None:
+        """What the engine needs to do steady ticks by itself; None if it must call the device.
+
+        Until `take_back` nothing else of the device is called.
+        """
+        return None
+
+    def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
+        """Go on with what was lent.
+
+        Parameters
+        ----------
+        lent
+            The same.
+        received
+            Bytes of ``lent.received`` that have come and were not taken.
+        unsent
+            Frames that found no room on the line.
+        torn
+            What is left of the last one, of which a part went out.
+        """
 
     def counts(self) -> Mapping[str, int]:
         """What went wrong so far, by name: frames not sent, samples missed, corrupt messages."""

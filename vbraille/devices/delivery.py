@@ -125,6 +125,11 @@ class Trips:
         self._counted = False  # the trip that STATEs tell of
         self._unreported = 0  # trips that were counted by STATEs alone
 
+    @property
+    def tripped(self) -> bool:
+        """Whether the last STATE told of a trip."""
+        return self._counted
+
     def restart(self) -> None:
         """Take the next report for the first one: a conversation begins."""
         self._reported_ns, self._reported = 0, None

@@ -67,10 +67,13 @@ class Lending:
             conversation.time,
         )
         ready = conversation.steady and place.known and not conversation.trips.tripped
-        begun = conversation.decoder.begun
-        if not ready or states.sequence is None or time.us is None or begun is None:
+        if not ready or states.sequence is None or time.us is None:
             return None
-        if place.count is None or place.zero is None or len(begun) > WORK_BYTES:
+        if place.count is None or place.zero is None:
+            return None
+        begun = conversation.decoder.take_begun()
+        if begun is None or len(begun) > WORK_BYTES:
+            conversation.decoder.feed(begun or b"")
             return None
         drive = conversation.drive
         if drive is not self._drive:
@@ -98,7 +101,7 @@ class Lending:
         return len(begun)
 
     def give_back(self, conversation: Conversation) -> None:
-        """Have the conversation know what was heard and said meanwhile."""
+        """Have the conversation know what was heard and said meanwhile, but for bytes left over."""
         talk, drive = self.talk[0], conversation.drive
         states, frames, time = conversation.states, conversation.frames, conversation.time
         states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])

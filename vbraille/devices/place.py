@@ -50,6 +50,11 @@ class Place:
             Encoder.INCREMENTAL: Placing.STOP,
         }[self._encoder]
 
+    @property
+    def needs_mark(self) -> bool:
+        """Whether a STATE may say that the place is lost until the carriage passes the mark."""
+        return self._encoder is Encoder.INDEX
+
     def x_mm(self, state: State) -> float | None:
         """Place of the array's centre by a STATE newer than those before; None if unknown."""
         if self._encoder is Encoder.INDEX and not state.placed:

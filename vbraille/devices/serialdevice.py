@@ -5,11 +5,13 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import Device
+from vbraille.devices.base import Device, Lent
 from vbraille.devices.events import Fault
+from vbraille.devices.lending import Lending
 from vbraille.devices.saying import say
 from vbraille.devices.serialport import DRAIN_MS
 from vbraille.devices.transitions import Stage
+from vbraille.devices.wire import DELIMITER
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -70,6 +72,8 @@ class SerialDevice(Device):
         self._pause = pause
         self._losses = port.losses
         self._unsent = 0
+        self._lending = Lending()
+        self._left_over = b""  # came while the conversation was lent
         self._copy()
 
     @property
@@ -114,7 +118,7 @@ class SerialDevice(Device):
         now_ns = self._now_ns()
         port, conversation = self.port, self.conversation
         stalled = conversation.mind_stall(now_ns)
-        chunk = port.read()
+        chunk, self._left_over = self._left_over + port.read(), b""
         for _ in range(_MOST_READS * stalled):
             chunk += (more := port.read())
             if not more:
@@ -132,6 +136,38 @@ class SerialDevice(Device):
         if conversation.stage is Stage.FAILED and isinstance(conversation.failure, Fault):
             raise DeviceError(say(conversation.failure))
         return pose
+
+    def lend(self) -> Lent | None:
+        """What the engine needs to do steady ticks by itself; None if the line is none for that."""
+        descriptor = self.port.bare_descriptor
+        if descriptor is None or self._left_over:
+            return None
+        begun = self._lending.lend(self.conversation)
+        if begun is None:
+            return None
+        lending = self._lending
+        return Lent(
+            descriptor,
+            begun,
+            lending.received,
+            lending.work,
+            lending.out,
+            lending.talk,
+            lending.actuators,
+        )
+
+    def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
+        """Go on with what was lent: `read` takes first what has come and was not taken."""
+        self._lending.give_back(self.conversation)
+        left_over = lent.received[:received].tobytes()
+        if DELIMITER in left_over:
+            self._left_over = left_over
+        else:
+            self.conversation.decoder.feed(left_over)
+        self._unsent += unsent
+        if torn:
+            self.port.keep(torn)
+        self._copy()
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         self.conversation.show(frame, self._now_ns())

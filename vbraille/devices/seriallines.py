@@ -48,6 +48,15 @@ class Line(Protocol):
         """Send a frame whole, or not at all; whether it was taken. Never waits."""
         ...
 
+    @property
+    def bare_descriptor(self) -> int | None:
+        """Descriptor to read and write by, with nothing left of an earlier frame; else None."""
+        ...
+
+    def keep(self, rest: bytes) -> None:
+        """Send the rest of a frame, of which a part went out by the descriptor, before the next."""
+        ...
+
     def drop_unsent(self) -> None:
         """Take back what has not gone out yet; a frame of which a part has is ended by the next."""
         ...
@@ -95,6 +104,15 @@ class DescriptorLine:
         # Not a byte of this one went out: later it would be late.
         self._left = self._left[written:]
         return False
+
+    @property
+    def bare_descriptor(self) -> int | None:
+        """Descriptor to read and write by, with nothing left of an earlier frame; else None."""
+        return None if self._left else self._descriptor
+
+    def keep(self, rest: bytes) -> None:
+        """Send the rest of a frame before the next."""
+        self._left = rest
 
     def drop_unsent(self) -> None:
         """Have the driver forget what it has not sent; a socket cannot, and sends it all."""
@@ -161,6 +179,11 @@ class ThreadedLine:
         if self._bell.empty():
             self._bell.put(None)
         return True
+
+    bare_descriptor = None
+
+    def keep(self, rest: bytes) -> None:
+        """Nothing: no part of a frame goes out but by the thread."""
 
     def drop_unsent(self) -> None:
         """Empty the letter box."""

@@ -96,6 +96,16 @@ class SerialPort:
             self._lose()
             return False
 
+    @property
+    def bare_descriptor(self) -> int | None:
+        """Descriptor to read and write by, with nothing left of an earlier frame; else None."""
+        return None if self._finder is not None else self._line.bare_descriptor
+
+    def keep(self, rest: bytes) -> None:
+        """Send the rest of a frame, of which a part went out by the descriptor, before the next."""
+        if not self.gone:
+            self._line.keep(rest)
+
     def drop_unsent(self) -> None:
         """Take back what has not gone out yet, as far as the system lets us."""
         if not self.gone:

@@ -206,6 +206,17 @@ class Decoder:
             self._hold(begun)
         return events
 
+    def take_begun(self) -> bytes | None:
+        """The part of a frame that has come, which is forgotten; None while one is skipped.
+
+        Whoever takes it feeds it again, or what has become of it.
+        """
+        if self._skipping:
+            return None
+        begun = bytes(self._held)
+        self._held.clear()
+        return begun
+
     def _end(self, piece: bytes) -> bytes:
         """Whole frame that ends with a piece; nothing if it was too long."""
         self._hold(piece)

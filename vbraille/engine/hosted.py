@@ -127,12 +127,16 @@ class Hosted:
         """Whether to go on: told to by nobody else, and the parent lives."""
         return not (self._ended or self._mailbox.stopped) and os.getppid() == self._parent
 
-    def tick(self) -> None:
-        """Do what is new in the mailbox, then a tick."""
+    def run(self) -> None:
+        """Do what is new in the mailbox, then some ticks."""
         mailbox, loop = self._mailbox, self.loop
+        # Looked at first: what comes in the meantime is new to the ticks.
+        mailbox.obeyed[:] = mailbox.orders
         if mailbox.published != self._taken:
             posted = mailbox.take()
-            if posted is not None:
+            if posted is None:
+                mailbox.obeyed[:] = -1  # to be looked at again, a tick later
+            else:
                 self._taken = posted.number
                 loop.show(posted.program, posted.line)
         if mailbox.paused != loop.paused:
@@ -140,7 +144,7 @@ class Hosted:
         if mailbox.zeroed != self._zeroed:
             self._zeroed = mailbox.zeroed
             loop.device.set_zero()
-        loop.tick()
+        loop.run(mailbox)
 
 
 def warm_up(info: Display, extent: shared.Extent) -> None:
@@ -152,7 +156,7 @@ def warm_up(info: Display, extent: shared.Extent) -> None:
         loop.show(nothing(info))
         hosted = Hosted(loop, mailbox, 0)
         for _ in range(_WARM_TICKS):
-            hosted.tick()
+            hosted.run()
         loop.fade_to_rest()
 
 
@@ -238,7 +242,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         try:
             loop.restart_clock()
             while hosted.wanted:
-                hosted.tick()
+                hosted.run()
                 pass_on(device, notices, channel, loop.clock.now_ns())
         finally:
             ring.publish()

@@ -56,6 +56,9 @@ class Mailbox:
     def __init__(self, buffer: memoryview, room: int) -> None:
         # A view of numpy's takes three times as long to look at.
         self._words = buffer[:_HEADER_BYTES].cast("q")
+        # The same words, for compiled code to compare with what they were when last obeyed.
+        self.orders = np.frombuffer(buffer, np.int64, _HEADER_BYTES // 8)
+        self.obeyed = np.zeros(self.orders.size, np.int64)
         slot_bytes = _slot_bytes(room)
         starts = (_HEADER_BYTES, _HEADER_BYTES + slot_bytes)
         self._slots = [np.frombuffer(buffer, np.uint8, slot_bytes, start) for start in starts]
@@ -132,11 +135,6 @@ class Mailbox:
     def stop(self) -> None:
         """End the loop."""
         self._words[_STOPPED] = 1
-
-    @property
-    def orders(self) -> NDArray[np.int64]:
-        """All that is not a program, as words that the compiled tick compares; int64[8]."""
-        return np.frombuffer(self._words, np.int64)
 
 
 def _slot_bytes(room: int) -> int:
