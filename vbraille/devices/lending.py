@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from vbraille.devices.base import Lent
 from vbraille.devices.conversation import IDLE_MS
 from vbraille.devices.steady import CONVERSATION, NEVER, WORK_BYTES, Actuators
 from vbraille.devices.wire import CRC_BYTES, frame_head, line_bytes
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.conversation import Conversation
     from vbraille.devices.drive import Drive
+    from vbraille.display import Display
 
 # What comes in some ticks is some hundred bytes; there is room for a stall.
 RECEIVED_BYTES: Final = 8192
@@ -126,6 +128,19 @@ class Lending:
         self._packed = self._body[head.size : body_bytes]
         self.out = np.zeros(line_bytes(body_bytes), np.uint8)
         self._drive = drive
+
+
+def example(display: Display) -> Lent:
+    """What a device of no consequence would lend: for compiled code to be loaded before a real one.
+
+    Nothing may be done with it: its descriptor is none.
+    """
+    shape = display.shape
+    zeros = np.zeros(shape)
+    body = np.zeros(CRC_BYTES, np.uint8)
+    actuators = Actuators(zeros, zeros, zeros, np.zeros(shape, np.int64), body, body)
+    room = np.zeros(WORK_BYTES, np.uint8)
+    return Lent(-1, 0, room, room, room, np.zeros(1, CONVERSATION), actuators)
 
 
 def _or_never(time_ns: int | None) -> int:

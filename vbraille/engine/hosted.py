@@ -157,6 +157,7 @@ def warm_up(info: Display, extent: shared.Extent) -> None:
         hosted = Hosted(loop, mailbox, 0)
         for _ in range(_WARM_TICKS):
             hosted.run()
+        loop.load()
         loop.fade_to_rest()
 
 

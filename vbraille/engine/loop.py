@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.devices.lending import example
 from vbraille.engine import steady
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
 from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
@@ -254,6 +255,19 @@ class Loop:
             self._tick(woken_ns, lateness_ns, taken)
         elif not done:
             self.tick()
+
+    def load(self) -> None:
+        """Load, or compile, what steady ticks are done by; no tick is done."""
+        told, silence = np.zeros(self._told.size, np.int64), np.zeros(1, np.int64)
+        self.state.run_steadily(
+            told,
+            silence,
+            silence,
+            example(self.device.display),
+            self._times_ns,
+            self._poses,
+            self.ring,
+        )
 
     def restart_clock(self) -> None:
         """Let the next tick be due now: the time before it was not the loop's."""
