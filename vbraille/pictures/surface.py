@@ -41,7 +41,7 @@ def page(
     model, mapping, geometry, tuning
         What they are shown with and how.
     x_mm
-        Place of the array's left column.
+        Place of the array's centre.
     line_index
         The line that the array is on, from 0.
 
@@ -79,7 +79,7 @@ def page(
         {
             "what": np.full(row.size, "actuator"),
             "line": np.full(row.size, line.number),
-            "x_mm": x_mm + array.column_offsets_mm()[column],
+            "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
             "y_mm": top + array.row_offsets_mm()[row],
             "width_mm": np.full(row.size, array.column_pitch_mm),
             "row": row,
@@ -93,7 +93,7 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {line.number}, left column at {x_mm:g} mm, "
+        f"{model.title}: line {line.number}, centre at {x_mm:g} mm, "
         f"{mapping.name}{tuning_words(tuning)}"
     )
     return Table("page", title, columns)
