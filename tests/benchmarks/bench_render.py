@@ -61,7 +61,8 @@ def run() -> Iterator[Result]:
         share <= 5 and least <= 1e-6,
     )
 
-    path_mm = np.linspace(-STRESS2.display.span_mm, STRESS2.style.geometry.extent_mm(CELLS), PATH)
+    half_mm, end_mm = STRESS2.display.span_mm / 2, STRESS2.style.geometry.extent_mm(CELLS)
+    path_mm = np.linspace(-half_mm, end_mm + half_mm, PATH)
     result = np.zeros((PATH, *STRESS2.display.shape), np.float32)
     share, least = ratio(
         lambda: page[0].path(path_mm, result), lambda: result.fill(0), times=5, pairs=31

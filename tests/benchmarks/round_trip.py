@@ -81,7 +81,7 @@ def main(link: str, seconds: float) -> None:
             continue
         n = tick % (2 * steps)
         read_ns[n] = now_ns
-        port.send(controller.tick(now_ns // 1000, float(places_mm[n]) + INFO.span_mm))
+        port.send(controller.tick(now_ns // 1000, float(places_mm[n]) + INFO.span_mm / 2))
         tick += 1
         due_ns = max(due_ns + _PERIOD_NS, now_ns - _PERIOD_NS)
     port.unplug()

@@ -203,7 +203,7 @@ class Short(SimulatedDevice):
 
     def read(self):
         sample = super().read()
-        return Pose(sample.time_ns, min(sample.x_mm, 60.0))
+        return Pose(sample.time_ns, min(sample.x_mm, 65.0))
 """
 
 

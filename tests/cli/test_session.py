@@ -275,7 +275,7 @@ def test_a_directory_that_is_read_only_is_checked_and_exported_and_not_resumed(f
 
 @pytest.mark.parametrize(
     ("protocol", "limit", "what"),
-    [(MINI, 30_000, r"trace-001\.gz"), (PAPER, 2_500, r"journal\.jsonl"), (MINI, 400, "s")],
+    [(MINI, 33_000, r"trace-001\.gz"), (PAPER, 2_500, r"journal\.jsonl"), (MINI, 400, "s")],
     ids=["trace", "journal", "birth"],
 )
 def test_a_full_disk_costs_no_answer_that_was_acknowledged(call, tmp_path, protocol, limit, what):

@@ -197,7 +197,7 @@ def test_an_undone_answer_is_not_counted_twice(call, tmp_path):
 
 
 def of_a_newer_format(room):
-    (room / journal.NAME).write_bytes(first_lines([{"event": "session", "format": 3, "t_s": 0}]))
+    (room / journal.NAME).write_bytes(first_lines([{"event": "session", "format": 4, "t_s": 0}]))
 
 
 def of_something_else(room):
@@ -217,7 +217,7 @@ def without_its_journal(room):
 @pytest.mark.parametrize(
     ("made", "code", "pattern"),
     [
-        (of_a_newer_format, 2, r"is a session of format 3, and this vbraille knows format 2; use"),
+        (of_a_newer_format, 2, r"is a session of format 4, and this vbraille knows format 3; use"),
         (of_something_else, 2, r"journal\.jsonl is not the journal of a session"),
         (of_no_event, 1, r"is damaged in its first line; there is nothing to go by"),
         (without_its_journal, 1, r"has lost its journal\.jsonl; there is nothing to go by"),

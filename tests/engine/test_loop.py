@@ -6,9 +6,10 @@ import pytest
 from tests.shown import rendered
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock
+from vbraille.engine.constants import NS_PER_S
 from vbraille.engine.loop import Loop
 from vbraille.engine.record import Flag
-from vbraille.engine.ring import Ring
+from vbraille.engine.ring import Ring, RingReader
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 from vbraille.render import MAPPINGS, STRESS2, Tuning
@@ -290,10 +291,35 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
     assert loop.tally.late > 500
 
 
-def test_a_place_that_is_no_number_is_a_fault(clock, device):
-    device.read = lambda: Pose(0, float("nan"))
-    with pytest.raises(DeviceError, match="nan"):
+@pytest.mark.parametrize("field", ["x_mm", "y_mm", "theta_rad"])
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), float("-inf")])
+def test_a_pose_that_is_no_number_is_a_fault(clock, device, field, value):
+    device.read = lambda: Pose(0, 1.0)._replace(**{field: value})
+    with pytest.raises(DeviceError, match=f"{value}.* cannot be"):
         Loop(device, clock).tick()
+
+
+def test_a_pose_of_two_axes_is_motion_and_is_recorded(clock, device):
+    memory = memoryview(bytearray(Ring.bytes_needed((6, 10), 9000)))
+    ring, reader = Ring(memory, (6, 10), 9000), RingReader(memory, (6, 10), 9000)
+    loop = Loop(device, clock, ring=ring)
+    loop.show(picture(mapping="sheared"))
+    device.read = lambda: None
+    run(loop, 0.05)
+    # Along y alone, to the reader, at 20 mm/s.
+    device.read = lambda: Pose(clock.now_ns(), 3.0, clock.now_ns() / NS_PER_S * 20, 0.5)
+    run(loop, 8.0)
+    assert not loop.resting  # a hand that stands still rests after 5 s
+    ring.publish()
+    ticks = reader.drain()
+    for name in ("x_mm", "y_mm", "theta_rad"):
+        assert np.isnan(ticks[name][:50]).all()
+    ticks = ticks[50:]
+    np.testing.assert_array_equal(ticks["y_mm"], ticks["device_ns"] / NS_PER_S * 20)
+    assert set(zip(ticks["x_mm"].tolist(), ticks["theta_rad"].tolist(), strict=True)) == {(3, 0.5)}
+    assert not ticks["vx_mm_s"].any()
+    assert ticks["vy_mm_s"][100:] == pytest.approx(20)
+    assert not ticks["forward_mm"].any()  # way to the right
 
 
 @pytest.mark.parametrize("rate", [0, -1, 20_000, float("nan")])

@@ -166,7 +166,8 @@ def test_page_shows_eight_dots_only_where_there_are_some():
 
 def test_page_deflects_the_actuators_that_are_on_a_dot():
     lines = [make_line("⠿⠿"), make_line("⠁", number=2)]
-    table = make_page(lines, x_mm=1.3, line_index=1).where("what", "actuator")
+    left_mm = 1.3  # the array is 10.8 mm wide
+    table = make_page(lines, x_mm=left_mm + 10.8 / 2, line_index=1).where("what", "actuator")
     assert len(table) == 60
     assert set(table["line"]) == {2}
     on = table.where("row", 0)

@@ -36,7 +36,7 @@ def page(
     model
         What they are shown on, and how.
     x_mm
-        Place of the array's left column.
+        Place of the array's centre.
     line_index
         The line that the array is on, from 0.
 
@@ -72,7 +72,7 @@ def page(
         {
             "what": np.full(row.size, "actuator"),
             "line": np.full(row.size, line.number),
-            "x_mm": x_mm + array.column_offsets_mm()[column],
+            "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
             "y_mm": top + array.row_offsets_mm()[row],
             "width_mm": np.full(row.size, array.column_pitch_mm),
             "row": row,
@@ -86,7 +86,7 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {line.number}, left column at {x_mm:g} mm, "
+        f"{model.title}: line {line.number}, centre at {x_mm:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return Table("page", title, columns)
