@@ -142,7 +142,7 @@ class Reader:
             if not self._finished:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
                     self._say(sentence)
-        self._watch_speed(float(ticks["speed_mm_s"].max()))
+        self._watch_speed(float(ticks["vx_mm_s"].max()))
 
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does by itself."""

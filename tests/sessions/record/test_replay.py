@@ -2,19 +2,14 @@
 
 import numpy as np
 
-from vbraille.engine.ring import Flag
+from tests.shown import array_of, full
+from vbraille.engine.record import Flag
 from vbraille.sessions.record.replay import Replay
 from vbraille.sessions.record.traces import TRACE
 
 
-class Full:
-    """A picture of actuators all the way up."""
-
-    def frame(self, _x_mm, out):
-        out.fill(1.0)
-
-
 def test_what_a_device_that_rested_by_itself_was_sent_did_nothing():
+    display = array_of(1, 2, 1.0, 1.0)
     ticks = np.zeros(6, TRACE)
     ticks["tick"] = np.arange(6)
     ticks["line"], ticks["share"] = 1, 1.0
@@ -22,6 +17,6 @@ def test_what_a_device_that_rested_by_itself_was_sent_did_nothing():
     ticks["flags"][4] = int(Flag.CHANGED | Flag.RESTING)
     ticks["share"][4:] = 0.0, 0.5
     ticks["flags"][5] = int(Flag.RESTING)
-    frames = Replay(lambda _: Full(), (1, 2)).frames(ticks)
+    frames = Replay(lambda _: full(display), display).frames(ticks)
     # The fade to rest at the end goes on from what was written last, as the loop's does.
     assert frames[:, 0, 0].tolist() == [1.0, 1.0, 0.0, 0.0, 1.0, 0.5]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT
-from tests.shown import LATERO, array, rendered
+from tests.shown import LATERO, array_of, rendered
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
@@ -317,7 +317,7 @@ def test_constants_of_the_skin():
 
 def test_what_makes_no_observer_or_exploration():
     with pytest.raises(ValueError, match="1 column"):
-        Observer(array(1, 1, 0.7, 0.7), single_row(1), VBD.style.geometry)
+        Observer(array_of(1, 1, 0.7, 0.7), single_row(1), VBD.style.geometry)
     with pytest.raises(ValueError, match="needs 6 actuator rows"):
         Observer(VBD.display, STRESS2.style.mapping, VBD.style.geometry)
     with pytest.raises(ValueError, match="shows no dot"):
