@@ -1,7 +1,13 @@
 """Lines compiled in one call, and the arrays that tests show them on."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from vbraille.display import Display
-from vbraille.render import STRESS2, VBD, BrailleStyle
+from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping
+from vbraille.render.mappings import NONE
+from vbraille.render.program import Program
 from vbraille.render.reference import deflections
 
 STRESS2_ARRAY = STRESS2.display
@@ -31,3 +37,9 @@ def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=No
     """The frames of a line in plain numpy, for places of the left column."""
     style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
     return deflections(x_mm, masks, style, array, anchor_mm)
+
+
+def full(display) -> Program:
+    """A picture of actuators all the way up, wherever the array is."""
+    mapping = Mapping("up", *((NONE,) * display.rows,) * 2, (True,) * display.rows)
+    return replace(STRESS2.style, mapping=mapping).render(np.zeros(1, np.uint8), display)

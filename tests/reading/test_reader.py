@@ -1,5 +1,7 @@
 """A reader on the manual clock: lines, commands, and what is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,10 +33,7 @@ class Bench:
         self.reader = Reader(
             self.layout,
             self.engine,
-            model=STRESS2,
-            geometry=STRESS2.style.geometry,
-            mapping=STRESS2.style.mapping,
-            tuning=tuning,
+            model=replace(STRESS2, style=replace(STRESS2.style, tuning=tuning)),
             say=self.said.append,
             steering=self.device.steering,
             **options,
@@ -161,7 +160,7 @@ def test_each_turn_is_said_in_one_line_shown_and_kept_in_bounds():
     assert bench.press("ttt") == ["texture: 0.9", "texture: 1", "texture: 1, the most"]
     assert bench.press("CCC") == ["contrast: 0.05", "contrast: 0", "contrast: 0, the least"]
     assert bench.press("Tcc") == ["texture: 0.9", "contrast: 0.1", "contrast: 0.2"]
-    assert bench.reader.tuning == Tuning(texture=0.9, contrast=0.2)
+    assert bench.reader.style.tuning == Tuning(texture=0.9, contrast=0.2)
     run(bench.loop, 0.5)
     assert np.abs(bench.loop.output - before).max() > 0.01
 

@@ -4,7 +4,7 @@ import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.sessions.planning.spelling import say_cells
 from vbraille.sessions.record.notes import read_notes
 from vbraille.sessions.running.orders import ORDERS

@@ -7,7 +7,7 @@ from tests.sessions.sittings import COMPARED, MINI, Session, of
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.simulation.simulated import SimulatedDevice
 
 KEPT = MINI + "[faults]\nrepeat = false\n"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT
-from tests.shown import LATERO, array, rendered
+from tests.shown import LATERO, array_of, rendered
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
@@ -74,7 +74,7 @@ def drawn(rng, mapping, cells=4):
 
 
 def of(model, mapping, **changes):
-    return Observer(model.display, mapping, model.style.geometry, **changes)
+    return Observer(model.display, replace(model.style, mapping=mapping), **changes)
 
 
 @pytest.mark.no_cover
@@ -134,7 +134,7 @@ def test_dots_off_the_mapping_and_blank_cells(rng):
 
 
 def test_a_mapping_with_dots_7_and_8_and_another_array(rng):
-    model = replace(STRESS2, array=LATERO)
+    model = replace(STRESS2, display=LATERO)
     eight = Mapping("eight", (0, 1, 2, 3), (0, 1, 2, 3), (False, True, False, True))
     masks = [255, 0b11000000, 0, 0b01000001]
     given = explored(model, eight, masks, *moved(model, QUICK, 4))
@@ -317,11 +317,11 @@ def test_constants_of_the_skin():
 
 def test_what_makes_no_observer_or_exploration():
     with pytest.raises(ValueError, match="1 column"):
-        Observer(array(1, 1, 0.7, 0.7), single_row(1), VBD.style.geometry)
+        Observer(array_of(1, 1, 0.7, 0.7), VBD.style)
     with pytest.raises(ValueError, match="needs 6 actuator rows"):
-        Observer(VBD.display, STRESS2.style.mapping, VBD.style.geometry)
+        Observer(VBD.display, STRESS2.style)
     with pytest.raises(ValueError, match="shows no dot"):
-        Observer(VBD.display, Mapping("none", (-1,), (-1,), (False,)), VBD.style.geometry)
+        of(VBD, Mapping("none", (-1,), (-1,), (False,)))
     with pytest.raises(ValueError, match="noise is -1"):
         of(VBD, VBD.style.mapping, noise=-1.0)
     frames, ramp = np.zeros((3, 1, 12), np.float32), np.arange(3.0)

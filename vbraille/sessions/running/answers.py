@@ -6,6 +6,7 @@ import os
 import select
 import sys
 import time
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -16,7 +17,6 @@ from vbraille.errors import InputError
 from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
-    from vbraille.render.mappings import Mapping
     from vbraille.render.models import Model
     from vbraille.sessions.planning.plan import Plan, Trial
     from vbraille.sessions.planning.protocol import Protocol as Design
@@ -192,8 +192,8 @@ class Simulated:
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
         model: Model = protocol.model
-        mapping: Mapping = protocol.mapping
-        self._observer = Observer(model.display, mapping, protocol.geometry, noise=noise)
+        style = replace(model.style, mapping=protocol.mapping, geometry=protocol.geometry)
+        self._observer = Observer(model.display, style, noise=noise)
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.geometry import Geometry
-    from vbraille.render.mappings import Mapping
+    from vbraille.render.style import BrailleStyle
 
 Parameter = Literal["dot width", "gap"]
 
@@ -115,8 +114,8 @@ class Observer:
 
     Parameters
     ----------
-    array, mapping, geometry
-        What braille is shown with, and its nominal distances.
+    array, style
+        What braille is shown with, and how, with its nominal distances.
     noise
         Standard deviation of what is added to each evidence in units of E₀, or
         to a length in units of the nominal one; 0 or more.
@@ -139,20 +138,14 @@ class Observer:
         "noise",
     )
 
-    def __init__(
-        self, array: Display, mapping: Mapping, geometry: Geometry, *, noise: float = 0.0
-    ) -> None:
+    def __init__(self, array: Display, style: BrailleStyle, *, noise: float = 0.0) -> None:
         if array.columns < 2:
             raise ValueError("the array has 1 column; it must have 2 or more")
-        if mapping.rows > array.rows:
-            raise ValueError(
-                f"mapping {mapping.name} needs {mapping.rows} actuator rows; "
-                f"the array has {array.rows}"
-            )
+        mapping, own = style.mapping, style.rows_on(array)
         if not 0 <= noise < math.inf:
             raise ValueError(f"noise is {noise:g}; it must be a number, 0 or more")
         self.array = array
-        self.geometry = geometry
+        self.geometry = style.geometry
         self.noise = noise
         self._half_mm = array.span_mm / 2
         self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
@@ -170,7 +163,7 @@ class Observer:
         signs = 1 - 2 * mapping.idle()
         weights = np.zeros((array.rows, len(kinds)))
         for channel, kind in enumerate(kinds):
-            weights[list(kind), channel] = signs[list(kind)] / len(kind)
+            weights[own][list(kind), channel] = signs[list(kind)] / len(kind)
         differences = np.diff(np.eye(array.columns), axis=1) / array.column_pitch_mm
         self._pairs = _per_frame(weights, differences)
         self._swings = _per_frame(weights, np.eye(array.columns))
