@@ -325,7 +325,7 @@ def test_it_needs_a_hand_that_reads_lines(hand, tmp_path):
         path = tmp_path / "hand.csv"
         path.write_text("0,0\n0.1,1\n")
         hand = f"recorded:{path}"
-    with pytest.raises(InputError, match="--fast needs a hand that reads lines"):
+    with pytest.raises(InputError, match="‹fast› needs a hand that reads lines"):
         batch(hand=hand)
 
 

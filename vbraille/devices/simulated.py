@@ -13,6 +13,7 @@ from vbraille.devices.hand import parse_hand
 from vbraille.devices.recorded import Recorded
 from vbraille.errors import InputError
 from vbraille.pose import Pose
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -154,7 +155,9 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
         If the address says anything else, or no device is wanted.
     """
     if wanted is None:
-        raise InputError("a simulated device is made for a model; say which, with --model")
+        raise InputError(
+            f"a simulated device is made for a model; say which, with {setting('model')}"
+        )
     if not address:
         return SimulatedDevice(wanted)
     given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))

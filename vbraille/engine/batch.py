@@ -23,6 +23,7 @@ from vbraille.engine.ring import Flag, tick_dtype
 from vbraille.engine.tally import Tally
 from vbraille.engine.velocity import DIFFERENCE, GAP_NS, MEAN
 from vbraille.errors import InputError
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,7 +82,9 @@ class BatchEngine:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
-            raise InputError("--fast needs a hand that reads lines: slow, fluent or sweep:SPEED")
+            raise InputError(
+                f"{setting('fast')} needs a hand that reads lines: slow, fluent or sweep:SPEED"
+            )
         self.newest: np.void | None = None
         self.tally = Tally()
         self.counts: dict[str, int] = {}
