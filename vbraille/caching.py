@@ -29,6 +29,7 @@ def keep_compiled() -> bool:
     else:
         usual = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache") / "numba"]
     if any(map(_is_writable, usual)):
+        _log.info("what is compiled is kept in %s", next(filter(_is_writable, usual)))
         return True
     folder = _private_folder()
     if folder is None:

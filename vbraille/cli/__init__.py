@@ -112,6 +112,10 @@ def _call(argv: Sequence[str] | None) -> int:
         arguments = parse(argv)
     except SystemExit:  # --help and --version have been printed
         return 0
+    if arguments.log is not None:
+        from vbraille.logs import keep
+
+        keep(arguments.log)
     with EAR.at_once():
         command = import_module(f"vbraille.cli.{arguments.command}")
     return command.run(arguments)

@@ -7,6 +7,7 @@ opened `vbraille.devices.Device`. Packages of other builders join the same way.
 
 from __future__ import annotations
 
+import logging
 from contextlib import contextmanager, suppress
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 GROUP = "vbraille.devices"
 # By how much a device's pitch may differ from the page's.
 PITCH_TOLERANCE = 0.01
+
+_log = logging.getLogger(__name__)
 
 
 def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Device:
@@ -59,6 +62,7 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
             except InputError:
                 device.close()
                 raise
+        _log.info("opened %s: %s", spec, device.display)
         return device
 
 
