@@ -1,9 +1,12 @@
 import doctest
+import re
+from pathlib import Path
 
 import pytest
 
+import vbraille
 from vbraille import wording
-from vbraille.wording import printable
+from vbraille.wording import printable, setting, spelled
 
 
 def test_the_examples():
@@ -23,3 +26,24 @@ def test_control_characters_are_named(code, name):
 def test_every_other_character_stays():
     text = "".join(map(chr, (*range(0x20, 0x7F), *range(0xA0, 0x3000))))
     assert printable(text) == text
+
+
+ROOMS = ("devices", "engine", "render", "reading", "sessions")
+SOURCES = Path(vbraille.__file__).parent
+
+
+def test_a_setting_is_spelled_as_an_option_by_the_command_line_alone():
+    message = f"choose another {setting('model')}, or {setting('rate')} 40 or less"
+    assert message == "choose another ‹model›, or ‹rate› 40 or less"
+    assert spelled(message) == "choose another --model, or --rate 40 or less"
+    assert spelled("a name of ‹two words›") == "a name of ‹two words›"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_nothing_below_the_command_line_names_an_option(room):
+    files = sorted((SOURCES / room).rglob("*.py"))
+    assert files
+    option = re.compile(r"""["'][^"']*--[a-z]""")
+    for path in files:
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            assert not option.search(line), f"{path}, line {number}"

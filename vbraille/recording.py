@@ -18,6 +18,7 @@ import numpy as np
 
 from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -269,7 +270,9 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
 
 def _refuse_existing(path: Path) -> None:
     if os.path.lexists(path):
-        raise InputError(f"{path} is there already; choose another name, or replace it by --force")
+        raise InputError(
+            f"{path} is there already; choose another name, or replace it by {setting('force')}"
+        )
 
 
 class NewFile(h5py.File):

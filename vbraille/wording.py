@@ -22,6 +22,26 @@ def printable(text: str) -> str:
     return text.translate(_CONTROLS)
 
 
+def setting(name: str) -> str:
+    """A setting of the program in a message, by its name alone; `spelled` says how it is given.
+
+    What is below the command line does not know how anybody gives it: there, a message names it
+    so, and stays readable to whoever calls without a command line.
+    """
+    return f"\u2039{name}\u203a"
+
+
+def spelled(message: str) -> str:
+    """A message in which the settings are named as a command line has them.
+
+    >>> spelled(f"choose another {setting('model')}")
+    'choose another --model'
+    """
+    import re  # takes longer to load than all else that a command line needs to begin
+
+    return re.sub("\u2039([a-z]+)\u203a", r"--\1", message)
+
+
 def count(number: int, noun: str) -> str:
     """A number with its noun.
 

@@ -254,3 +254,19 @@ def test_a_terminal_that_goes_away_ends_it(text):
         terminal.until("h says the keys")
         terminal.hang_up()
         assert terminal.process.wait(program.PATIENCE_S) == 1
+
+
+def test_a_log_has_the_lines_of_both_processes_and_nothing_else_does(tmp_path):
+    (tmp_path / "text").write_text("ab")
+    log = tmp_path / "log"
+    ran = program.run("read", tmp_path / "text", "--hand", "sweep:300", "--log", log)
+    assert ran.returncode == 0
+    assert ran.stdout.startswith("line: 1\ncells: ")
+    assert "vbraille." not in ran.stdout + ran.stderr
+    lines = log.read_text().splitlines()
+    said = "\n".join(lines)
+    assert "vbraille.engine.host: started process" in said
+    assert "has ended: exit code 0" in said
+    assert "vbraille.devices.registry: opened sim" in said
+    assert "ready: " in said
+    assert len({line.split()[2] for line in lines}) == 2

@@ -128,7 +128,7 @@ def test_a_line_too_slow_for_the_frames():
     with pytest.raises(
         InputError,
         match=r"115200 baud carry 137 frames a second .* 1000 are asked for; "
-        r"choose --rate 137 or less, or set the device and \?baud= to 921600",
+        r"choose ‹rate› 137 or less, or set the device and \?baud= to 921600",
     ):
         made.open("?baud=115200")
     made.open("?baud=115200", rate_hz=137.0).close()
@@ -139,7 +139,7 @@ def test_a_line_too_slow_for_the_frames():
 
 def test_frames_that_are_too_far_apart_for_the_watchdog_are_refused():
     made = Bench()
-    with pytest.raises(InputError, match="30 a second are asked for; choose --rate 40 or more"):
+    with pytest.raises(InputError, match="30 a second are asked for; choose ‹rate› 40 or more"):
         made.open(rate_hz=30.0)
     made.open(rate_hz=40.0).close()
 

@@ -65,7 +65,7 @@ OTHER = (
     [
         ("column_pitch_mm=1.213", {}, "columns of test are 1.213 mm apart .* page is for 1.2 mm"),
         ("row_pitch_mm=1.78", {}, "rows of test are 1.78 mm apart .* page is for 1.8 mm"),
-        ("rate_hz=500", {}, "made for 500 frames a second and 1000 are .* --rate 500 or less"),
+        ("rate_hz=500", {}, "made for 500 frames a second and 1000 are .* ‹rate› 500 or less"),
         ("column_pitch_mm=1.211", {}, None),
         ("column_pitch_mm=9", {"columns": 1}, None),
         ("row_pitch_mm=9", {"rows": 1}, None),

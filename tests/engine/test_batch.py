@@ -15,8 +15,8 @@ from vbraille.engine.local import LocalEngine
 from vbraille.engine.record import Flag, tick_dtype
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
-from vbraille.simulation.hand import parse_hand
 from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import ReadLine, Steering
 
 # Some of its rows are idle at 1.
@@ -332,7 +332,7 @@ def test_it_needs_a_hand_that_reads_lines(hand, tmp_path):
         path = tmp_path / "hand.csv"
         path.write_text("0,0\n0.1,1\n")
         hand = f"recorded:{path}"
-    with pytest.raises(InputError, match="--fast needs a hand that reads lines"):
+    with pytest.raises(InputError, match="‹fast› needs a hand that reads lines"):
         batch(hand=hand)
 
 

@@ -14,7 +14,7 @@ from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
 from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
 from vbraille.errors import VbrailleError
-from vbraille.wording import printable
+from vbraille.wording import printable, spelled
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def _run(argv: Sequence[str] | None) -> tuple[str, int]:
     except BrokenPipeError:  # whoever read our output has enough, and needs no sentence
         return "", EXIT_CODE
     except VbrailleError as error:
-        return str(error), error.exit_code
+        return spelled(str(error)), error.exit_code
     except OSError as error:
         return error.strerror or str(error), 1
     except Exception as error:
@@ -112,6 +112,10 @@ def _call(argv: Sequence[str] | None) -> int:
         arguments = parse(argv)
     except SystemExit:  # --help and --version have been printed
         return 0
+    if arguments.log is not None:
+        from vbraille.logs import keep
+
+        keep(arguments.log)
     with EAR.at_once():
         command = import_module(f"vbraille.cli.{arguments.command}")
     return command.run(arguments)

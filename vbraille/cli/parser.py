@@ -186,6 +186,17 @@ def _add(
         )
         command.add_argument("-h", "--help", action="help", help="Print this help.")
         add_options(command)
+        if add_options.__name__ != "<lambda>":  # one whose actions have options of their own
+            _add_log(command)
+
+
+def _add_log(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--log",
+        metavar="FILE",
+        help="Keep a log for developers in a file, which is appended to, or on standard error "
+        "with - (default: no log).",
+    )
 
 
 def _keys() -> str:

@@ -19,7 +19,7 @@ from vbraille.sessions.record.folder import FORMAT, check_free, create, load, ve
 from vbraille.sessions.record.participants import alike, participants_in
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import Script, Typed, parse_answers
-from vbraille.wording import printable
+from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -200,7 +200,8 @@ def _check(arguments: argparse.Namespace) -> int:
     good = True
     for finding in check_folder(Path(arguments.folder), arguments.expect):
         good &= finding.good
-        _say(finding.text if finding.good else f"fault: {finding.text}")
+        text = spelled(finding.text)
+        _say(text if finding.good else f"fault: {text}")
     return 0 if good else 1
 
 

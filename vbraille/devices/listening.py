@@ -6,6 +6,7 @@ no clock and no thread. `transitions` is the table that it goes by.
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from vbraille.devices.wire import Event as Heard
     from vbraille.display import Display
 
+_log = logging.getLogger(__name__)
 _NS_PER_MS: Final = 1_000_000
 _SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
 _LOST_NS: Final = LOST_MS * _NS_PER_MS
@@ -182,6 +184,7 @@ class Listening:
         if stage is None:
             return False
         if stage is not self.stage:
+            _log.debug("%s to %s: %s", self.stage.name, stage.name, cause.value)
             self.stage = stage
             self.taking = stage not in RESTING
         return True

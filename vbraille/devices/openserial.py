@@ -16,6 +16,7 @@ from vbraille.devices.serialport import LOOK_S, SerialPort
 from vbraille.devices.transitions import Stage
 from vbraille.devices.wire import Levels, line_bytes
 from vbraille.errors import DeviceError, InputError
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -158,7 +159,7 @@ def _check_rate(info: Info, rate_hz: float) -> None:
     if rate_hz < LOWEST_RATE_HZ:
         raise InputError(
             f"{info.name} goes to rest when frames are further apart than {STALL_MS} ms, and "
-            f"{rate_hz:g} a second are asked for; choose --rate {LOWEST_RATE_HZ} or more"
+            f"{rate_hz:g} a second are asked for; choose {setting('rate')} {LOWEST_RATE_HZ} or more"
         )
 
 
@@ -182,5 +183,5 @@ def _check_baud(address: Address, info: Info, rate_hz: float) -> None:
     faster = f", or set the device and ?baud= to {enough}" if enough else ""
     raise InputError(
         f"{baud} baud carry {baud // frame_bits} frames a second of {info.name}, and "
-        f"{rate_hz:g} are asked for; choose --rate {baud // frame_bits} or less{faster}"
+        f"{rate_hz:g} are asked for; choose {setting('rate')} {baud // frame_bits} or less{faster}"
     )

@@ -7,6 +7,7 @@ opened `vbraille.devices.Device`. Packages of other builders join the same way.
 
 from __future__ import annotations
 
+import logging
 from contextlib import contextmanager, suppress
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from vbraille.devices.base import Device
 from vbraille.devices.blame import naming
 from vbraille.devices.interface import misfits
 from vbraille.errors import DeviceError, InputError
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 GROUP = "vbraille.devices"
 # By how much a device's pitch may differ from the page's.
 PITCH_TOLERANCE = 0.01
+
+_log = logging.getLogger(__name__)
 
 
 def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Device:
@@ -58,6 +62,7 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
             except InputError:
                 device.close()
                 raise
+        _log.info("opened %s: %s", spec, device.display)
         return device
 
 
@@ -107,7 +112,8 @@ def check_actuators(info: Display, wanted: Display) -> None:
     if (info.rows, info.columns) != (wanted.rows, wanted.columns):
         raise InputError(
             f"{info.name} has {info.rows} × {info.columns} actuators and the page is for "
-            f"{wanted.rows} × {wanted.columns}; choose another --model or --device"
+            f"{wanted.rows} × {wanted.columns}; choose another {setting('model')} or "
+            f"{setting('device')}"
         )
     for what, lines, pitch_mm, wanted_mm in (
         ("columns", info.columns, info.column_pitch_mm, wanted.column_pitch_mm),
@@ -117,7 +123,7 @@ def check_actuators(info: Display, wanted: Display) -> None:
         if lines > 1 and abs(pitch_mm - wanted_mm) > PITCH_TOLERANCE * wanted_mm:
             raise InputError(
                 f"the {what} of {info.name} are {pitch_mm:g} mm apart and the page is for "
-                f"{wanted_mm:g} mm; choose another --model or --device"
+                f"{wanted_mm:g} mm; choose another {setting('model')} or {setting('device')}"
             )
 
 
@@ -126,5 +132,5 @@ def _check_rate(info: Display, rate_hz: float) -> None:
     if info.rate_hz < rate_hz:
         raise InputError(
             f"{info.name} is made for {info.rate_hz:g} frames a second and {rate_hz:g} "
-            f"are asked for; choose --rate {info.rate_hz:g} or less"
+            f"are asked for; choose {setting('rate')} {info.rate_hz:g} or less"
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import termios
 import threading
@@ -27,6 +28,7 @@ LOOK_S: Final = 0.1
 DRAIN_MS: Final = 50
 _JOIN_S = 1.0
 _NICENESS = 10
+_log = logging.getLogger(__name__)
 
 
 class SerialPort:
@@ -77,6 +79,7 @@ class SerialPort:
             if line is None:
                 return b""
             self._lost_before += self._line.lost
+            _log.info("%s is back", self.address.url)
             self._line = line
             self._finder = None
             self.gone = False
@@ -129,6 +132,7 @@ class SerialPort:
     def _lose(self) -> None:
         self.gone = True
         self.losses += 1
+        _log.info("%s is gone, and looked for", self.address.url)
         self._finder = _Finder(self._line, self._find, self._look_s)
         self._finder.start()
 

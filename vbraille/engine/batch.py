@@ -20,6 +20,7 @@ from vbraille.engine.tally import Tally
 from vbraille.errors import InputError
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +73,9 @@ class BatchEngine:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
-            raise InputError("--fast needs a hand that reads lines: slow, fluent or sweep:SPEED")
+            raise InputError(
+                f"{setting('fast')} needs a hand that reads lines: slow, fluent or sweep:SPEED"
+            )
         if device.steering is None:
             raise ValueError("nothing steers the hand; a poll would not know when it is done")
         self.newest: np.void | None = None

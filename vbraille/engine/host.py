@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import select
 import subprocess
@@ -18,6 +19,7 @@ from vbraille.engine.engine import place_of
 from vbraille.engine.ring import RingReader
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
+from vbraille.logs import kept
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 _END_S = 5.0
 # How long to wait for an answer before looking whether there is a process that could give it.
 _LOOK_S = 0.1
+_log = logging.getLogger(__name__)
 
 
 class HostDiedError(VbrailleError):
@@ -155,12 +158,14 @@ class Host:
             stdout=subprocess.PIPE,
             pass_fds=(self._descriptor, *self._pass_fds),
         )
+        _log.info("started process %d to drive %s", self._process.pid, self._device)
         os.set_blocking(self._answers(), False)
         self._tell(
             device=self._device,
             wanted=asdict(self._wanted),
             fits=self._room is not None,
             parent=os.getpid(),
+            log=kept(),
         )
         if self._room is not None:
             self._share()
@@ -273,7 +278,8 @@ class Host:
         if process.stdin is not None:
             with suppress(BrokenPipeError):
                 process.stdin.close()  # one that waits to be told more ends, too
-        self._reap()
+        code = self._reap()
+        _log.info("process %d has ended: exit code %d", process.pid, code)
         while self._hear():
             pass
         if process.stdout is not None:

@@ -13,10 +13,12 @@ from __future__ import annotations
 import ctypes
 import fcntl
 import json
+import logging
 import os
 import select
 import signal
 import sys
+import time
 from contextlib import suppress
 from dataclasses import asdict, replace
 from io import FileIO
@@ -32,6 +34,7 @@ from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.realtime import go_real_time
 from vbraille.errors import DeviceError, VbrailleError
+from vbraille.logs import keep
 from vbraille.render.program import nothing
 from vbraille.simulation.simulated import SimulatedDevice
 
@@ -59,6 +62,7 @@ _MOST_SAID = 300
 _MOST_OF_SEVERAL = 60
 _WHOLE_BYTES = 4096
 _PR_SET_PDEATHSIG = 1
+_log = logging.getLogger("vbraille.engine.hosted")  # it runs as __main__
 
 
 class Channel:
@@ -221,9 +225,14 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         If the device cannot be opened, or fails.
     """
     config = json.loads(orders.readline())
+    if config["log"] is not None:
+        keep(config["log"])
     wanted = Display(**config["wanted"])
     end_after(config["parent"])
+    begun_ns = time.monotonic_ns()
     warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 0, _WARM_TICKS))
+    compiled_ms = (time.monotonic_ns() - begun_ns) / 1e6
+    _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
     with opened_device(config["device"], wanted, fits=config["fits"]) as device:
         channel.say(opened=asdict(device.display))
         told = wait_for_line(orders, device, wanted.rate_hz)
@@ -238,6 +247,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         hosted = Hosted(loop, mailbox, config["parent"])
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, event=refused and to_json(refused))
+        _log.info("ready: %s", "in real time" if refused is None else refused)
         channel.never_wait()
         notices = Notices()
         try:
@@ -246,6 +256,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
                 hosted.run()
                 pass_on(device, notices, channel, loop.clock.now_ns())
         finally:
+            _log.info("ending after %d ticks", loop.tally.ticks)
             ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()

@@ -8,6 +8,7 @@ import numpy as np
 
 from vbraille.engine.advance import HOME_MM
 from vbraille.engine.record import Flag
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -166,6 +167,6 @@ class Waiting:
                 self.hopeless = (
                     f"line {self._number} cannot be read to its end: the finger turns back at "
                     f"{last[-1]:.0f} mm each time, and the line ends at {self._end_mm:.0f} mm; see "
-                    f"what is in the carriage's way, or give a shorter --travel"
+                    f"what is in the carriage's way, or give a shorter {setting('travel')}"
                 )
         self._farthest_mm = float(np.fmax.reduce(x_mm[home[-1] :]))

@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from vbraille.errors import InputError
+from vbraille.wording import setting
 
 _CHUNK = 65_536
 
@@ -38,12 +39,13 @@ class Link:
             self.path.symlink_to(target)
         except FileExistsError:
             raise InputError(
-                f"{self.path} is there already; remove it, or choose another name for --link"
+                f"{self.path} is there already; remove it, or choose another name for "
+                f"{setting('link')}"
             ) from None
         except OSError as error:
             raise InputError(
                 f"no link can be made at {self.path}: {error.strerror}; "
-                f"choose another place for --link"
+                f"choose another place for {setting('link')}"
             ) from None
         self._target = target
 

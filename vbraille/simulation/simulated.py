@@ -16,6 +16,7 @@ from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -245,7 +246,9 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
         If the address says anything else, or no device is wanted.
     """
     if wanted is None:
-        raise InputError("a simulated device is made for a model; say which, with --model")
+        raise InputError(
+            f"a simulated device is made for a model; say which, with {setting('model')}"
+        )
     if not address:
         return SimulatedDevice(wanted)
     given = dict(parse_qsl(address.removeprefix("?"), keep_blank_values=True))

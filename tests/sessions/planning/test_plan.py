@@ -52,7 +52,7 @@ class TestOrders:
         assert make_plan(LEGIBILITY, "P07", 1, 4).order == 2
 
     def test_a_participant_without_a_number(self):
-        says = r"^the order .* and anna has none; give --order N, or a participant such as P07$"
+        says = r"^the order .* and anna has none; give ‹order› N, or a participant such as P07$"
         with pytest.raises(InputError, match=says):
             make_plan(LEGIBILITY, "anna", 1)
         assert make_plan(LETTERS_PROTOCOL, "anna", 1).order == 0
@@ -60,7 +60,7 @@ class TestOrders:
     def test_orders_that_cannot_be(self):
         with pytest.raises(InputError, match=r"^order is 0; it must be 1 or more$"):
             make_plan(LEGIBILITY, "P07", 1, 0)
-        with pytest.raises(InputError, match=r"^letters has no balanced orders; leave --order"):
+        with pytest.raises(InputError, match=r"^letters has no balanced orders; leave ‹order›"):
             make_plan(LETTERS_PROTOCOL, "P07", 1, 1)
 
     def test_listed_and_shuffled_blocks(self):

@@ -154,7 +154,7 @@ def test_of_a_damaged_trace_no_trial_that_it_cuts_has_a_duration(tmp_path, rng):
 
 def test_a_table_is_never_written_over_and_leaves_nothing_half(tmp_path):
     write_new(tmp_path / "t.csv", b"one")
-    with pytest.raises(InputError, match=r"t\.csv is there already; give another name with --out"):
+    with pytest.raises(InputError, match=r"t\.csv is there already; give another name with ‹out›"):
         write_new(tmp_path / "t.csv", b"two")
     assert [path.name for path in tmp_path.iterdir()] == ["t.csv"]
     assert (tmp_path / "t.csv").read_bytes() == b"one"

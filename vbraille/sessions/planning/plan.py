@@ -17,6 +17,7 @@ from vbraille.sessions.planning.design import Combinations, StringList
 from vbraille.sessions.planning.practice import Item, content
 from vbraille.sessions.planning.rules import check_plan, is_balanced
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -191,14 +192,16 @@ def _choose_order(protocol: Protocol, participant: str, order: int | None) -> in
     """Number of the balanced order, from 1; 0 if there is nothing to balance."""
     if not is_balanced(protocol):
         if order is not None:
-            raise InputError(f"{protocol.name} has no balanced orders; leave --order out")
+            raise InputError(
+                f"{protocol.name} has no balanced orders; leave {setting('order')} out"
+            )
         return 0
     if order is None:
         numbers = re.findall("[0-9]+", participant)
         if not numbers:
             raise InputError(
                 f"the order of the conditions goes by the participant's number, and {participant} "
-                f"has none; give --order N, or a participant such as P07"
+                f"has none; give {setting('order')} N, or a participant such as P07"
             )
         order = int(numbers[-1])
     elif order < 1:

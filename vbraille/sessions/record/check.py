@@ -22,6 +22,7 @@ from vbraille.sessions.record.folder import (
     whole_lines,
 )
 from vbraille.sessions.record.progress import Progress
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -108,7 +109,7 @@ def _check_journal(told: Told) -> Iterator[Finding]:
         whole = f"the {before} events before it are whole"
         after = sum(event["event"] != "lost" for event in told.events[before:])
         if after:
-            whole += f", and {after} after it, which session export --salvage has too"
+            whole += f", and {after} after it, which session export {setting('salvage')} has too"
         yield Finding(f"{journal.NAME}: damaged, {told.damage}; {whole}", good=False)
         for line, previous in zip(told.bad[1:], told.bad, strict=False):
             if line != previous + 1:

@@ -16,6 +16,7 @@ from vbraille.sessions.record.bids import SESSION, files
 from vbraille.sessions.record.export import encode, to_csv, write_new
 from vbraille.sessions.record.folder import missing
 from vbraille.sessions.record.participants import alike, label_of
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,7 +103,7 @@ def _people(folder: Path) -> dict[str, str]:
     except (ValueError, KeyError, AttributeError):
         raise InputError(
             f"{folder / _PEOPLE} cannot be read as a table of participant_id and pseudonym; "
-            f"give another directory with --out"
+            f"give another directory with {setting('out')}"
         ) from None
     labels = [path.name.removeprefix("sub-") for path in folder.glob("sub-*")]
     return {label: label for label in labels} | known
@@ -114,7 +115,7 @@ def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> No
         if other != pseudonym and alike(other, pseudonym):
             raise InputError(
                 f"{folder} has a participant {other}, who could not be told from {pseudonym}; "
-                f"give another directory with --out"
+                f"give another directory with {setting('out')}"
             )
 
 
@@ -129,7 +130,8 @@ def _check_absent(folder: Path, record: Record) -> None:
         if told == number:
             there = path.with_suffix(".tsv")
             raise InputError(
-                f"{record.folder} is there already, as {there}; give another directory with --out"
+                f"{record.folder} is there already, as {there}; give another directory with "
+                f"{setting('out')}"
             )
 
 
@@ -138,7 +140,7 @@ def _next_session(participant: Path) -> str:
     if (participant / "beh").exists():
         raise InputError(
             f"{participant} was written by an older vbraille, without sessions; "
-            f"give another directory with --out"
+            f"give another directory with {setting('out')}"
         )
     names = [path.name for path in participant.glob("ses-*")]
     numbers = [int(name[4:]) for name in names if re.fullmatch("ses-[0-9]{1,9}", name)]

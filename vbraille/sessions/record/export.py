@@ -23,6 +23,7 @@ from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import left_places_mm
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -352,7 +353,7 @@ def write_new(path: Path, content: bytes) -> None:
         If the disk does not take it.
     """
     if not path.name:
-        raise InputError(f"{path} is a directory; give the name of a file with --out")
+        raise InputError(f"{path} is a directory; give the name of a file with {setting('out')}")
     partial = path.with_name(f".{path.name}.partial")
     try:
         try:
@@ -363,7 +364,9 @@ def write_new(path: Path, content: bytes) -> None:
             file.write(content)
         _put(partial, path)
     except FileExistsError:
-        raise InputError(f"{path} is there already; give another name with --out") from None
+        raise InputError(
+            f"{path} is there already; give another name with {setting('out')}"
+        ) from None
     except OSError as error:
         raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
     finally:

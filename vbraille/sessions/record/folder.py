@@ -26,6 +26,7 @@ from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.salvage import salvage
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -81,7 +82,7 @@ def check_free(folder: Path) -> None:
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
     if taken:
-        raise InputError(f"{folder} is there already; give a new directory with --out")
+        raise InputError(f"{folder} is there already; give a new directory with {setting('out')}")
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:

@@ -1,0 +1,99 @@
+"""The log for developers: kept when asked for, by lines, and by programs alone."""
+
+import logging
+import re
+from pathlib import Path
+
+import pytest
+
+import vbraille
+from tests.devices.bench import Bench
+from vbraille import logs
+from vbraille.errors import InputError
+
+LINE = re.compile(r"[-\d]+ [:\d]+\.\d{3} \d+ (DEBUG|INFO) (vbraille[.\w]*): (.*)")
+
+
+@pytest.fixture
+def keep():
+    """Keep a log somewhere, until the test is over."""
+    handlers = []
+
+    def begin(where):
+        handlers.append(logs.keep(str(where)))
+
+    yield begin
+    for handler in handlers:
+        logs.stop(handler)
+
+
+def test_a_conversation_s_transitions_are_lines_of_a_file(keep, tmp_path):
+    keep(tmp_path / "log")
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    device.close()
+    lines = (tmp_path / "log").read_text().splitlines()
+    found = [LINE.fullmatch(line) for line in lines]
+    assert all(found)
+    assert {line[2] for line in found} == {"vbraille.devices.listening"}
+    assert [line[3].partition(":")[0] for line in found] == [
+        "GREETING to ASKED",
+        "ASKED to RAMPING",
+        "RAMPING to AT_REST",
+        "AT_REST to LIVE",
+        "LIVE to RAMPING",
+        "RAMPING to CLOSED",
+    ]
+
+
+def test_a_record_is_one_line_and_is_appended(keep, tmp_path):
+    (tmp_path / "log").write_text("before\n")
+    keep(tmp_path / "log")
+    logging.getLogger("vbraille.some").info("one\ntwo \udc80")
+    before, line = (tmp_path / "log").read_text().splitlines()
+    assert before == "before"
+    assert line.endswith("INFO vbraille.some: one two \\udc80")
+
+
+def test_a_log_goes_to_standard_error(keep, capfd):
+    keep("-")
+    logging.getLogger("vbraille.some").info("something")
+    assert capfd.readouterr().err.endswith("vbraille.some: something\n")
+
+
+def test_it_is_known_where_the_log_is(keep, tmp_path, monkeypatch):
+    assert logs.kept() is None
+    monkeypatch.chdir(tmp_path)
+    keep("log")
+    assert logs.kept() == str(tmp_path / "log")
+
+
+def test_a_log_that_cannot_be_kept(tmp_path):
+    with pytest.raises(InputError, match=r"no log can be kept in .*: Is a directory; choose"):
+        logs.keep(str(tmp_path))
+
+
+def test_a_log_that_cannot_be_written_any_more_stops_nobody(keep):
+    keep("/dev/full")
+    logging.getLogger("vbraille.some").info("lost")
+
+
+def test_without_being_asked_nothing_is_kept_and_nothing_said(capfd):
+    made = Bench()
+    device = made.open()
+    made.settle(device)
+    device.close()
+    assert logs.kept() is None
+    assert capfd.readouterr() == ("", "")
+
+
+def test_only_programs_keep_a_log():
+    folder = Path(vbraille.__file__).parent
+    keepers = {
+        str(path.relative_to(folder))
+        for path in folder.rglob("*.py")
+        if "vbraille.logs import keep\n" in path.read_text()
+        or "addHandler(handler)" in path.read_text()
+    }
+    assert keepers == {"logs.py", "cli/__init__.py", "engine/hosted.py"}

@@ -1,0 +1,97 @@
+"""The log for developers, which a program keeps when it is asked to; modules only write to it.
+
+Each line is written at once and whole, so that several processes may share a file. Nothing is
+written in a tick: what is logged are transitions, devices opened, processes begun and ended.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from vbraille.errors import InputError
+from vbraille.wording import setting
+
+_FORMAT = "%(asctime)s.%(msecs)03d %(process)d %(levelname)s %(name)s: %(message)s"
+_STDERR = "-"
+_STDERR_DESCRIPTOR = 2
+
+
+class LineHandler(logging.Handler):
+    """Writes each record as one line, by one call of the system's.
+
+    Parameters
+    ----------
+    where
+        A file, which is appended to, or "-" for standard error.
+    """
+
+    def __init__(self, where: str) -> None:
+        super().__init__()
+        self.where = where
+        self._descriptor = _STDERR_DESCRIPTOR
+        if where != _STDERR:
+            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
+            self._descriptor = os.open(where, flags, 0o666)
+        self.setFormatter(logging.Formatter(_FORMAT, "%Y-%m-%d %H:%M:%S"))
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line; one that cannot be written is lost, and ends nothing."""
+        line = " ".join(self.format(record).split("\n"))
+        with suppress(OSError):  # a full disk, or a closed output, must not stop who reads
+            os.write(self._descriptor, line.encode(errors="backslashreplace") + b"\n")
+
+    def close(self) -> None:
+        """Let the file go."""
+        super().close()
+        if self.where != _STDERR and self._descriptor != _STDERR_DESCRIPTOR:
+            os.close(self._descriptor)
+            self._descriptor = _STDERR_DESCRIPTOR
+
+
+def keep(where: str) -> LineHandler:
+    """Keep a log of all that vbraille's modules write, from now on.
+
+    Parameters
+    ----------
+    where
+        A file, which is appended to, or "-" for standard error.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    if where != _STDERR:
+        where = str(Path(where).absolute())
+    try:
+        handler = LineHandler(where)
+    except OSError as error:
+        raise InputError(
+            f"no log can be kept in {where}: {error.strerror}; choose another {setting('log')}"
+        ) from None
+    logger = logging.getLogger("vbraille")
+    logger.addHandler(handler)
+    logger.setLevel(logging.DEBUG)
+    logger.propagate = False
+    return handler
+
+
+def kept() -> str | None:
+    """Where the log of this process is kept, for a process that it starts; None if it is not."""
+    for handler in logging.getLogger("vbraille").handlers:
+        if isinstance(handler, LineHandler):
+            return handler.where
+    return None
+
+
+def stop(handler: LineHandler) -> None:
+    """Keep no log there any more."""
+    logger = logging.getLogger("vbraille")
+    logger.removeHandler(handler)
+    handler.close()
+    if not logger.handlers:
+        logger.setLevel(logging.NOTSET)
+        logger.propagate = True
