@@ -170,7 +170,7 @@ class _Reading:
             _say(_PLACES.get(placing, "place: known"))
         line = self._reader.lines
         self._reader.step(ticks)
-        felt = not ticks["flags"][-1] & Flag.HELD
+        felt = not int(ticks["flags"][-1]) & Flag.HELD
         done = felt and self._reader.steered_till(ticks[-1]) and not self._keyboard.attached
         if done and self._reader.lines == line and not self._reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.

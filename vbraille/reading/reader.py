@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 STEP = 0.1
 # Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
 FILTER_HZ = 200.0
+# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+_PAUSED, _HELD = int(Flag.PAUSED), int(Flag.HELD)
 
 
 class Echo(StrEnum):
@@ -126,12 +128,12 @@ class Reader:
         """Look where the hand was in these ticks, all since the last call."""
         if self._line is None:
             return
-        ticks = ticks[(ticks["line"] == self._line.number) & (ticks["flags"] & Flag.PAUSED == 0)]
+        ticks = ticks[(ticks["line"] == self._line.number) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             self._waiting.rest()
             return
         # What the device did not take was not felt.
-        felt_mm = ticks["x_mm"][ticks["flags"] & Flag.HELD == 0]
+        felt_mm = ticks["x_mm"][ticks["flags"] & _HELD == 0]
         if self._end.find(felt_mm) is not None and self._advance and not self._finished:
             self.go_on()
         else:

@@ -25,7 +25,8 @@ TURNS = 3
 SAME_MM = 1.0
 LEAST_WAY_MM = 20.0  # less is a hand that waits at the left
 _NS_PER_S = 1_000_000_000
-_PLACING = int(Flag.MARK | Flag.STOP)
+# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+_PLACING, _HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
 
 
 class Waiting:
@@ -99,7 +100,7 @@ class Waiting:
 
     def _watch_device(self, ticks: NDArray[np.void]) -> Iterator[str]:
         """Whether the device takes what it is sent."""
-        if not ticks["flags"][-1] & Flag.HELD:
+        if not ticks["flags"][-1] & _HELD:
             if "refused" in self._said:
                 self._said.remove("refused")
                 yield f"device: takes frames again; line {self._number} is felt from here on"

@@ -38,6 +38,9 @@ _PLACES = {
 # While the device is so, nothing that is shown is felt; and when it has just come to rest.
 _AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
 _UNFELT = _AWAY | int(Flag.RESTED)
+# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+_PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
+_WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
 # A trial is marked by the first time; who hears of it need not hear of it more often.
 _TOLD_S = 1.0
 # A device that was at rest since the hand stood still is asked to take frames again first.
@@ -313,7 +316,7 @@ class OnDevice:
         others were lost. That the array rests because the hand stands still is as it is
         always read, and so are the moments that a device then takes to wake.
         """
-        shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & Flag.PAUSED == 0)
+        shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & _PAUSED == 0)
         ticks, lost = ticks[shown], lost[shown]
         if not ticks.size:
             return []
@@ -336,21 +339,19 @@ class OnDevice:
     def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
         """Which ticks are of a device that takes no frames yet, since the hand stood still."""
         flags, times_ns = ticks["flags"], ticks["time_ns"]
-        held = flags & (Flag.HELD | Flag.RESTED | Flag.SILENT) == Flag.HELD
+        held = flags & _WHY_HELD == _HELD
         wakes = np.zeros(ticks.size, np.bool_)
         for n in np.flatnonzero(held):
-            begins = (
-                self._still if n == 0 else bool(flags[n - 1] & Flag.RESTING) and not held[n - 1]
-            )
+            begins = self._still if n == 0 else bool(flags[n - 1] & _RESTING) and not held[n - 1]
             if begins:
                 self._waking_ns = int(times_ns[n])
             wakes[n] = times_ns[n] - self._waking_ns < _WAKING_S * 1e9
-        self._still = bool(flags[-1] & Flag.RESTING) and not held[-1]
+        self._still = bool(flags[-1] & _RESTING) and not held[-1]
         return wakes
 
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
         """What the hand did with the stimulus in these ticks."""
-        ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & Flag.PAUSED == 0)]
+        ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             return []
         happened = []
