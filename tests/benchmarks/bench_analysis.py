@@ -16,7 +16,7 @@ from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED
 from tests.sessions.sittings import Session
 from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 from vbraille.sessions.planning.protocol import builtin_text
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.folder import versions

@@ -19,7 +19,6 @@ import numpy as np
 from tests.benchmarks import round_trip
 from tests.benchmarks.timing import Result, vbraille
 from tests.shown import rendered
-from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
 from vbraille.engine.realtime import PRIORITY
 from vbraille.render import STRESS2
@@ -43,7 +42,8 @@ while True:
     list(Layout(Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb")), 26).lines())
 """
 
-INFO = device_info(STRESS2, STRESS2.style.geometry, 1000.0)
+INFO = STRESS2.on(STRESS2.style.geometry)
+ROOM = STRESS2.style.room(INFO, 26)
 
 
 def run() -> Iterator[Result]:
@@ -79,7 +79,7 @@ def beside(script: str) -> Iterator[None]:
 
 def lateness_us(busy_parent: bool) -> NDArray[np.float64]:
     """Lateness of the ticks of a host, for one block; float64[n]."""
-    with Host("sim:?hand=sweep:60", INFO, 26) as host:
+    with Host("sim:?hand=sweep:60", INFO, ROOM) as host:
         host.show(line(), 1)
         time.sleep(0.2)
         host.poll()
@@ -164,7 +164,7 @@ def _round_trip() -> Result:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as device:
             assert device.stdout is not None
             device.stdout.readline()
-            with Host(f"serial:{link}", round_trip.INFO, 1) as host:
+            with Host(f"serial:{link}", round_trip.INFO, round_trip.dot().nbytes) as host:
                 host.show(round_trip.dot(), 1)
                 _, median, high = map(float, device.stdout.readline().split())
     return Result(
@@ -198,7 +198,7 @@ print(over)
 def _long_run() -> Iterator[Result]:
     work = []
     control = subprocess.Popen([sys.executable, "-c", _CONTROL], stdout=subprocess.PIPE, text=True)
-    with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, 26) as host:
+    with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, ROOM) as host:
         host.show(line(), 1)
         begun_s = time.monotonic()
         settled = None

@@ -15,10 +15,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.benchmarks.bench_engine import INFO, line, simulator
+from tests.benchmarks.bench_engine import INFO, ROOM, line, simulator
 from tests.benchmarks.timing import Result
 from vbraille.engine.host import Host
-from vbraille.engine.ring import Flag
+from vbraille.engine.record import Flag
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -94,7 +94,7 @@ def run() -> Iterator[Result]:
 @contextmanager
 def reading(spec: str) -> Iterator[Host]:
     """A host with actuators off their rest."""
-    with Host(spec, INFO, 26) as host:
+    with Host(spec, INFO, ROOM) as host:
         host.show(line(), 1)
         _until(host, lambda ticks: bool(ticks["frame"][-1].any()) and ticks["tick"][-1] > 300)
         yield host

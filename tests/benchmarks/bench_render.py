@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,18 +10,23 @@ import numpy as np
 from tests.benchmarks.timing import Result, ratio
 from tests.conftest import SEED, TEXTS
 from tests.shown import rendered
+from vbraille.engine.kernels import POSE_X, POSE_Y, POSED
+from vbraille.engine.record import columns_of, tick_dtype
+from vbraille.engine.state import State
 from vbraille.page import Layout
 from vbraille.render import STRESS2
 from vbraille.translate import Book, Document, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vbraille.page import Line
+    from vbraille.render.program import Program
 
 LINES, CELLS = 25, 40
 LONG_BOOK = 10_000  # lines
 PATH = 20_000
+TICKS = 50_000
 
 
 def renderer(masks: np.ndarray):
@@ -74,6 +80,15 @@ def run() -> Iterator[Result]:
         share <= 20 and least / PATH <= 0.15e-6,
     )
 
+    share, least = page_against_line(random)
+    yield Result(
+        "a tick with a page of 25 × 40 cells under a hand that goes over all of it, against one "
+        "with a line, STReSS² with a second axis",
+        "≤ 1.2 ×",
+        f"{share:.2f} ×, {least * 1e6:.2f} µs",
+        share <= 1.2,
+    )
+
     book, single = lines_of(LONG_BOOK), lines_of(1)
     assert book.count() > LONG_BOOK
     spread = [book.line(1 + n * LONG_BOOK // LINES) for n in range(LINES)]
@@ -86,6 +101,37 @@ def run() -> Iterator[Result]:
         f"{share:.2f} ×",
         share <= 1.1,
     )
+
+
+def page_against_line(random: np.random.Generator) -> tuple[float, float]:
+    """How much longer a tick takes with a page than with a line, and how long, in seconds."""
+    style = STRESS2.style
+    display = replace(STRESS2.display, height_mm=LINES * style.geometry.line_pitch_mm)
+    masks = random.integers(1, 64, (LINES, CELLS)).astype(np.uint8)
+    end_mm, height_mm = style.geometry.extent_mm(CELLS), display.height_mm
+    # There and back over each line on a slant: all of the page in a block, at a hand's speed.
+    n = np.arange(TICKS)
+    poses = np.zeros((TICKS, 4))
+    poses[:, POSED] = 1.0
+    poses[:, POSE_X] = end_mm * np.abs((n * 2 * LINES / TICKS) % 2 - 1)
+    poses[:, POSE_Y] = height_mm * n / TICKS
+    records = columns_of(np.zeros(TICKS, tick_dtype(display.shape)))
+
+    def ticks_of(program: Program) -> Callable[[], object]:
+        state = State(display, 1000.0, 0)
+        state.want(program, 1)
+        times_ns = np.repeat(n[:, None] * 1_000_000, 2, axis=1)
+
+        def block() -> None:
+            times_ns[:] += TICKS * 1_000_000
+            assert state.advance(times_ns, poses, 0, True, records) == TICKS
+
+        return block
+
+    page, line = (ticks_of(style.render_page(list(masks), display)),
+                  ticks_of(style.render(masks[0], display)))  # fmt: skip
+    share, least = ratio(page, line, pairs=31)
+    return share, least / TICKS
 
 
 def lines_of(count: int) -> Layout:

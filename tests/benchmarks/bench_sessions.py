@@ -64,11 +64,11 @@ import time
 begun_s = time.perf_counter()
 import vbraille.cli.session, vbraille.sessions.running.console, vbraille.sessions.running.course
 import vbraille.sessions.running.showing
-from vbraille.cli.wanted import device_info
 from vbraille.engine.host import Host
 from vbraille.render import VBD
 imported_s = time.perf_counter()
-with Host("sim:?hand=sweep:150", device_info(VBD, VBD.style.geometry, 1000.0), 4) as host:
+display = VBD.on(VBD.style.geometry)
+with Host("sim:?hand=sweep:150", display, VBD.style.room(display, 4)) as host:
     while not host.poll().size:
         time.sleep(0.001)
     print(imported_s - begun_s, time.perf_counter() - imported_s)

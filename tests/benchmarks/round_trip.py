@@ -16,14 +16,13 @@ import numpy as np
 
 from tests.shown import rendered
 from vbraille.cli.simulate import go_real_time
-from vbraille.cli.wanted import device_info
 from vbraille.devices.messages import Encoder
 from vbraille.render import VBD, Tuning
 from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.pty import Link, Port
 
 GEOMETRY = replace(VBD.style.geometry, dot_width_mm=20.0, dot_spacing_mm=25.0, cell_gap_mm=25.0)
-INFO = replace(device_info(VBD, GEOMETRY, 1000.0), levels=65_536)
+INFO = replace(VBD.on(GEOMETRY), levels=65_536)
 LOW_MM, HIGH_MM, STEP_MM = 2.0, 8.0, 0.04
 _MARGIN = 25  # steps near the turns, where one level stands for two places of late
 _MOST_TICKS = 20
@@ -47,7 +46,7 @@ def main(link: str, seconds: float) -> None:
     steps = round((HIGH_MM - LOW_MM) / STEP_MM)
     forth = LOW_MM + STEP_MM * np.arange(steps)
     places_mm = np.concatenate((forth, forth[::-1]))  # of each tick, again and again
-    frames = dot().path(places_mm)
+    frames = dot().with_anchor(0.0).path(places_mm)  # of the left column
     levels = np.rint(frames[:, 0, 0].astype(float) * (INFO.levels - 1)).astype(int).tolist()
     clear = [_MARGIN < n % steps < steps - _MARGIN for n in range(2 * steps)]
     controller = Controller(describe(INFO, Encoder.ABSOLUTE))

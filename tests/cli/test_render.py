@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from tests.cli import program
-from tests.shown import rendered
+from tests.shown import from_left, twin
 from vbraille import __version__
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
 from vbraille.recording import anchor_mm, poses_of
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
-from vbraille.render.reference import deflections
 from vbraille.translate import Book, Document, Table
 from vbraille.wording import count
 
@@ -42,13 +41,13 @@ def from_the_file_alone(file):
     cells, length = file["page/cells"][:], file["page/length"][:]
     x_mm, line = file["x_mm"][:], file["line"][:]
     again = np.empty(file["frames"].shape, np.float32)
-    twin = np.empty(again.shape)
+    plain = np.empty(again.shape)
     for row in range(len(cells)):
         here = line == row
         masks = cells[row, : length[row]]
-        again[here] = rendered(masks, **show).path(x_mm[here])
-        twin[here] = deflections(x_mm[here], masks, **show)
-    return again, twin
+        again[here] = from_left(masks, **show).path(x_mm[here])
+        plain[here] = twin(x_mm[here], masks, **show)
+    return again, plain
 
 
 @pytest.mark.parametrize(

@@ -114,8 +114,10 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
     now = state[0]
     x, theta = pose[POSE_X], pose[POSE_THETA]
     y = pose[POSE_Y] if now["free_y"] != 0 else 0.0  # a slider's is the picture's own
-    furthest = max(abs(x), abs(y), REACH_MM * abs(theta))
-    if not furthest < _NOWHERE_MM:  # a NaN, too
+    # Each by itself: a NaN is not below anything, but the greatest of several may hide it.
+    if not (abs(x) < _NOWHERE_MM and abs(y) < _NOWHERE_MM):
+        return False
+    if not REACH_MM * abs(theta) < _NOWHERE_MM:
         return False
     if now["placed"] == 0:
         now["placed"] = 1
@@ -172,7 +174,8 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
         output[:] = 0.0
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
-    if now["shown"] != 0 and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
+    is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
+    if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]
     wanted = _wanted(state, now_ns, taking, numbers)
     same = now["shown"] != 0 and now["shown"] == wanted

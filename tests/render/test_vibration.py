@@ -1,0 +1,83 @@
+"""A picture that moves by itself: Lévesque 2009, eqs. 8.1 and 8.2."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY
+from vbraille.render import STRESS2
+from vbraille.render.program import nothing, vibration
+from vbraille.render.work import Kind
+
+
+def frames_of(program, times_s, **where):
+    frames = np.full((len(times_s), *program.shape), np.nan)
+    for frame, time_s in zip(frames, times_s, strict=True):
+        program.frame(0.0, frame, time_s=time_s, **where)
+    return frames
+
+
+@pytest.mark.parametrize("display", [VBD_ARRAY, STRESS2_ARRAY, LATERO], ids=lambda d: d.name)
+@pytest.mark.parametrize(("frequency_hz", "amplitude"), [(50.0, 1.0), (7.3, 0.4), (0.5, 1.0)])
+def test_neighbours_swing_against_each_other(display, frequency_hz, amplitude):
+    program = vibration(display, frequency_hz, amplitude)
+    times_s = np.arange(500) / 1000
+    row, column = np.indices(display.shape)
+    sign = np.where((row + column) % 2, -1.0, 1.0)
+    wave = np.sin(2 * np.pi * frequency_hz * times_s)
+    want = amplitude * (1 + sign * wave[:, None, None]) / 2
+    got = frames_of(program, times_s)
+    np.testing.assert_allclose(got, want, rtol=0, atol=1e-12)
+    assert got.min() >= 0
+    assert got.max() <= amplitude
+    assert np.ptp(got) > 0.99 * amplitude
+
+
+def test_it_is_the_same_wherever_the_array_is():
+    program = vibration(STRESS2_ARRAY)
+    frame = frames_of(program, [0.0123])[0]
+    for x_mm, theta_rad, part in ((50.0, 0.0, 0), (-1e5, 1.0, 3), (math.nan, 0.0, -1)):
+        out = np.zeros(program.shape)
+        program.frame(x_mm, out, theta_rad=theta_rad, part=part, time_s=0.0123)
+        np.testing.assert_array_equal(out, frame)
+    assert program.part_of(7.0) == 0
+
+
+def test_no_actuator_is_faster_than_frequency_and_amplitude():
+    program = vibration(STRESS2_ARRAY, 50.0, 0.8)
+    steps = np.abs(np.diff(frames_of(program, np.arange(2000) / 1000), axis=0))
+    most = 0.8 / 2 * 2 * math.pi * 50.0 / 1000
+    assert 0.9 * most < steps.max() <= most
+
+
+def test_what_moves_and_what_does_not():
+    program = vibration(STRESS2_ARRAY)
+    line = STRESS2.style.render(np.full(3, 63, np.uint8), STRESS2_ARRAY)
+    assert (program.kind, program.moves) == (Kind.VIBRATION, True)
+    assert not line.moves
+    assert not nothing(STRESS2_ARRAY).moves
+    still = frames_of(line, [0.0, 0.3, 7.0])
+    np.testing.assert_array_equal(still[1:], still[:-1])
+    with pytest.raises(ValueError, match="a vibration has no frames along a line"):
+        program.path(np.arange(3.0))
+    with pytest.raises(ValueError, match=r"^the frame has not the shape of the array$"):
+        program.frame(0.0, np.zeros((6, 9)))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "says"),
+    [
+        ((0.0,), "the frequency is 0 Hz"),
+        ((50.1,), "the frequency is 50.1 Hz; it must be above 0 to 50 Hz"),
+        ((math.nan,), "the frequency is nan Hz"),
+        ((10.0, 0.0), "the amplitude is 0; it must be above 0 to 1"),
+        ((10.0, 1.1), "the amplitude is 1.1"),
+        ((10.0, math.nan), "the amplitude is nan"),
+        ((10.0, 1.0, 0.0), "the exposure is 0 s; it must be above 0"),
+        ((10.0, 1.0, math.nan), "the exposure is nan s"),
+    ],
+)
+def test_bounds(numbers, says):
+    with pytest.raises(ValueError, match=says):
+        vibration(STRESS2_ARRAY, *numbers)
