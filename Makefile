@@ -65,11 +65,13 @@ sound:
 
 .venv/runs: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e .
+	$(BIN)/python -m vbraille.engine.compiling
 	@touch $@
 
 # All at once on a fresh machine: that is half a minute less than one after the other.
 .venv/tests: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e '.[test]'
+	$(BIN)/python -m vbraille.engine.compiling
 	@touch .venv/runs $@
 
 clean:

@@ -1,21 +1,21 @@
 """Compile all that a reading calls, so that the first one does not wait for it.
 
-python -m vbraille.engine.compiling
+    python -m vbraille.engine.compiling
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from vbraille.engine import shared
+from vbraille.engine import kernels, shared
 from vbraille.engine.hosted import warm_up
+from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS
-from vbraille.sessions.record.replay import Replay
-from vbraille.sessions.record.traces import TRACE
+from vbraille.render.program import scratch_for
 
 
 def main() -> None:
-    """Compile the tick, the frames of `render`, and those of a replay."""
+    """Compile the ticks, the frames of `vbraille render`, and those of a replay."""
     for model in MODELS.values():
         display, style = model.display, model.style
         warm_up(display, shared.Extent(display.rows, display.columns, 0, 2))
@@ -23,7 +23,22 @@ def main() -> None:
         line.path(np.zeros(1))
         line.poses(np.zeros(1), np.zeros(1))
         line.frame(0.0, np.zeros(display.shape))
-        Replay(lambda _, line=line: line, display).frames(np.zeros(1, TRACE))
+        ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
+        frames = np.zeros((4, 1, *display.shape))
+        scratch = scratch_for(display.columns)
+        output, held, target = frames[1:, 0]
+        kernels.replay(
+            line.numbers,
+            line.table,
+            scratch,
+            ints,
+            floats,
+            np.zeros(6),
+            output,
+            held,
+            target,
+            frames[0],
+        )
 
 
 if __name__ == "__main__":
