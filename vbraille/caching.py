@@ -7,10 +7,12 @@ even that cannot be had, kernels are compiled anew by every process.
 
 from __future__ import annotations
 
+import importlib
 import logging
 import os
 import shutil
 import stat
+import sys
 import tempfile
 from functools import cache
 from hashlib import sha256
@@ -27,6 +29,7 @@ def keep_compiled() -> bool:
     private folder: there in a folder of this very source. numba looks only at the file of a
     function, and would keep what has one of another file compiled into it that has changed.
     """
+    _leave_scipy_out()
     if given := os.environ.get("NUMBA_CACHE_DIR"):
         places = [Path(given)]
     else:
@@ -45,6 +48,21 @@ def keep_compiled() -> bool:
         if other != folder:
             shutil.rmtree(other, ignore_errors=True)
     return True
+
+
+def _leave_scipy_out() -> None:
+    """Have numba not import scipy.linalg, which takes as long as loading all that is compiled here.
+
+    It looks for scipy's linear algebra once, when it loads its arithmetic of arrays, and does
+    without it where there is none; no kernel of ours needs it. Others may import scipy later.
+    """
+    if "scipy.linalg" in sys.modules:
+        return
+    sys.modules["scipy.linalg"] = None  # pyright: ignore[reportArgumentType]
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        del sys.modules["scipy.linalg"]
 
 
 def _source() -> str:

@@ -40,7 +40,7 @@ ROOT = Path(__file__).parents[2]
 ARCHIVE = Path(__file__).with_name("loop-of-2026-11-21.zip")
 # By whom each is opened: one module for each interface that a host had.
 BASELINE = "tests.benchmarks.tick_baseline"
-TODAY = "tests.benchmarks.tick_baseline"
+TODAY = "tests.benchmarks.tick_today"
 _SPIN = "while True: pass"
 
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from tests.benchmarks.tick_baseline import INFO, RATE_HZ, page
 from vbraille.devices.messages import Encoder
-from vbraille.simulation.firmware import Controller, describe
-from vbraille.simulation.pty import Link, Port
+from vbraille.devices.firmware import Controller, describe
+from vbraille.devices.pty import Link, Port
 
 LOW_MM, HIGH_MM, STEP_MM = 2.0, 8.0, 0.04
 _PRIORITY = 41  # the host has 40; a real controller has a processor of its own
