@@ -118,21 +118,21 @@ class Recorder:
         self,
         t_s: NDArray[np.float64],
         x_mm: NDArray[np.float64],
-        line: int,
+        line: NDArray[np.int64] | int,
         frames: NDArray[np.float32],
         *,
         y_mm: NDArray[np.float64] | float = 0.0,
         theta_rad: NDArray[np.float64] | float = 0.0,
         part: NDArray[np.int64] | int = 0,
     ) -> None:
-        """Append the frames of a stretch of one line.
+        """Append the frames of a stretch of one line, or of a page of lines.
 
         Parameters
         ----------
         t_s, x_mm : float64[n]
             When, and where the array's centre was.
-        line
-            Row of ``page/cells``.
+        line : int64[n] or int
+            Row of ``page/cells`` that was under the array.
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
         y_mm, theta_rad : float64[n]

@@ -67,6 +67,12 @@ def render(parser: ArgumentParser) -> None:
     _hand(parser)
     parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
     parser.add_argument(
+        "--height",
+        type=number,
+        metavar="MM",
+        help="Let the carriage go so far down the page, too: the hand reads pages of lines.",
+    )
+    parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
     parser.add_argument(

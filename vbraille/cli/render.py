@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -23,6 +25,8 @@ from vbraille.errors import InputError
 from vbraille.reading.reader import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
+from vbraille.simulation.motion import SLACK
+from vbraille.simulation.paging import Area
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.wording import count, duration
@@ -39,6 +43,7 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
 
 _BLOCK_FRAMES = 16_384
+_MOST_HEIGHT_MM = 10_000.0
 # So many frames tell how well the rest can be compressed, and take less than half a second.
 _ESTIMATED_FROM = 100_000
 _LONG_FRAMES = 1_000_000
@@ -52,6 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
     model = build_lengths(arguments, model)
+    pages = _lines_per_page(arguments.height, model.style.geometry.line_pitch_mm)
     page = lay_out(arguments, build_book(arguments), model)
     style, display = model.style, model.display
     note_unseen_dots(page)
@@ -73,19 +79,30 @@ def run(arguments: argparse.Namespace) -> int:
             source=page.document.name,
             sha256=page.document.sha256(),
         )
-        for line, xs in _walk(page, hand, rate_hz):
-            estimate.before(page.share_before(line), frames, recorder)
-            row = recorder.add_line(line.masks)
-            program = style.render(line.masks, display)
-            for start in range(0, xs.size, _BLOCK_FRAMES):
-                x_mm = xs[start : start + _BLOCK_FRAMES]
+        for stretch in _walk(page, hand, rate_hz, pages):
+            last = stretch.lines[-1]
+            estimate.before(page.share_before(stretch.lines[0]), frames, recorder)
+            row = min([recorder.add_line(line.masks) for line in stretch.lines])
+            masks = [line.masks for line in stretch.lines]
+            program = (
+                style.render_page(masks, display) if pages else style.render(masks[0], display)
+            )
+            for start in range(0, stretch.x_mm.size, _BLOCK_FRAMES):
+                x_mm = stretch.x_mm[start : start + _BLOCK_FRAMES]
                 t_s = (frames + np.arange(x_mm.size)) / rate_hz
-                recorder.add_frames(t_s, x_mm, row, program.path(x_mm))
+                if stretch.y_mm is None:
+                    made = program.path(x_mm)
+                    recorder.add_frames(t_s, x_mm, row, made, y_mm=program.own_y_mm)
+                else:
+                    y_mm = stretch.y_mm[start : start + _BLOCK_FRAMES]
+                    part, made = program.poses(x_mm, y_mm)
+                    at = row + np.clip(part, 0, len(masks) - 1)
+                    recorder.add_frames(t_s, x_mm, at, made, y_mm=y_mm, part=part)
                 frames += x_mm.size
                 EAR.heed()
-            lines += 1
-            too_fast = too_fast or too_fast_note(_fastest(xs, rate_hz), style)
-            progress.at(page.progress(line))
+            lines += len(masks)
+            too_fast = too_fast or too_fast_note(_fastest(stretch.x_mm, rate_hz), style)
+            progress.at(page.progress(last))
     if too_fast is not None:
         print(too_fast, file=sys.stderr)
     page.say_note()
@@ -97,10 +114,66 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _walk(
-    page: Page, hand: Hand | Recorded, rate_hz: float
-) -> Iterator[tuple[Line, NDArray[np.float64]]]:
-    """Lines, each with the places of the array's centre while it is under the hand."""
+class _Stretch(NamedTuple):
+    """Lines that are shown at once, and where the array's centre goes meanwhile.
+
+    Parameters
+    ----------
+    lines
+        One, or those of a page.
+    x_mm : float64[n]
+        Along them.
+    y_mm : float64[n] or None
+        Down the page; None of a carriage that goes along its line only.
+    """
+
+    lines: list[Line]
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+
+
+def _lines_per_page(height_mm: float | None, pitch_mm: float) -> int:
+    """How many lines a carriage of so high a workspace comes to the middle of; 0 for one axis."""
+    if height_mm is None:
+        return 0
+    if not pitch_mm / 2 <= height_mm <= _MOST_HEIGHT_MM:
+        raise InputError(
+            f"--height is {height_mm:g} mm; it must be {pitch_mm / 2:g}, half a line pitch, to "
+            f"{_MOST_HEIGHT_MM:g} mm"
+        )
+    return math.floor(height_mm / pitch_mm + 0.5)
+
+
+def _walk(page: Page, hand: Hand | Recorded, rate_hz: float, pages: int) -> Iterator[_Stretch]:
+    """What is shown one after the other, with the way of the hand: lines, or pages of so many."""
+    if pages:
+        return _walk_pages(page, hand, rate_hz, pages)
+    return _walk_lines(page, hand, rate_hz)
+
+
+def _walk_pages(
+    page: Page, hand: Hand | Recorded, rate_hz: float, pages: int
+) -> Iterator[_Stretch]:
+    span_mm, geometry = page.model.display.span_mm, page.model.style.geometry
+    found = page.lines()
+    while lines := list(islice(found, pages)):
+        end_mm = max(geometry.extent_mm(len(line)) for line in lines)
+        if isinstance(hand, Recorded):
+            motion = hand.motion()
+        else:
+            area = Area(len(lines), geometry.line_pitch_mm, -span_mm, end_mm)
+            motion = hand.read_page(area)
+        at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
+        x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2
+        y_mm = np.zeros(at_s.size)
+        if motion.y_mm is not None:
+            y_mm = np.interp(at_s, motion.t_s, motion.y_mm)
+        yield _Stretch(lines, x_mm, y_mm)
+        if isinstance(hand, Recorded):
+            return  # it has recorded no more
+
+
+def _walk_lines(page: Page, hand: Hand | Recorded, rate_hz: float) -> Iterator[_Stretch]:
     span_mm = page.model.display.span_mm
     middle_mm = span_mm / 2  # hands move the left column
     recorded = hand.motion().sample(rate_hz) + middle_mm if isinstance(hand, Recorded) else None
@@ -108,13 +181,13 @@ def _walk(
         end_mm = page.model.style.geometry.extent_mm(len(line))
         if recorded is None:
             assert not isinstance(hand, Recorded)
-            yield line, hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm
+            yield _Stretch([line], hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm)
             continue
         if not recorded.size:
             return
         done = EndOfLine(span_mm, end_mm).find(recorded)
         stop = recorded.size if done is None else done + 1
-        yield line, recorded[:stop]
+        yield _Stretch([line], recorded[:stop])
         recorded = recorded[stop:]
 
 

@@ -1,6 +1,6 @@
 """Compile all that a reading calls, so that the first one does not wait for it.
 
-    python -m vbraille.engine.compiling
+This module is a program: ``python -m vbraille.engine.compiling`` does it.
 """
 
 from __future__ import annotations

@@ -52,45 +52,59 @@ def _changed(orders, known):
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def _receive(told, received, now, talk, work):
+    """Read what has come and take its STATEs; how many there were, and why it is not all well."""
+    size = libc.read(told[DESCRIPTOR], received, told[HELD])
+    if size in (_EAGAIN, _EINTR):
+        return 0, DONE
+    if size <= 0:
+        return 0, GONE
+    told[HELD] += size
+    consumed, states = steady.take(received, told[HELD], now, talk, work)
+    if consumed == steady.SOMETHING_ELSE:
+        return 0, UNSTEADY
+    told[HELD] -= consumed
+    for at in range(told[HELD]):
+        received[at] = received[consumed + at]
+    return states, DONE
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _wait(told, received, talk, work):
     """Wait for a tick to begin; when it woke, how many STATEs came, and why there is none.
 
-    With a guard, a STATE that comes about the deadline has the tick begin; one that came before
-    is taken and waits for it. A read between the two gives whatever has come.
+    With a guard, a STATE that comes about the deadline has the tick begin; one that comes before
+    is taken, and waits for it. Without one, the tick begins at its deadline.
     """
-    descriptor, deadline = told[DESCRIPTOR], told[DEADLINE]
-    last = deadline + told[GUARD]
-    now = libc.clock_ns(libc.CLOCK_MONOTONIC)
-    if now < deadline - told[GUARD]:
-        if libc.sleep_until_ns(deadline - told[GUARD]) == _EINTR:
+    earliest, last = told[DEADLINE] - told[GUARD], told[DEADLINE] + told[GUARD]
+    states = 0
+    if told[GUARD] == 0:
+        if libc.sleep_until_ns(earliest) == _EINTR:
             return 0, 0, ORDERS
         now = libc.clock_ns(libc.CLOCK_MONOTONIC)
-    fresh = told[GUARD] == 0
-    states = 0
+        states, why = _receive(told, received, now, talk, work)
+        return now, states, why
     while True:
-        size = libc.read(descriptor, received, told[HELD])
-        if size == 0 or (size < 0 and size != _EAGAIN and size != _EINTR):
-            return now, states, GONE
-        if size > 0:
-            told[HELD] += size
-            consumed, more = steady.take(received, told[HELD], now, talk, work)
-            if consumed == steady.SOMETHING_ELSE:
-                return now, states, UNSTEADY
-            states += more
-            for at in range(told[HELD] - consumed):
-                received[at] = received[consumed + at]
-            told[HELD] -= consumed
-            if fresh and more > 0:
-                return now, states, DONE
-        fresh = True
+        now = libc.clock_ns(libc.CLOCK_MONOTONIC)
         if now >= last:
             return now, states, DONE
-        happened = libc.poll(descriptor, libc.POLLIN, last - now)
+        happened = libc.poll(told[DESCRIPTOR], libc.POLLIN, last - now)
         if happened == _EINTR:
             return 0, states, ORDERS
+        if happened == 0:
+            continue
         now = libc.clock_ns(libc.CLOCK_MONOTONIC)
-        if happened & (libc.POLLERR | libc.POLLHUP) != 0 and happened & libc.POLLIN == 0:
+        if happened & libc.POLLIN == 0:
             return now, states, GONE
+        more, why = _receive(told, received, now, talk, work)
+        states += more
+        if why != DONE:
+            return now, states, why
+        if states > 0:
+            if now >= earliest:
+                return now, states, DONE
+            if libc.sleep_until_ns(earliest) == _EINTR:
+                return 0, states, ORDERS
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
