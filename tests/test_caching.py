@@ -24,9 +24,10 @@ def sealed(tmp_path):
     shutil.copytree(
         package, tmp_path / "sealed/vbraille", ignore=shutil.ignore_patterns("__pycache__")
     )
-    for folder in [package, *package.rglob("*")]:
-        if folder.is_dir() and folder.name != "__pycache__":
-            (tmp_path / "sealed" / folder.relative_to(package.parent) / "__pycache__").touch()
+    copied = tmp_path / "sealed/vbraille"
+    for folder in [copied, *copied.rglob("*")]:
+        if folder.is_dir():
+            (folder / "__pycache__").touch()
     return tmp_path / "sealed"
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vbraille.devices.serialdevice import SerialDevice
     from vbraille.pose import Pose
 
-SPAN_MM = 10.8
+HOME_MM = -5.4  # of the centre of the array, which is 10.8 mm long, at the left stop
 HALF = np.full((6, 10), 0.5)
 REST = np.zeros((6, 10))
 NO_FRAME = "device: no frame reached it in time, so it went to rest; reading goes on"

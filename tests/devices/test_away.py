@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.devices.bench import AWAY, SPAN_MM, Bench, shown
+from tests.devices.bench import AWAY, HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
 from vbraille.devices.messages import CountSign, Encoder, Error, Frame, Hello, Rest, State, Watchdog
 from vbraille.devices.saying import told
@@ -33,7 +33,7 @@ def test_silence_of_100_ms_brings_rest_and_less_than_500_ms_goes_on():
     made.mute = False
     made.way_mm = 8.0
     # The encoder has kept count, and needs no zero again.
-    assert made.run(device, 50).x_mm == pytest.approx(3.0 - SPAN_MM)
+    assert made.run(device, 50).x_mm == pytest.approx(3.0 + HOME_MM)
     assert made.kinds() == [Frame]
     assert device.rested == 1
     assert told(device.take_events()) == ["device: back"]
@@ -66,7 +66,7 @@ def test_silence_of_500_ms_begins_a_new_conversation():
     assert [note[:14] for note in notes] == ["device: silent", "device: back"]
     assert device.counts()["reconnections"] == 1
     device.set_zero()
-    assert made.run(device, 5).x_mm == pytest.approx(-SPAN_MM)
+    assert made.run(device, 5).x_mm == pytest.approx(HOME_MM)
     device.close()
 
 
@@ -130,7 +130,7 @@ def test_what_is_otherwise_with_a_device_that_came_back_is_said_and_minded(chang
         device.set_zero()
     for way_mm in (0.0, 7.0, 30.0):
         made.way_mm = way_mm
-        assert made.run(device, 3).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 3).x_mm == pytest.approx(way_mm + HOME_MM)
     made.run(device, 300)
     levels = made.controller.levels.tolist()
     assert levels[0] == {"gain": 257, "enabled": 0, "inverted": 511}.get(next(iter(changes)), 512)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.controllers import ControllerOf20261121
-from tests.devices.bench import HALF, NO_FRAME, REST, SPAN_MM, Bench
+from tests.devices.bench import HALF, HOME_MM, NO_FRAME, REST, Bench
 from vbraille.devices.messages import Frame, Rest, State, Watchdog
 from vbraille.devices.saying import told
 from vbraille.devices.wire import Levels, encode
@@ -94,7 +94,7 @@ def test_what_a_stopped_host_has_not_read_is_not_taken_for_the_place(made_as):
         sample = device.read()
         device.write(HALF)
     assert not any(made.controller.levels)
-    assert sample.x_mm == pytest.approx(120.0 - SPAN_MM)
+    assert sample.x_mm == pytest.approx(120.0 + HOME_MM)
     device.close()
 
 

@@ -5,7 +5,7 @@ import re
 import pytest
 from cobs import cobs
 
-from tests.devices.bench import DOWN_BYTES, SPAN_MM, Bench, shown
+from tests.devices.bench import DOWN_BYTES, HOME_MM, Bench, shown
 from tests.engine.test_loop import info
 from vbraille.devices.base import Placing
 from vbraille.devices.messages import Frame, Hello, Rest
@@ -30,7 +30,7 @@ def test_the_handshake():
         assert made.controller.greetings == 2  # the first INFO came behind what was old
         assert device.display == info()
         assert device.placing is Placing.DONE
-        assert made.run(device, 50).x_mm == pytest.approx(5.0 - SPAN_MM)
+        assert made.run(device, 50).x_mm == pytest.approx(5.0 + HOME_MM)
         assert made.controller.frames > 10
         assert made.kinds() == [Hello, Frame]
         assert sum(device.counts().values()) == 1

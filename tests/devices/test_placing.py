@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.devices.bench import SPAN_MM, Bench, shown
+from tests.devices.bench import HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
 from vbraille.devices.messages import CountSign, Encoder
 from vbraille.simulation.firmware import Controller
@@ -33,7 +33,7 @@ def test_places_by_every_encoder(encoder, sign):
     made.settle(device)
     for way_mm in (0.0, 0.005, 150.0, 300.0, 280.0, 60.0, 0.0):
         made.way_mm = way_mm
-        assert made.run(device, 3).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 3).x_mm == pytest.approx(way_mm + HOME_MM)
     assert made.controller.frames > 10
     assert device.rested == 0
     device.close()
@@ -47,7 +47,7 @@ def test_a_count_of_eight_bits_goes_round_and_round():
     device.set_zero()
     for way_mm in np.arange(0.0, 20.0, 0.5):
         made.way_mm = way_mm
-        assert made.run(device, 2).x_mm == pytest.approx(way_mm - SPAN_MM)
+        assert made.run(device, 2).x_mm == pytest.approx(way_mm + HOME_MM)
     device.close()
 
 
@@ -79,7 +79,7 @@ def test_the_newest_of_several_states_wins_and_gaps_are_counted():
     for way_mm in (6.0, 7.0, 8.0):
         made.way_mm = way_mm
         made.pause(0.001)
-    assert device.read().x_mm == pytest.approx(8.0 - SPAN_MM)
+    assert device.read().x_mm == pytest.approx(8.0 + HOME_MM)
     assert device.read() is None
     made.mute = True
     made.pause(0.007)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.devices.bench import AWAY, HALF, SPAN_MM, Bench, shown
+from tests.devices.bench import AWAY, HALF, HOME_MM, Bench, shown
 from tests.engine.test_loop import info
 from vbraille.devices.conformance import CHECKS
 from vbraille.devices.messages import Frame, Hello, Rest
@@ -100,7 +100,7 @@ def test_a_conversation_from_the_handshake_to_the_end(made):
     os.write(made.slave, b"old")  # what another program left on the line
     with made.open() as device:
         assert made.controller.dropped == 1  # the zero ended what was old
-        assert made.run(device, 50).x_mm == pytest.approx(5.0 - SPAN_MM)
+        assert made.run(device, 50).x_mm == pytest.approx(5.0 + HOME_MM)
         assert made.controller.frames > 10
         assert made.kinds() == [Hello, Frame]
     made.pump()
@@ -181,7 +181,7 @@ def test_unplugged_and_plugged_in_a_hundred_times(made):
         made.controller = Controller(shown())
         made.plug()
         made.way_mm = time
-        assert made.back(device).x_mm == pytest.approx(time - SPAN_MM)
+        assert made.back(device).x_mm == pytest.approx(time + HOME_MM)
         assert told(device.take_events()) == ["device: back"]
         assert device.rested == device.counts()["reconnections"] == time
     assert open_descriptors() == before

@@ -293,7 +293,7 @@ def test_a_poll_is_over_when_the_hand_is_done():
         assert blocks[-1].size < 700
         assert engine.newest is not None
         assert engine.newest["tick"] == engine.tally.ticks - 1
-        assert engine.x_mm == pytest.approx(-10.8, abs=1 / 200)
+        assert engine.x_mm == pytest.approx(-5.4, abs=1 / 200)
     assert engine.poll().size == 700  # done since long
 
 

@@ -33,7 +33,7 @@ class Bench:
 
     def run(self, seconds):
         for _ in range(round(seconds * 1000)):
-            self.hosted.tick()
+            self.hosted.run()
         return self.reader.drain()
 
 

@@ -41,8 +41,8 @@ def info(**changes) -> Display:
 class Recording(SimulatedDevice):
     """A simulated device that keeps what it was sent."""
 
-    def __init__(self, clock: ManualClock, hand: Hand | None = None) -> None:
-        super().__init__(info(), clock.now_ns, hand, Steering())
+    def __init__(self, clock: ManualClock, hand: Hand | None = None, **changes) -> None:
+        super().__init__(info(**changes), clock.now_ns, hand, Steering())
         self.sent: list[np.ndarray] = []
         self.silent = False
         self.shift_mm = 0.0
@@ -293,13 +293,16 @@ def test_a_machine_that_stalls_makes_no_hand_faster(clock, device):
 
 @pytest.mark.parametrize("field", ["x_mm", "y_mm", "theta_rad"])
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), float("-inf")])
-def test_a_pose_that_is_no_number_is_a_fault(clock, device, field, value):
+@pytest.mark.parametrize("free", [{}, {"height_mm": 200.0, "turns": True}])
+def test_a_pose_that_is_no_number_is_a_fault(clock, field, value, free):
+    device = Recording(clock, **free)
     device.read = lambda: Pose(0, 1.0)._replace(**{field: value})
     with pytest.raises(DeviceError, match=f"{value}.* cannot be"):
         Loop(device, clock).tick()
 
 
-def test_a_pose_of_two_axes_is_motion_and_is_recorded(clock, device):
+def test_a_pose_of_two_axes_is_motion_and_is_recorded(clock):
+    device = Recording(clock, height_mm=200.0, turns=True)
     memory = memoryview(bytearray(Ring.bytes_needed((6, 10), 9000)))
     ring, reader = Ring(memory, (6, 10), 9000), RingReader(memory, (6, 10), 9000)
     loop = Loop(device, clock, ring=ring)

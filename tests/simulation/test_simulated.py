@@ -91,15 +91,15 @@ def test_nothing_ends_before_anything_was_ordered(device):
 def test_a_hand_that_nothing_steers_reads_as_far_as_the_carriage_goes(clock):
     device = SimulatedDevice(info(), clock.now_ns, Sweep(1000.0))
     clock.advance_ns(1_000_000_000)
-    assert device.read().x_mm == pytest.approx(-SPAN_MM)  # till it is sent the first frame
+    assert device.read().x_mm == pytest.approx(HOME_MM)  # till it is sent the first frame
     device.write(np.zeros((6, 10)))
     places = []
     for _ in range(4000):
         places.append(device.read().x_mm)
         clock.advance_ns(1_000_000)
     places = np.array(places)
-    assert places.max() == pytest.approx(300 - SPAN_MM, abs=1)
-    home = np.flatnonzero(np.diff((places < -SPAN_MM + 1).astype(int)) == -1)
+    assert places.max() == pytest.approx(300 + HOME_MM, abs=1)
+    home = np.flatnonzero(np.diff((places < HOME_MM + 1).astype(int)) == -1)
     np.testing.assert_allclose(np.diff(home), 1500, atol=2)  # 300 mm and back at 250 mm/s
 
 
@@ -112,7 +112,7 @@ def test_a_recorded_hand_sets_out_with_the_first_order_and_goes_on(clock):
         clock.advance_ns(round(seconds * 1e9))
         device.read()
         assert device.steering.done_at(clock.now_ns()) == done
-    assert device.read().x_mm == pytest.approx(20)
+    assert device.read().x_mm == pytest.approx(20 + SPAN_MM / 2)
 
 
 PLANE = info(columns=1, height_mm=60.0, turns=True)  # one column is the array's centre

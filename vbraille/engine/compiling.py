@@ -1,6 +1,6 @@
 """Compile all that a reading calls, so that the first one does not wait for it.
 
-This module is a program: ``python -m vbraille.engine.compiling`` does it.
+python -m vbraille.engine.compiling
 """
 
 from __future__ import annotations

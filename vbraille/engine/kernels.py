@@ -112,13 +112,14 @@ def _change(state, fade_ns, output, held):
 def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose, output, held):
     """Take where the array is; whether it can be there."""
     now = state[0]
-    x, theta = pose[POSE_X], pose[POSE_THETA]
-    y = pose[POSE_Y] if now["free_y"] != 0 else 0.0  # a slider's is the picture's own
+    x, y, theta = pose[POSE_X], pose[POSE_Y], pose[POSE_THETA]
     # Each by itself: a NaN is not below anything, but the greatest of several may hide it.
     if not (abs(x) < _NOWHERE_MM and abs(y) < _NOWHERE_MM):
         return False
     if not REACH_MM * abs(theta) < _NOWHERE_MM:
         return False
+    if now["free_y"] == 0:
+        y = 0.0  # a slider's is the picture's own
     if now["placed"] == 0:
         now["placed"] = 1
         now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta

@@ -217,8 +217,15 @@ class Loop:
         ring.end()
 
     def _nowhere(self) -> DeviceError:
+        x_mm, y_mm, theta_rad = self._poses[0, POSE_X:]
+        axes = self.device.display.axes
+        where = f"{x_mm} mm"
+        if "y" in axes or y_mm:
+            where += f" along x and {y_mm} mm along y"
+        if "θ" in axes or theta_rad:
+            where += f", turned by {theta_rad} rad"
         return DeviceError(
-            f"{self.device.display.name} says that its carriage is at {self._poses[0, POSE_X]} mm, "
+            f"{self.device.display.name} says that its carriage is at {where}, "
             f"where it cannot be; switch it off and on, and if it says so again, look at its "
             f"encoder and at the counts that its INFO tells, with 'vbraille device check'"
         )
