@@ -1,6 +1,6 @@
 """Compile all that a reading calls, so that the first one does not wait for it.
 
-    python -m vbraille.engine.compiling
+python -m vbraille.engine.compiling
 """
 
 from __future__ import annotations
