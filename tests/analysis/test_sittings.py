@@ -80,7 +80,7 @@ def test_a_pattern_has_an_example_to_draw(folder):
     ticks = read_trace(folder / "trace-001.gz").ticks
     ticks = ticks[ticks["line"] == example.trial]
     at = np.searchsorted(ticks["time_ns"], ticks["time_ns"][0] + example.time_s * 1e9 - 0.5)
-    half_mm = sitting.protocol.model.array.span_mm / 2
+    half_mm = sitting.protocol.model.display.span_mm / 2
     assert (ticks["x_mm"][at] - half_mm == example.left_mm).all()
     # A blank cell, c, what was asked for, c; of a dot 2 mm wide.
     geometry = sitting.protocol.geometry

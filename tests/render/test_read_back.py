@@ -5,7 +5,7 @@ import pytest
 
 from tests.render.reader import read_back
 from tests.render.scenes import DOT_PLACES, JIT, cell
-from tests.shown import LATERO, from_left
+from tests.shown import LATERO, rendered
 from vbraille import geometry
 from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
 
@@ -29,11 +29,11 @@ def hand(rng, array, geometry, cells):
 
 
 def told(rng, masks, *, array, profile, mapping, geometry, tuning):
-    renderer = from_left(
+    program = rendered(
         masks, array=array, profile=profile, mapping=mapping, geometry=geometry, tuning=tuning
     )
     x_mm = hand(rng, array, geometry, len(masks))
-    frames = renderer.path(x_mm)
+    frames = program.path(x_mm)
     read = read_back(frames, x_mm, array=array, mapping=mapping, geometry=geometry)
     assert read.size >= len(masks)
     assert not read[len(masks) :].any()

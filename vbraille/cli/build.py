@@ -228,7 +228,8 @@ def build_show(arguments: argparse.Namespace, model: Model) -> Model:
     style = model.style
     if style.mapping.rows == 1:
         if arguments.mapping is not None:
-            raise InputError(f"the {model.title} has one row of actuators; --dot-row chooses dots")
+            rows = "one row" if model.display.rows == 1 else f"{model.display.rows} rows"
+            raise InputError(f"the {model.title} has {rows} of actuators; --dot-row chooses dots")
     elif arguments.dot_row is not None:
         raise InputError(f"the {model.title} shows all dot rows; --mapping chooses how")
     if style.profile is Profile.HALF_SINE and arguments.texture_cycles is not None:

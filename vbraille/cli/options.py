@@ -105,7 +105,7 @@ def plot(parser: ArgumentParser) -> None:
         type=number,
         default=20.0,
         metavar="MM",
-        help="Of a page: put the array's centre at this place, in mm (default: 20).",
+        help="Of a page: put the array's left column at this place, in mm (default: 20).",
     )
     parser.add_argument("--letter", help="Of a mapping: show this letter (default: z).")
     parser.set_defaults(model=None)  # the one that the source drew the figure for

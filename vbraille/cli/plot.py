@@ -83,7 +83,7 @@ def _table(arguments: argparse.Namespace) -> Table:
     lines = list(islice(page.lines(), None if page.last else _LINES))
     page.say_note()
     page.say_unknown()
-    return pictures.page(lines, shown, x_mm=arguments.at)
+    return pictures.page(lines, shown, x_mm=arguments.at + shown.display.span_mm / 2)
 
 
 def _letter(arguments: argparse.Namespace) -> dict:

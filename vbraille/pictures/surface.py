@@ -61,12 +61,7 @@ def page(
     parts = [_dots(line, n * geometry.line_pitch_mm, geometry, six) for n, line in enumerate(lines)]
     line, array = lines[line_index], model.display
     row, column = (grid.ravel() for grid in np.indices(array.shape))
-    frame = deflections(
-        x_mm,
-        line.masks,
-        style,
-        array,
-    )
+    frame = deflections(x_mm, line.masks, style, array)
     top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
     parts.append(
         {
@@ -86,7 +81,7 @@ def page(
         for name in names
     }
     title = (
-        f"{model.title}: line {line.number}, centre at {x_mm:g} mm, "
+        f"{model.title}: line {line.number}, left column at {x_mm - array.span_mm / 2:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return Table("page", title, columns)

@@ -84,7 +84,7 @@ def test_what_a_killed_one_left_is_no_hindrance(tmp_path):
 
 def test_a_directory_that_has_something_is_left_alone(tmp_path):
     (tmp_path / "mine").touch()
-    with pytest.raises(InputError, match="is there already; give a new directory with --out"):
+    with pytest.raises(InputError, match="is there already; give a new directory with ‹out›"):
         write_report(BARE, tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.traces import Trace
 
 _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
+# A plain number: an exception that a signal raises while numpy looks at a flag may get lost.
+_PAUSED = int(Flag.PAUSED)
 NEVER_CAME = "the hand never came to the first dot"
 
 # What each column holds: the table's head, and its description in BIDS.
@@ -306,7 +308,7 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
         return f"{trace} has no tick of it"
     if not edges:
         return "no dot of it is shown"
-    felt = np.flatnonzero(ticks["flags"] & Flag.PAUSED == 0)
+    felt = np.flatnonzero(ticks["flags"] & _PAUSED == 0)
     ticks = ticks[: felt[-1] + 1] if felt.size else ticks  # the answer ended the trial
     span_mm, time_ns = protocol.model.display.span_mm, ticks["time_ns"].copy()
     left_mm = left_places_mm(ticks, span_mm / 2)
