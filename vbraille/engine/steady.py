@@ -178,7 +178,8 @@ def run(
         poses[0, POSE_X] = talk.x_mm
         if why != DONE:
             return why
-        if steady.stalled(talk, now):
+        # Nothing may have come for so long that the device is silent, or the host was stopped.
+        if states == 0 and steady.take(received, told[HELD], now, talk, work)[0] < 0:
             return UNSTEADY
         slot = told[APPENDED] % size
         published[0] = told[APPENDED]
