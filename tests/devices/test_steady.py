@@ -1,8 +1,8 @@
 """The compiled conversation beside the one in Python, over traffic of every kind.
 
-Each read and each frame of a `SerialDevice` is done by the compiled functions, too, from the same
-numbers. Where these answer, the device must have done the same, in every number and every byte;
-where they leave it to Python, they must have changed nothing.
+Each read and each frame of a `Conversation` is done by the compiled functions, too, from the same
+numbers. Where these answer, the conversation must have done the same, in every number and every
+byte; where they leave it to Python, they must have changed nothing.
 """
 
 import math
@@ -17,6 +17,8 @@ from tests.controllers import ControllerOf20261121
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
 from vbraille.devices import steady
+from vbraille.devices.conversation import IDLE_MS, Conversation
+from vbraille.devices.lending import Lending
 from vbraille.devices.messages import (
     FAULTY,
     PLACED,
@@ -24,172 +26,115 @@ from vbraille.devices.messages import (
     SILENCE_MS,
     STALL_MS,
     TRIPPED,
-    Encoder,
     Error,
     State,
     Watchdog,
 )
-from vbraille.devices.serialdevice import IDLE_MS, SerialDevice, _Link
-from vbraille.devices.wire import CRC_BYTES, encode, frame_head, line_bytes
+from vbraille.devices.wire import CRC_BYTES, encode, frame_head
+from vbraille.pose import Pose
 from vbraille.simulation.firmware import Controller
 
 NS_PER_MS = 1_000_000
 
 
-def never_if_none(time_ns):
-    return steady.NEVER if time_ns is None else time_ns
+def lent(conversation):
+    """What a conversation lends, copied, and the part of a message that has come; None if nothing.
 
-
-def is_steady(device):
-    delivery, place = device._delivery, device._place
-    return (
-        device._link is _Link.LIVE
-        and delivery.taking
-        and not (delivery.rest_due or delivery.stuck or delivery._counted)
-        and not device._away
-        and place.known
-        and place._count is not None
-        and device._time._us is not None
-        and device._state_sequence is not None
-        and not device._decoder._skipping
+    The conversation is as it was before.
+    """
+    lending = Lending()
+    begun = lending.lend(conversation)
+    if begun is None:
+        return None
+    part = lending.received[:begun].tobytes()
+    conversation.decoder.feed(part)
+    actuators = lending.actuators
+    lending.actuators = actuators._replace(
+        last=actuators.last.copy(), wanted=actuators.wanted.copy()
     )
+    return lending, part
 
 
-def numbers_of(device):
-    """Record of what a device's conversation has come to."""
-    talk = np.zeros(1, steady.CONVERSATION).view(np.recarray)[0]
-    place, clock, drive = device._place, device._time, device._drive
-    talk.heard_ns = device._heard_ns
-    talk.state_sequence, talk.missed = device._state_sequence, device._missed
-    talk.count, talk.count_bits, talk.zero = place._count, place._bits, place._zero
-    talk.home_mm, talk.mm_per_count = place._home_mm, place._mm_per_count
-    talk.must_be_placed = place._encoder is Encoder.INDEX
-    talk.device_us, talk.offset_ns = clock._us, clock._offset_ns
-    talk.device_ns = clock._last_ns
-    talk.x_mm = place._home_mm + place._mm_per_count * (place._count - place._zero)
-    talk.sequence = device._sequence
-    talk.sent_ns = never_if_none(device._sent_ns)
-    talk.acknowledged_ns = never_if_none(device.acknowledged_ns)
-    talk.owed_ns = never_if_none(device._delivery._sent_ns)
-    talk.felt_ns, talk.idle_ns = device._felt_ns, IDLE_MS * NS_PER_MS
-    talk.moved_ns = drive._last_ns
-    talk.slew_per_ns = drive._slew_per_ns if drive._limited else math.inf
-    talk.period_ns = drive._period_ns
-    talk.top_level, talk.bits = drive._top_level, drive._bits
-    return talk
+def numbers_of(lending):
+    """All numbers of a conversation but the last place, which is there once a STATE was taken."""
+    return {name: lending.talk[name][0] for name in steady.CONVERSATION.names if name != "x_mm"}
 
 
-def actuators_of(device):
-    drive = device._drive
-    body = np.zeros(len(frame_head(0)) + drive._packed.size + CRC_BYTES, np.uint8)
-    body[: len(frame_head(0))] = np.frombuffer(frame_head(0), np.uint8)
-    return steady.Actuators(
-        drive._last.copy(),
-        np.zeros_like(drive._wanted),
-        drive._swing,
-        drive._rest_level,
-        body,
-        body[len(frame_head(0)) : -CRC_BYTES],
-    )
+def record_of(lending):
+    """The same numbers, as compiled code takes and changes them."""
+    return lending.talk.view(np.recarray)[0]
 
 
-class Beside(SerialDevice):
-    """A device whose every read and frame is done by the compiled functions, too."""
+class Beside(Conversation):
+    """A conversation whose every read and frame is done by the compiled functions, too."""
 
-    def __init__(self, port, greeted, now_ns, pause, rate_hz=None):
+    def __init__(self, now_ns, rate_hz=None):
         self.steady_reads = self.other_reads = self.steady_frames = self.other_frames = 0
-        self._line = port
-        self._clock_ns = now_ns
-        self._work = np.zeros(steady.WORK_BYTES, np.uint8)
-        super().__init__(port, greeted, now_ns, pause, rate_hz)
+        self._before = self._made = None
+        super().__init__(now_ns, rate_hz)
 
-    def read(self):
-        begun = numbers_of(self) if is_steady(self) else None
-        held = bytes(self._decoder._held)
-        times, chunks = self._listen()
-        sample = super().read()
-        self._listen_no_more()
-        if begun is None:
-            return sample
-        received = np.frombuffer(held + b"".join(chunks), np.uint8).copy()
-        talk = begun.copy()
-        consumed, states = steady.take(received, received.size, times[0], talk, self._work)
+    def mind_stall(self, now_ns):
+        self._before = lent(self)
+        return super().mind_stall(now_ns)
+
+    def hear(self, chunk, now_ns):
+        pose = super().hear(chunk, now_ns)
+        if self._before is None:
+            return pose
+        (lending, part), self._before = self._before, None
+        begun, talk = numbers_of(lending), record_of(lending)
+        received = np.frombuffer(part + chunk, np.uint8).copy()
+        consumed, states = steady.take(received, received.size, now_ns, talk, lending.work)
         if consumed == steady.SOMETHING_ELSE:
             self.other_reads += 1
-            assert talk == begun
-            return sample
+            assert numbers_of(lending) == begun
+            return pose
         self.steady_reads += 1
-        assert is_steady(self)
-        assert talk == numbers_of(self)
-        assert received[consumed:].tobytes() == bytes(self._decoder._held)
-        assert (sample is None) == (states == 0)
-        assert sample is None or sample == (talk.device_ns, talk.x_mm)
-        return sample
+        assert self.is_as(lending) == received[consumed:].tobytes()
+        assert (pose is None) == (states == 0)
+        assert pose is None or pose == Pose(talk.device_ns, talk.x_mm)
+        return pose
 
-    def _send(self, frame):
-        steadily = is_steady(self)
-        begun, actuators = (numbers_of(self), actuators_of(self)) if steadily else (None, None)
-        written = []
-        times, _ = self._listen(written)
-        super()._send(frame)
-        self._listen_no_more()
-        if begun is None:
+    def show(self, frame, now_ns):
+        before = lent(self)
+        super().show(frame, now_ns)
+        if before is None:
             return
-        talk = begun.copy()
-        out = np.zeros(line_bytes(actuators.body.size), np.uint8)
-        size = steady.make(frame, times[0], talk, actuators, out)
+        lending, _ = before
+        begun, talk = numbers_of(lending), record_of(lending)
+        size = steady.make(frame, now_ns, talk, lending.actuators, lending.out)
         if size == steady.SOMETHING_ELSE:
             self.other_frames += 1
-            assert talk == begun
+            assert numbers_of(lending) == begun
             return
         self.steady_frames += 1
-        assert written == [out[:size].tobytes()]
-        steady.sent(times[0], talk, actuators)
-        assert is_steady(self)
-        assert talk == numbers_of(self)
-        np.testing.assert_array_equal(actuators.last, self._drive._last)
+        assert self.due() == lending.out[:size].tobytes()
+        steady.sent(now_ns, talk, lending.actuators)
+        self._made = lending
 
-    def _listen(self, written=None):
-        """Keep what the clock and the line say during the next call."""
-        times, chunks = [], []
+    def sent(self):
+        super().sent()
+        if self._made is not None:
+            self.is_as(self._made)
+            np.testing.assert_array_equal(self._made.actuators.last, self.drive.last)
+            self._made = None
 
-        def now_ns():
-            times.append(self._clock_ns())
-            return times[-1]
-
-        self._now_ns = now_ns
-        self._port = Tapped(self._line, chunks, [] if written is None else written)
-        return times, chunks
-
-    def _listen_no_more(self):
-        self._now_ns, self._port = self._clock_ns, self._line
-
-
-class Tapped:
-    """A line that keeps what goes over it."""
-
-    def __init__(self, line, read, written):
-        self._line, self._read, self._written = line, read, written
-
-    def __getattr__(self, name):
-        return getattr(self._line, name)
-
-    def read(self):
-        self._read.append(self._line.read())
-        return self._read[-1]
-
-    def write(self, frame):
-        self._written.append(frame)
-        return self._line.write(frame)
+    def is_as(self, lending):
+        """Assert that it is what the compiled functions came to; the part of a message."""
+        python, left = lent(self)
+        assert numbers_of(python) == numbers_of(lending)
+        lending.give_back(self)
+        assert numbers_of(lent(self)[0]) == numbers_of(lending)
+        return left
 
 
 def test_undisturbed_nothing_is_left_to_python_once_frames_are_taken():
-    wired = Wired(random.Random(1), Troubles(), device=Beside, swing=0.5)
+    wired = Wired(random.Random(1), Troubles(), conversation=Beside, swing=0.5)
     wired.run(0.1)
-    device = wired.device
-    before = device.other_reads, device.other_frames, device.steady_reads, device.steady_frames
+    talk = wired.device.conversation
+    before = talk.other_reads, talk.other_frames, talk.steady_reads, talk.steady_frames
     wired.run(0.5)
-    after = device.other_reads, device.other_frames, device.steady_reads, device.steady_frames
+    after = talk.other_reads, talk.other_frames, talk.steady_reads, talk.steady_frames
     assert after[:2] == before[:2]
     assert after[2] - before[2] >= 499
     assert after[3] - before[3] >= 499
@@ -199,9 +144,9 @@ def test_undisturbed_nothing_is_left_to_python_once_frames_are_taken():
 @pytest.mark.parametrize("kind", ["host", "line"])
 @pytest.mark.parametrize("seed", range(8))
 def test_beside_python_over_traffic_with_troubles(seed, kind, controller):
-    device = reading(seed, kind, controller, Beside).device
-    assert device.steady_reads > 20
-    assert device.steady_frames > 20
+    talk = reading(seed, kind, controller, Beside).device.conversation
+    assert talk.steady_reads > 20
+    assert talk.steady_frames > 20
 
 
 def conversation(**changes):
@@ -235,6 +180,7 @@ def taken(received, talk, now_ns=1_001_000_000):
         state(flags=PLACED | RESTING),
         state(flags=PLACED | FAULTY),
         state(flags=PLACED | TRIPPED),
+        state(buttons=1),
         encode(Watchdog(0, 0)),
         encode(Error(200, "warm")),
         b"\x05garbage\0",
@@ -251,6 +197,11 @@ def test_what_is_no_good_state_leaves_all_of_it_to_python(received):
 def test_an_encoder_that_has_lost_its_mark_is_left_to_python():
     assert taken(state(flags=0), conversation()) == (len(state()), 1)
     assert taken(state(flags=0), conversation(must_be_placed=1)) == (steady.SOMETHING_ELSE, 0)
+
+
+def test_a_button_that_is_held_is_steady_and_one_that_is_let_go_is_not():
+    assert taken(state(buttons=4), conversation(buttons=4)) == (len(state()), 1)
+    assert taken(state(buttons=0), conversation(buttons=4)) == (steady.SOMETHING_ELSE, 0)
 
 
 def test_the_newest_of_some_states_is_the_sample():
