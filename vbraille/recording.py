@@ -191,8 +191,8 @@ def poses_of(file: h5py.File) -> Poses:
 def anchor_mm(file: h5py.File) -> float:
     """How far right of the left column the point of the array is whose ``x_mm`` a recording has.
 
-    A `vbraille.render.renderer.Renderer` with this anchor makes of ``x_mm`` as it stands in the
-    file the same frames, bit for bit.
+    A `vbraille.render.program.Program` of the line, by its `with_anchor` with this, makes of
+    ``x_mm`` as it stands in the file the same frames, bit for bit.
 
     Raises
     ------

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.cli import program
-from tests.shown import from_left, twin
+from tests.shown import rendered, twin
 from vbraille import __version__
 from vbraille.geometry import PRESETS, Geometry
 from vbraille.page import Layout
@@ -45,7 +45,7 @@ def from_the_file_alone(file):
     for row in range(len(cells)):
         here = line == row
         masks = cells[row, : length[row]]
-        again[here] = from_left(masks, **show).path(x_mm[here])
+        again[here] = rendered(masks, **show).path(x_mm[here])
         plain[here] = twin(x_mm[here], masks, **show)
     return again, plain
 
@@ -115,9 +115,9 @@ def test_the_file_holds_all_that_was_rendered(
                 end_mm = geometry.extent_mm(length[row]) + array.span_mm / 2
                 assert end_mm - 1000 / rate < there.max() < end_mm + 1e-9
         assert frames.max() > 0.5
-        again, twin = from_the_file_alone(file)
+        again, plain = from_the_file_alone(file)
     np.testing.assert_array_equal(frames, again)
-    np.testing.assert_allclose(frames, twin, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(frames, plain, rtol=0, atol=1e-6)
     lines, seconds = count(len(masks), "line"), f"{t_s.size / rate:.1f} s"
     assert said.out == f"rendered: {lines}, {t_s.size} frames, {seconds} of reading\n"
 

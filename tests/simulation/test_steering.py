@@ -114,3 +114,8 @@ def test_the_descriptor_goes_with_whoever_made_the_memory():
 def test_what_is_no_memory_for_it_is_refused(descriptor):
     with pytest.raises(InputError, match=f"nothing can steer a hand by steering={descriptor};"):
         open_device(f"sim:?hand=sweep:60&steering={descriptor}", info())
+
+
+def test_a_device_that_there_is_not_is_named_as_it_was_asked_for():
+    with pytest.raises(InputError, match=r"^there is no device sim:\?speed=3; give sim:\?hand="):
+        open_device("sim:?speed=3&steering=5", info())

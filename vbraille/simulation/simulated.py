@@ -256,7 +256,8 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     hand = given.pop("hand", None)
     descriptor = given.pop("steering", None)
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
-        raise InputError(f"there is no device sim:{address}; give sim:?hand=HAND&seed=N, or sim")
+        said = address.partition("&steering=")[0]  # a program adds it, and no person
+        raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")
     steering = None if descriptor is None else _steering(descriptor)
     return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)), steering=steering)
 
