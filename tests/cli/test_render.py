@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.cli import program
+from tests.render.reader import read_back
 from tests.shown import rendered, twin
 from vbraille import __version__
 from vbraille.geometry import PRESETS, Geometry
@@ -92,7 +93,9 @@ def test_the_file_holds_all_that_was_rendered(
         poses = poses_of(file)
         np.testing.assert_array_equal(poses.t_s, t_s)
         np.testing.assert_array_equal(poses.x_mm, x_mm)
-        assert not np.any((poses.y_mm, poses.theta_rad))
+        pitch_mm = json.loads(file.attrs["geometry"])["line_pitch_mm"]
+        assert set(poses.y_mm) == {pitch_mm / 2}
+        assert not poses.theta_rad.any()
         np.testing.assert_allclose(t_s, np.arange(t_s.size) / rate, rtol=0, atol=1e-9)
 
         cells, length = file["page/cells"][:], file["page/length"][:]
@@ -294,3 +297,38 @@ def test_a_first_run_that_is_stopped_leaves_nothing(texts, tmp_path):
         process.terminate()
         assert is_stopped(process)
     assert files_in(tmp_path) == []
+
+
+def test_a_page_is_rendered_without_a_next_line(call, tmp_path):
+    out = tmp_path / "page.h5"
+    said = call(
+        "render", "texts/english.txt", "--out", out, "--height", "42", "--lines", "1-5",
+        "--hand", "sweep:400", "--texture", "0",
+    )  # fmt: skip
+    assert (said.code, said.out.split(",")[0]) == (0, "rendered: 5 lines")
+    model = MODELS["stress2"]
+    with h5py.File(out) as file:
+        line, part, y_mm = file["line"][:], file["part"][:], file["y_mm"][:]
+        # Three lines to a page; each is read along its middle.
+        assert set(line) == {0, 1, 2, 3, 4}
+        on = np.abs(y_mm / 14 % 1 - 0.5) < 1e-9
+        np.testing.assert_array_equal(part[on], np.floor(y_mm[on] / 14))
+        for row in range(5):
+            here = on & (line == row)
+            masks = file["page/cells"][row][: file["page/length"][row]]
+            masks = np.append(masks, np.zeros(26, np.uint8))
+            x_mm, frames = file["x_mm"][here], file["frames"][here]
+            style, array = model.style, model.display
+            read = read_back(
+                frames, x_mm, array=array, mapping=style.mapping, geometry=style.geometry
+            )
+            np.testing.assert_array_equal(read, masks[: read.size])
+            assert read.any()
+
+
+@pytest.mark.parametrize("height", ["6", "20000", "nan"])
+def test_a_height_that_no_page_has_is_refused(call, tmp_path, height):
+    out = tmp_path / "page.h5"
+    said = call("render", "texts/english.txt", "--out", out, "--height", height)
+    assert (said.code, said.out, out.exists()) == (2, "", False)
+    assert "--height is" in said.err
