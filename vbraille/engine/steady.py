@@ -164,7 +164,8 @@ def run(
         poses[0, POSE_X] = talk.x_mm
         if why != DONE:
             return why
-        if steady.stalled(talk, now):
+        # Where nothing came at all, nothing was taken, and so nobody has minded these two.
+        if steady.stalled(talk, now) or steady.silent(talk, now):
             return UNSTEADY
         slot = told[APPENDED] % size
         published[0] = told[APPENDED]
