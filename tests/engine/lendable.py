@@ -17,16 +17,18 @@ import time
 import tty
 from collections import deque
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
 from tests.engine.test_loop import info
 from vbraille.devices.conversation import Conversation
-from vbraille.devices.messages import Encoder
+from vbraille.devices.messages import Encoder, State
 from vbraille.devices.openserial import greet
 from vbraille.devices.ports import Address
 from vbraille.devices.serialdevice import SerialDevice
 from vbraille.devices.seriallines import DescriptorLine
+from vbraille.devices.wire import Decoder, encode
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 from vbraille.simulation.firmware import Controller, describe
@@ -116,15 +118,19 @@ class Rig:
         Times that the device asked for: none in a tick that was compiled.
     records : list of arrays
         Of all ticks.
+    sent : bytes
+        What the host sent in the last step.
+    state : State
+        What the controller said last.
     """
 
-    def __init__(self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, **changes):
+    def __init__(self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, device_hz=1000.0):
         self.ours, self.theirs = ends or sockets()
         for end in (self.ours, self.theirs):
             os.set_blocking(end, False)
         self.us, self.way_mm = 0, 20.0
         self.asked, self.records, self.sent = [], [], b""
-        self.controller = Controller(describe(info(**changes), Encoder.ABSOLUTE))
+        self.controller = Controller(describe(info(rate_hz=device_hz), Encoder.ABSOLUTE))
         self.port = Port(self.ours)
         conversation = Conversation(self.now_ns())
         greet(self.port, conversation, self.now_ns, self.pause)
@@ -147,7 +153,18 @@ class Rig:
     def say(self):
         """What the controller says in its next millisecond."""
         self.us += 1000
-        return self.controller.tick(self.us, self.way_mm)
+        said = self.controller.tick(self.us, self.way_mm)
+        for message in Decoder().feed(said):
+            if isinstance(message, State):
+                self.state = message
+        return said
+
+    def again(self):
+        """A STATE of a millisecond after the last, without the controller's doing."""
+        self.state = replace(
+            self.state, sequence=self.state.sequence + 1, time_us=self.state.time_us + 1000
+        )
+        return encode(self.state)
 
     def receive(self):
         """Bytes that the host has sent."""
@@ -207,9 +224,14 @@ class Rig:
                 return
         raise AssertionError("the device is never lent")
 
+    def hang_up(self):
+        os.close(self.theirs)
+        self.theirs = None
+
     def close(self):
         self.device.close()
-        os.close(self.theirs)
+        if self.theirs is not None:
+            self.hang_up()
 
 
 class Twin:

@@ -149,9 +149,9 @@ def run(
     size = ints.shape[0]
     talk = talks[0]
     for _ in range(told[MOST]):
+        told[WOKEN] = 0  # of a tick that has not begun yet
         if _changed(orders, known):
             return ORDERS
-        told[WOKEN] = 0
         now, states, why = _wait(told, received, talk, work)
         if why == ORDERS:
             return ORDERS
