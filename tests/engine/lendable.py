@@ -82,18 +82,23 @@ class Port:
         self._line = DescriptorLine(io.FileIO(descriptor, "r+"), descriptor)
 
     def read(self):
+        chunk = self._try(self._line.read) or b""
+        self.chunks.append(chunk)
+        return chunk
+
+    def write(self, frame):
+        return bool(self._try(self._line.write, frame))
+
+    def _try(self, do, *given):
+        """What it gives; None if the line is gone."""
         if self.gone:
-            return b""
+            return None
         try:
-            self.chunks.append(self._line.read())
+            return do(*given)
         except OSError:
             self.gone = True
             self.losses += 1
-            return b""
-        return self.chunks[-1]
-
-    def write(self, frame):
-        return not self.gone and self._line.write(frame)
+            return None
 
     @property
     def bare_descriptor(self):
@@ -202,6 +207,8 @@ class Rig:
     def drain(self):
         self.loop.ring.publish()
         self.records.append(self.reader.drain())
+        times_ns = np.concatenate(self.records[-2:])["time_ns"]
+        assert (np.diff(times_ns) > 0).all()  # no tick is done twice
         return self.records[-1]
 
     def step(self):

@@ -4,6 +4,7 @@ import os
 import random
 import select
 import signal
+import socket
 import threading
 from contextlib import suppress
 from types import SimpleNamespace
@@ -361,11 +362,25 @@ def test_a_line_that_is_hung_up_is_gone(ends):
     rig = Rig(ends())
     rig.settle()
     rig.hang_up()
+    before = rig.loop.tally.ticks
     rig.tick()
     assert rig.port.gone
+    assert rig.loop.tally.ticks == before + 1
     assert Unplugged() in rig.device.take_events()
     assert rig.device.lend() is None
     rig.close()
+
+
+def test_a_line_that_takes_nothing_more_is_gone(rig):
+    """Nothing is wrong with it to whoever reads."""
+    with socket.socket(fileno=os.dup(rig.theirs)) as theirs:
+        theirs.shutdown(socket.SHUT_RD)
+    before = rig.loop.tally.ticks
+    rig.put(rig.say())
+    rig.tick()
+    assert rig.port.gone
+    assert rig.loop.tally.ticks == before + 1
+    assert rig.device.lend() is None
 
 
 @pytest.mark.parametrize("mm_per_count", [float("nan"), float("inf"), 1e6])

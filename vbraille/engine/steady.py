@@ -143,8 +143,9 @@ def run(
     -------
     int64
         DONE, or why a tick is left to Python: ORDERS or a signal; UNSTEADY, for what was received
-        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for this
-        is no FRAME to send; TORN, for a part of it went out; GONE, for the line is.
+        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for the
+        FRAME is still to be made or written; TORN, for a part of it went out, which is no tick that
+        is left; GONE, for the line is.
     """
     size = ints.shape[0]
     talk = talks[0]
@@ -200,6 +201,8 @@ def run(
             steady.sent(now, talk, actuators)
         elif written == _EAGAIN:
             told[UNSENT] += 1
+        else:
+            return UNMADE  # Python writes it, and sees what is wrong with the line
         # The next STATE is a period from this one; without one, ticks keep to their deadlines.
         told[DEADLINE] = (now if states > 0 and told[GUARD] > 0 else deadline) + told[PERIOD]
         after = libc.clock_ns(libc.CLOCK_MONOTONIC)
@@ -213,10 +216,8 @@ def run(
         ints[slot, LATE] = told[LATE_SO_FAR]
         ints[slot, OVERRUNS] = told[OVERRUNS_SO_FAR]
         told[APPENDED] += 1
+        told[WOKEN] = 0  # this tick is done, whatever ends them
         if written > 0 and written < ends:
             told[WRITTEN], told[SIZE] = written, ends
             return TORN
-        if written <= 0 and written != _EAGAIN:
-            return GONE
-    told[WOKEN] = 0
     return DONE
