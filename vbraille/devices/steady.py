@@ -129,6 +129,12 @@ def stalled(talk, now_ns):
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def silent(talk, now_ns):
+    """Whether the last STATE is so old that the device must be told to rest."""
+    return now_ns - talk.heard_ns >= _SILENCE_NS
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def take(received, size, now_ns, talk, work):
     """Take STATEs.
 
@@ -189,7 +195,7 @@ def take(received, size, now_ns, talk, work):
     if size - begun > WORK_BYTES:
         return SOMETHING_ELSE, 0
     if states == 0:
-        if now_ns - talk.heard_ns >= _SILENCE_NS:
+        if silent(talk, now_ns):
             return SOMETHING_ELSE, 0
         return begun, 0
     talk.heard_ns = now_ns

@@ -157,15 +157,16 @@ def run(
     -------
     int64
         DONE, or why a tick is left to Python: ORDERS or a signal; UNSTEADY, for what was received
-        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for this
-        is no FRAME to send; TORN, for a part of it went out; GONE, for the line is.
+        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for the
+        FRAME is still to be made or written; TORN, for a part of it went out, which is no tick that
+        is left; GONE, for the line is.
     """
     size = ints.shape[0]
     talk = talks[0]
     for _ in range(told[MOST]):
+        told[WOKEN] = 0  # of a tick that has not begun yet
         if _changed(orders, known):
             return ORDERS
-        told[WOKEN] = 0
         now, states, why = _wait(told, received, talk, work)
         if why == ORDERS:
             return ORDERS
@@ -178,8 +179,8 @@ def run(
         poses[0, POSE_X] = talk.x_mm
         if why != DONE:
             return why
-        # Nothing may have come for so long that the device is silent, or the host was stopped.
-        if states == 0 and steady.take(received, told[HELD], now, talk, work)[0] < 0:
+        # Where nothing came at all, nothing was taken, and so nobody has minded these two.
+        if steady.stalled(talk, now) or steady.silent(talk, now):
             return UNSTEADY
         slot = told[APPENDED] % size
         published[0] = told[APPENDED]
@@ -214,6 +215,8 @@ def run(
             steady.sent(now, talk, actuators)
         elif written == _EAGAIN:
             told[UNSENT] += 1
+        else:
+            return UNMADE  # Python writes it, and sees what is wrong with the line
         # The next STATE is a period from this one; without one, ticks keep to their deadlines.
         told[DEADLINE] = (now if states > 0 and told[GUARD] > 0 else deadline) + told[PERIOD]
         after = libc.clock_ns(libc.CLOCK_MONOTONIC)
@@ -227,10 +230,8 @@ def run(
         ints[slot, LATE] = told[LATE_SO_FAR]
         ints[slot, OVERRUNS] = told[OVERRUNS_SO_FAR]
         told[APPENDED] += 1
+        told[WOKEN] = 0  # this tick is done, whatever ends them
         if written > 0 and written < ends:
             told[WRITTEN], told[SIZE] = written, ends
             return TORN
-        if written <= 0 and written != _EAGAIN:
-            return GONE
-    told[WOKEN] = 0
     return DONE
