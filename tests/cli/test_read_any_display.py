@@ -58,8 +58,9 @@ def last_pass(felt, display, end_mm):
     """Frames and places of the array's centre the last time that the hand went over the line."""
     x_mm = np.array(felt.ways_mm) - display.span_mm / 2
     on = np.flatnonzero(x_mm > end_mm + display.span_mm / 2)
-    ended = on[np.flatnonzero(np.diff(on, prepend=-2) > 1)[-1]]  # when it came past the end, last
-    begun = np.flatnonzero(x_mm[:ended] <= -display.span_mm / 2)[-1]
+    # When it came past the end for the last time, and when it had left the left stop before that.
+    ended = int(on[np.flatnonzero(np.diff(on, prepend=-2) > 1)[-1]])
+    begun = int(np.flatnonzero(x_mm[:ended] <= -display.span_mm / 2)[-1])
     kept = np.arange(begun, ended)[np.array(felt.fresh[begun:ended])]
     return np.array(felt.frames_felt)[kept].reshape(-1, *display.shape), x_mm[kept]
 

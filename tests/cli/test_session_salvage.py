@@ -15,6 +15,7 @@ from tests.sessions.sittings import MINI
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.journal import decode, first_lines
 from vbraille.sessions.record.salvage import salvage
+from vbraille.wording import spelled
 
 LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials
 EVENTS = [{"event": "session", "format": 2, "sha256": {}, "t_s": 0.0}] + [
@@ -89,7 +90,7 @@ def test_one_damaged_line_hides_no_other(call, ended, folder, tmp_path):
 )
 def test_one_damage_is_one_complaint(call, folder, tmp_path, pattern, by):
     damage(folder, pattern, by)
-    faults = [found.text for found in check_folder(folder) if not found.good]
+    faults = [spelled(found.text) for found in check_folder(folder) if not found.good]
     assert len(faults) == 1
     assert faults[0].startswith("journal.jsonl: damaged, line ")
     assert "after it, which session export --salvage has too" in faults[0]
@@ -115,7 +116,7 @@ def test_what_comes_after_a_damaged_chunk_of_a_trace_is_used_too(call, ended, fo
     for n, row in enumerate(now):
         if n not in missing:
             assert row == whole[n]
-    faults = [found.text for found in check_folder(folder) if not found.good]
+    faults = [spelled(found.text) for found in check_folder(folder) if not found.good]
     assert len(faults) == 1
 
 

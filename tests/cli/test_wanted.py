@@ -7,12 +7,13 @@ from vbraille.cli.wanted import check_travel
 from vbraille.devices.registry import check_actuators
 from vbraille.errors import InputError
 from vbraille.render import VBD
+from vbraille.wording import spelled
 
 
 def test_a_device_that_is_not_the_model_asked_for_is_one_sentence():
     with pytest.raises(InputError) as caught:
         check_actuators(info(), VBD.on(VBD.style.geometry))
-    assert str(caught.value) == (
+    assert spelled(str(caught.value)) == (
         "test has 6 × 10 actuators and the page is for 1 × 12; choose another --model or --device"
     )
 

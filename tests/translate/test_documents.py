@@ -342,7 +342,7 @@ class TestNote:
         offset = next(n for n, c in enumerate(text) if c > "\x7f")
         assert found.note() == (
             f"a.txt is not UTF-8 (byte {offset}); it is read as cp1252, "
-            f"--encoding NAME says otherwise"
+            f"‹encoding› NAME says otherwise"
         )
         assert found.note() is None
         assert found.paragraph(3).text == document(text.encode()).paragraph(3).text
@@ -353,7 +353,7 @@ class TestNote:
         note = found.note()
         assert note is not None
         assert "is not UTF-8 (byte " in note
-        assert f"read as {found.encoding.name}, --encoding" in note
+        assert f"read as {found.encoding.name}, ‹encoding›" in note
 
     def test_a_later_byte_is_said_when_it_is_found(self):
         raw = b"plain text\n\n" * 20_000 + b"caf\xe9\n"
@@ -363,7 +363,7 @@ class TestNote:
         assert paragraphs(found)[-1].text == "café"
         assert found.note() == (
             f"a.txt is not utf-8 at byte {len(raw) - 2}; such bytes are read as windows-1252, "
-            f"--encoding NAME says otherwise"
+            f"‹encoding› NAME says otherwise"
         )
         assert found.note() is None
 

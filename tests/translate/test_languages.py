@@ -80,7 +80,7 @@ def test_the_document_names_it(language):
     ("language", "grade", "sentence"),
     [
         ("tlh", None, r"there is no table for language 'tlh'; the nearest are \w+"),
-        ("", None, "the language is empty; give a tag such as fr, or leave --language out"),
+        ("", None, "the language is empty; give a tag such as fr, or leave ‹language› out"),
         ("en", 7, r"there is no grade 7 for language 'en'; there is 1, 2 \(vbraille tables"),
         ("it", 2, "there is no grade 2 for language 'it'; there is 1 "),
         ("ms", 1, "there is no grade 1 for language 'ms'; there is 2 "),

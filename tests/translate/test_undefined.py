@@ -121,14 +121,14 @@ class TestForeign:
         note = table.note()
         assert script in note
         assert "en-ueb-g2.ctb does not know" in note
-        assert f"--language {language}" in note
+        assert f"‹language› {language}" in note
         translate(table, text)
         assert table.note() is None
 
     def test_latin_in_a_table_of_another_script(self):
         table = Table("bh.tbl")
         translate(table, "English words")
-        assert "--language en (English, en-ueb-g2.ctb)" in table.note()
+        assert "‹language› en (English, en-ueb-g2.ctb)" in table.note()
 
     def test_a_script_without_a_table(self):
         table = Table("en-ueb-g2.ctb")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.analysis.analyse import Options, analyse, analyse_scores
 from vbraille.analysis.study import load_scores, load_study, trials_file
 from vbraille.errors import InputError, VbrailleError
-from vbraille.wording import printable
+from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
         from vbraille.analysis.report.tolines import to_lines
 
         for line in to_lines(results):
-            print(printable(line))
+            print(printable(spelled(line)))
     if study is not None and study.faults:
         raise VbrailleError(f"analysed is what is whole; {'; '.join(study.faults)}")
     return 0

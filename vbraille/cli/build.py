@@ -12,7 +12,7 @@ from vbraille.geometry import PRESETS
 from vbraille.page import Layout
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
-from vbraille.wording import printable
+from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -79,7 +79,7 @@ class Page:
         """Say once if the text is not UTF-8, and of each script that the table does not know."""
         for note in (self.document.note(), self.layout.book.table.note()):
             if note is not None:
-                print(printable(note), file=sys.stderr, flush=True)
+                print(printable(spelled(note)), file=sys.stderr, flush=True)
 
     def say_unknown(self) -> None:
         """Say at the end how many characters the table does not know, if there were any."""

@@ -27,6 +27,7 @@ from vbraille.translate.encodings import (
     named_encoding,
 )
 from vbraille.translate.paragraphs import Paragraph, split_paragraphs
+from vbraille.wording import setting
 
 BLOCK_BYTES = 65_536
 
@@ -115,7 +116,9 @@ class Document:
         else:
             kind = binary_kind(sample)
             if kind:
-                raise InputError(f"{name} is {kind}, not text; give a text file, or --encoding")
+                raise InputError(
+                    f"{name} is {kind}, not text; give a text file, or {setting('encoding')}"
+                )
             self.encoding = find_encoding(sample)
             if len(sample) == self.encoding.skip:
                 raise InputError(f"{name} is empty; give a text file")
@@ -207,13 +210,13 @@ class Document:
             bad = first_not_utf8(self._read(0, SAMPLE_BYTES))
             return (
                 f"{self.name} is not UTF-8 (byte {bad}); it is read as {self.encoding.name}, "
-                f"--encoding NAME says otherwise"
+                f"{setting('encoding')} NAME says otherwise"
             )
         if self._decoder.first_bad is not None:
             self._noted = True
             return (
                 f"{self.name} is not {self.encoding.name} at byte {self._decoder.first_bad}; such "
-                f"bytes are read as windows-1252, --encoding NAME says otherwise"
+                f"bytes are read as windows-1252, {setting('encoding')} NAME says otherwise"
             )
         return None
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.translate.liblouis import Table, list_tables
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.translate.liblouis import TableInfo
@@ -97,7 +98,9 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     """
     wanted = language.strip().lower().replace("_", "-")
     if not wanted:
-        raise InputError("the language is empty; give a tag such as fr, or leave --language out")
+        raise InputError(
+            f"the language is empty; give a tag such as fr, or leave {setting('language')} out"
+        )
     tag = wanted
     while tag:
         tag = _SAME.get(tag, tag)
@@ -139,9 +142,10 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
         return chosen
     fitting = [table for table in tables if grade is None or not _is_contracted(table)]
     if not fitting or (grade is not None and grade > 1):
+        there = ", ".join(_grades(usual, tables))
         raise InputError(
-            f"there is no grade {grade} for language {language!r}; there is "
-            f"{', '.join(_grades(usual, tables))} (vbraille tables --language {language})"
+            f"there is no grade {grade} for language {language!r}; there is {there} "
+            f"(vbraille tables {setting('language')} {language})"
         )
     return min(fitting, key=_preference).name
 
@@ -166,7 +170,7 @@ def tables_for(script: Script) -> str:
     ]
     if not found:
         return f"liblouis has no table for {script.name}"
-    return f"give its language: --language {', '.join(found)}"
+    return f"give its language: {setting('language')} {', '.join(found)}"
 
 
 def _graded(usual: Usual, tables: tuple[TableInfo, ...], grade: int) -> str:

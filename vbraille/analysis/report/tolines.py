@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.analysis.report.shown import ROWS
 from vbraille.analysis.tables import NOTE, to_print
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +40,7 @@ def to_lines(results: Results) -> Iterator[str]:
 
 def _rows(table: Table) -> Iterator[str]:
     if len(table.rows) > ROWS:
-        yield f"{len(table.rows)} rows; --out writes them"
+        yield f"{len(table.rows)} rows; {setting('out')} writes them"
         return
     for row in table.rows:
         said = (
