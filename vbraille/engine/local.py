@@ -56,7 +56,7 @@ class LocalEngine:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's left column is; None before it is known."""
+        """Where the array's centre is along x; None before it is known."""
         return self.loop.x_mm
 
     @property

@@ -80,7 +80,8 @@ class Wander:
         beyond = _BEYOND * (high - low)
         count = math.ceil(length_mm / least_mm)
         drawn = self._random.uniform(low - beyond, high + beyond, (count, 3)).clip(low, high)
-        path = _spline(np.concatenate(([home, home, home], drawn)))
+        # The spline keeps between them but for rounding.
+        path = _spline(np.concatenate(([home, home, home], drawn))).clip(low, high)
         far_mm = np.concatenate(([0.0], np.cumsum(_steps_mm(path))))
         kept = int(np.searchsorted(far_mm, length_mm))
         path, t_s = path[:kept], far_mm[:kept] / self.speed_mm_s
