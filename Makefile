@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
 .PHONY: read test lint tests bench format setup clean sound
 
-read: .venv/runs
+read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
 	  --lines 1-5 --echo both </dev/null
 
@@ -28,7 +28,7 @@ lint: .venv/tests
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --warnings
 
-tests: .venv/tests
+tests: .venv/tests .venv/compiled
 	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
 	@# The kernels once more, as plain Python.
 	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py tests/devices/test_wirekernels.py tests/devices/test_steady.py
@@ -43,7 +43,7 @@ format: .venv/tests
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 
-setup: .venv/runs
+setup: .venv/compiled
 
 # PortAudio, for the participant's signals in sessions; without it the terminal's bell rings.
 sound:
@@ -65,14 +65,17 @@ sound:
 
 .venv/runs: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e .
-	$(BIN)/python -m vbraille.engine.compiling
 	@touch $@
 
 # All at once on a fresh machine: that is half a minute less than one after the other.
 .venv/tests: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e '.[test]'
-	$(BIN)/python -m vbraille.engine.compiling
 	@touch .venv/runs $@
+
+# What drives the actuators is compiled here, so that no reading waits for it.
+.venv/compiled: .venv/runs vbraille/libc.py $(wildcard vbraille/render/*.py vbraille/devices/*.py vbraille/engine/*.py)
+	$(BIN)/python -m vbraille.engine.compiling
+	@touch $@
 
 clean:
 	rm -rf .venv .coverage* .pytest_cache .ruff_cache .hypothesis .import_linter_cache

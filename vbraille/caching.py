@@ -32,24 +32,36 @@ def keep_compiled() -> bool:
     function, and would keep what has one of another file compiled into it that has changed.
     """
     _leave_scipy_out()
-    if given := os.environ.get("NUMBA_CACHE_DIR"):
-        places = [Path(given)]
-    else:
-        places = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache")]
-    place = next(filter(_is_writable, places), None) or _private_folder()
-    if place is None:
+    folder = _compiled_folder()
+    if folder is None:
         _log.info("nothing compiled can be kept, so that every process compiles again")
         return False
-    folder = place / f"vbraille-compiled-{_source()}"
     _log.info("what is compiled is kept in %s", folder)
     from numba import config
 
     # Not in the environment, where a child would take it for its user's wish.
     config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
-    for other in place.glob("vbraille-compiled-*"):
+    for other in folder.parent.glob("vbraille-compiled-*"):
         if other != folder:
             shutil.rmtree(other, ignore_errors=True)
     return True
+
+
+def is_compiled() -> bool:
+    """Whether what drives actuators was compiled before, which takes a minute."""
+    folder = _compiled_folder()
+    return folder is not None and any(folder.glob("*/steady.run-*.nbc"))
+
+
+@cache
+def _compiled_folder() -> Path | None:
+    """Folder for what is compiled of this source; None if none can be written."""
+    if given := os.environ.get("NUMBA_CACHE_DIR"):
+        places = [Path(given)]
+    else:
+        places = [Path(__file__).parent / "__pycache__", _user_folder("CACHE", ".cache")]
+    place = next(filter(_is_writable, places), None) or _private_folder()
+    return None if place is None else place / f"vbraille-compiled-{_source()}"
 
 
 def _leave_scipy_out() -> None:

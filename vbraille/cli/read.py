@@ -20,6 +20,7 @@ from vbraille.cli.wanted import (
     device_spec,
     is_simulated,
     refuse_hand,
+    say_if_compiling,
     steering_of,
 )
 from vbraille.devices.base import Placing
@@ -68,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     steering = steering_of(arguments.device)
+    say_if_compiling()
     host = Host(
         device_spec(arguments.device, hand, seed, steering),
         wanted,

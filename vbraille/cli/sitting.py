@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec, steering_of
+from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec, say_if_compiling, steering_of
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
@@ -74,6 +74,7 @@ class Sitting:
     def open(self) -> None:
         """Wait until the engine runs, unless it does."""
         if self._engine is not None and not self._opened:
+            say_if_compiling()
             self._engine.start()
             self._opened = True
             check_room(self._engine.display, self._protocol, self._plan)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
+from vbraille.caching import is_compiled
 from vbraille.errors import InputError
 from vbraille.simulation.steering import Steering
 
@@ -72,3 +74,13 @@ def device_spec(device: str, hand: str, seed: int, steering: Steering | None) ->
     if is_simulated(device):
         device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
     return f"{device}&steering={steering.descriptor}"
+
+
+def say_if_compiling() -> None:
+    """Say on stderr that a first reading is prepared, where it is: it takes a while."""
+    if not is_compiled():
+        print(
+            "compiling: what drives the actuators, once, in up to a minute; then it begins",
+            file=sys.stderr,
+            flush=True,
+        )
