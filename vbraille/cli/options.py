@@ -70,7 +70,8 @@ def render(parser: ArgumentParser) -> None:
         "--height",
         type=number,
         metavar="MM",
-        help="Let the carriage go so far down the page, too: the hand reads pages of lines.",
+        help="Let the carriage go so far down the page, too: the hand reads pages of lines "
+        "(default: it goes along a line only).",
     )
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
