@@ -36,7 +36,7 @@ _POLLFD = ir.LiteralStructType((_I32, _I16, _I16))
 
 
 def _intrinsic(typed: Callable[..., Any]) -> Any:
-    """As of numba's, which type checkers take for the function that describes it."""
+    """Make an intrinsic of numba's, which type checkers take for the function that makes it."""
     return intrinsic(typed)
 
 
@@ -147,7 +147,7 @@ def read(descriptor, out, start):
     Parameters
     ----------
     descriptor : int64
-        Of an open file that does not block.
+        The descriptor of an open file that does not block.
     out : uint8[bytes]
         Contiguous.
     start : int64

@@ -89,7 +89,7 @@ def _rows(found: dict[tuple[str, bool], list[dict[str, Any]]]) -> Iterator[Resul
     for which, name, bar_us in ((0, "p50", 8.0), (1, "p99", 30.0)):
         ours_us, share, said = beside("work_us", which, busy=False)
         yield Result(
-            f"work of a tick, {name}, today and of the baseline, on a quiet machine",
+            f"work of a tick, {name}, beside the loop of 2026-11-21, on a quiet machine",
             f"≤ 1/5, ≤ {bar_us:g} µs",
             said,
             share <= 0.2 and ours_us <= bar_us,
@@ -97,7 +97,7 @@ def _rows(found: dict[tuple[str, bool], list[dict[str, Any]]]) -> Iterator[Resul
     for which, name, bar_us in ((0, "p50", None), (1, "p99", 60.0)):
         ours_us, _, said = beside("work_us", which, busy=True)
         yield Result(
-            f"work of a tick, {name}, beside {BUSY_PROCESSES} busy processes",
+            f"the same beside {BUSY_PROCESSES} busy processes, {name}",
             "reported" if bar_us is None else f"≤ {bar_us:g} µs",
             said,
             bar_us is None or ours_us <= bar_us,

@@ -11,6 +11,7 @@ from vbraille.devices.events import (
     Button,
     Changed,
     Difference,
+    Exposed,
     Fault,
     Knob,
     Notice,
@@ -71,6 +72,11 @@ SAID = [
         "timing: no real-time priority and no locked memory, so that ticks may come late; to "
         "allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
         "/etc/security/limits.d/audio.conf, join the group audio, and log in again",
+    ),
+    (
+        Exposed(60.0),
+        "picture: it has moved by itself for 60 s, and rests, which spares the skin; a pause and "
+        "going on begin it anew",
     ),
 ]
 

@@ -17,7 +17,7 @@ from vbraille.devices.events import Notice
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
-from vbraille.render import STRESS2
+from vbraille.render import STRESS2, VBD
 from vbraille.simulation.steering import ReadLine, Steering
 
 PATIENCE_S = 60.0
@@ -200,3 +200,11 @@ def test_without_the_right_to_real_time_a_sentence_says_how_to_get_it():
     assert said.startswith("timing: no real-time priority and no locked memory, so that")
     assert "/etc/security/limits.d" in said
     assert said.count("\n") == 1
+
+
+def test_a_picture_for_another_array_is_refused_here_and_the_host_lives():
+    other = VBD.style.render(np.zeros(1, np.uint8), VBD.display)
+    with Host("sim:?hand=sweep:100", info(), ROOM) as host:
+        with pytest.raises(ValueError, match="for 1 × 12 actuators"):
+            host.show(other, 1)
+        until(host, lasting(100))

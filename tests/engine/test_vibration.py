@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.engine.planar import MS, PLANE, STYLE, Bench, still
+from vbraille.devices.events import Exposed
 from vbraille.engine.record import Flag
 from vbraille.render.program import vibration
 
@@ -78,7 +79,10 @@ def test_a_pause_silence_and_a_device_at_rest_stop_it():
 def test_after_so_long_it_fades_and_says_so():
     bench = Bench(still(), rate_hz=1000)
     bench.engine.show(vibration(PLANE, 40.0, exposure_s=0.5), 1)
+    assert bench.engine.take_events() == []
     ticks = bench.run(1.0)
+    assert bench.engine.take_events() == [Exposed(0.5)]
+    assert bench.engine.take_events() == []
     exposed = has(ticks, Flag.EXPOSED)
     (first,) = np.flatnonzero(np.diff(exposed)) + 1
     assert first == 500
@@ -95,6 +99,7 @@ def test_a_pause_or_a_new_picture_begins_anew(how):
     program = vibration(PLANE, 40.0, exposure_s=0.3)
     bench.engine.show(program, 1)
     assert has(bench.run(0.5), Flag.EXPOSED)[-1]
+    assert len(bench.engine.take_events()) == 1
     if how == "pause":
         bench.engine.paused = True
         bench.run(0.05)
@@ -108,6 +113,7 @@ def test_a_pause_or_a_new_picture_begins_anew(how):
     assert ticks["shown_s"][0] == 0.0
     assert ticks["frame"][-1].any()
     assert has(bench.run(0.3), Flag.EXPOSED)[-1]
+    assert len(bench.engine.take_events()) == 1
 
 
 def test_time_at_rest_is_no_exposure():

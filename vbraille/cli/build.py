@@ -96,9 +96,9 @@ def build_lengths(
     Parameters
     ----------
     arguments
-        Of the command.
+        What the command was given.
     model
-        What they change.
+        The display and the style that the options change.
     travel_mm
         How far the carriage goes where the options do not say.
 

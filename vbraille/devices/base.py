@@ -57,7 +57,7 @@ class Lent(NamedTuple):
     Parameters
     ----------
     descriptor
-        Of its open line, which does not block.
+        The descriptor of the device's open line, which does not block.
     begun
         Bytes that `received` begins with: a part of a message.
     received, work, out : uint8[bytes]

@@ -248,6 +248,19 @@ class NotInTime(Event):
     refused: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Exposed(Event):
+    """A picture has moved by itself for as long as it may, and was faded to rest.
+
+    Parameters
+    ----------
+    limit_s
+        How long that is, in seconds.
+    """
+
+    limit_s: float
+
+
 _KINDS: Final = {
     kind.__name__: kind
     for kind in (
@@ -263,6 +276,7 @@ _KINDS: Final = {
         Knob,
         Placed,
         NotInTime,
+        Exposed,
     )
 }
 

@@ -65,7 +65,7 @@ class States:
     heard_ns
         When the last one came.
     sequence
-        Of the last one; None before the first of a conversation.
+        Sequence of the last STATE; None before the first of a conversation.
     missed
         How many never came.
     buttons
@@ -87,7 +87,7 @@ class Frames:
     felt_ns
         When one last had anything to feel.
     sequence
-        Of the last one.
+        Sequence of the last FRAME.
     sent_ns
         When the last one was sent, if it is not acknowledged yet.
     acknowledged_ns
@@ -191,7 +191,7 @@ class Listening:
 
     @property
     def _name(self) -> str:
-        """Of the device that reading began on; empty before."""
+        """The name of the device that reading began on; empty before."""
         return self.display.name if self.display is not None else ""
 
     def _take(self, message: Heard, now_ns: int) -> None:

@@ -12,6 +12,7 @@ from vbraille.devices.events import (
     Changed,
     Difference,
     Event,
+    Exposed,
     Fault,
     Knob,
     Notice,
@@ -194,3 +195,11 @@ def _(event: Placed) -> str:
 def _(event: NotInTime) -> str:
     refused = " and ".join(_REFUSED[one] for one in event.refused)
     return f"timing: {refused}, so that ticks may come late; {_ALLOW}"
+
+
+@_say.register
+def _(event: Exposed) -> str:
+    return (
+        f"picture: it has moved by itself for {event.limit_s:g} s, and rests, which spares the "
+        f"skin; a pause and going on begin it anew"
+    )

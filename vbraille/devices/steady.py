@@ -117,7 +117,7 @@ _SILENCE_NS = SILENCE_MS * _NS_PER_MS
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _unwrap(count, last, bits):
-    """As of `vbraille.devices.wire.unwrap`."""
+    """The continuous count of a counter that wraps; `vbraille.devices.wire.unwrap`, compiled."""
     half = 1 << (bits - 1)
     return last + ((count - last + half) & (2 * half - 1)) - half
 
@@ -147,7 +147,7 @@ def take(received, size, now_ns, talk, work):
     now_ns : int64
         When, by the host's clock.
     talk : record of CONVERSATION
-        Of the conversation; it is changed, unless the answer is SOMETHING_ELSE.
+        The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
     work : uint8[WORK_BYTES]
         Room to work in.
 
@@ -219,7 +219,7 @@ def make(deflections, now_ns, talk, actuators, out):
     now_ns : int64
         When, by the host's clock.
     talk : record of CONVERSATION
-        Of the conversation; it is changed, unless the answer is SOMETHING_ELSE.
+        The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
     actuators : Actuators
         Whose ``wanted`` and ``body`` are changed.
     out : uint8[bytes]
@@ -273,7 +273,7 @@ def sent(now_ns, talk, actuators):
     now_ns : int64
         When it was made, by the host's clock.
     talk : record of CONVERSATION
-        Of the conversation.
+        The conversation's numbers.
     actuators : Actuators
         They go where that FRAME says.
     """

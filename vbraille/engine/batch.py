@@ -115,7 +115,7 @@ class BatchEngine:
 
     def take_events(self) -> Sequence[Event]:
         """What there is to tell since the last call."""
-        return self.device.take_events()
+        return [*self.device.take_events(), *self._state.take_events()]
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

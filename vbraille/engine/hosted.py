@@ -189,18 +189,19 @@ def end_after(parent: int) -> None:
         signal.raise_signal(signal.SIGQUIT)
 
 
-def pass_on(device: Device, notices: Notices, channel: Channel, now_ns: int) -> None:
-    """Tell the parent what a device tells, the same once a second.
+def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
+    """Tell the parent what a loop and its device tell, the same once a second.
 
     Raises
     ------
     DeviceError
         If a driver tells what is no event.
     """
-    for event in device.take_events():
+    now_ns = loop.clock.now_ns()
+    for event in loop.take_events():
         if not is_known(event):
             raise DeviceError(
-                f"{device.display.name} tells {event!r}, which is no event of "
+                f"{loop.device.display.name} tells {event!r}, which is no event of "
                 f"vbraille.devices.events; tell whoever wrote its driver"
             )
         # Drivers may tell all they have to by one code; only what is alike stands for another.
@@ -254,13 +255,13 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
             loop.restart_clock()
             while hosted.wanted:
                 hosted.run()
-                pass_on(device, notices, channel, loop.clock.now_ns())
+                pass_on(loop, notices, channel)
         finally:
             _log.info("ending after %d ticks", loop.tally.ticks)
             ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()
-            pass_on(device, notices, channel, loop.clock.now_ns())
+            pass_on(loop, notices, channel)
             for event in notices.take(loop.clock.now_ns() + EVERY_NS):
                 channel.tell(event)
             channel.say(counts={str(name): int(n) for name, n in device.counts().items()})

@@ -178,6 +178,7 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
     if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]
+        now["exposures"] += 1
     wanted = _wanted(state, now_ns, taking, numbers)
     same = now["shown"] != 0 and now["shown"] == wanted
     part = part_of(numbers, y_mm, now["part"] if same else work.NO_PART)
@@ -241,7 +242,7 @@ def advance(
     Parameters
     ----------
     state, window_ns, window_mm, velocities, output, held, target, at
-        Of `vbraille.engine.state.State`.
+        What is known from earlier ticks, and room to work in; `vbraille.engine.state.State` has it.
     numbers, table, scratch
         The program that is wanted under the hand.
     times_ns : int64[n, 2]

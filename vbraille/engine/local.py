@@ -81,7 +81,7 @@ class LocalEngine:
 
     def take_events(self) -> Sequence[Event]:
         """What there is to tell since the last call."""
-        return self.loop.device.take_events()
+        return self.loop.take_events()
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

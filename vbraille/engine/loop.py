@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.base import Device, Lent
+    from vbraille.devices.events import Event
     from vbraille.engine.clock import Clock
     from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program
@@ -97,7 +98,7 @@ class Loop:
         self._fade_ns = int(fade_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
-        self._told = np.zeros(15, np.int64)
+        self._told = np.zeros(steady.TOLD, np.int64)
         self._told[steady.MOST] = max(1, round(_LOOK_S * rate_hz))
         self._told[steady.PERIOD] = self._period_ns
         # A device that tells its place as often as there are ticks has each begin with that.
@@ -145,6 +146,10 @@ class Loop:
     def resting(self) -> bool:
         """Whether every actuator was at rest in the frame last sent."""
         return not self.output.any()
+
+    def take_events(self) -> list[Event]:
+        """What the device and the picture have to tell since the last call."""
+        return [*self.device.take_events(), *self.state.take_events()]
 
     def run(self, mailbox: Mailbox | None = None) -> None:
         """Do some ticks, until the mailbox says something new or it is time to look around.
@@ -265,7 +270,7 @@ class Loop:
 
     def load(self) -> None:
         """Load, or compile, what steady ticks are done by; no tick is done."""
-        told, silence = np.zeros(self._told.size, np.int64), np.zeros(1, np.int64)
+        told, silence = np.zeros(steady.TOLD, np.int64), np.zeros(1, np.int64)
         self.state.run_steadily(
             told,
             silence,

@@ -151,5 +151,5 @@ def _parts(
 
 
 def _checksum(slot: NDArray[np.uint8], size: int) -> int:
-    """Of a slot whose program has so many bytes, but for the checksum's own place."""
+    """Checksum of a slot whose program has so many bytes, without the checksum itself."""
     return crc32(slot[8 : _SLOT_WORDS * 8 + size].data)

@@ -71,7 +71,7 @@ def columns_of(
     Returns
     -------
     int64[n, INTS], float64[n, FLOATS], float32[n, rows, columns]
-        Of the same memory; one kind of array each, whatever the frame's shape.
+        Views of the records' memory; one kind of array each, whatever the frame's shape.
     """
     step = records.itemsize
     assert records.dtype.fields is not None

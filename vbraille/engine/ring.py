@@ -85,7 +85,7 @@ class RingReader:
     Parameters
     ----------
     buffer, shape, size
-        As the writer's. Nothing is written to the memory, which may be read-only.
+        Those that the writer's end was made with. The memory may be read-only.
 
     Attributes
     ----------

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.devices.events import Exposed
 from vbraille.engine import kernels, steady
 from vbraille.engine.constants import (
     DIFFERENCE,
@@ -16,6 +17,7 @@ from vbraille.engine.constants import (
     PAUSE_FADE_S,
     SILENCE_S,
 )
+from vbraille.render import work
 from vbraille.render.kernels import blend
 from vbraille.render.program import nothing, scratch_for
 
@@ -23,9 +25,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.base import Lent
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.ring import Ring
     from vbraille.render.program import Program
+
+    _Three = tuple[NDArray, NDArray, NDArray]
+    _Eleven = tuple[*_Three, *_Three, *_Three, NDArray, NDArray]
 
 _STATE = np.dtype(
     [
@@ -46,6 +52,7 @@ _STATE = np.dtype(
             "part",  # of what is shown
             "begun", "shown_ns",  # the picture whose own time goes, and that time
             "exhausted",  # the picture that has moved by itself for as long as it may
+            "exposures",  # how often one has
             "rested",  # how often the device has gone to rest by itself
             "flags",  # of this tick
             "samples", "last_ns",  # of the velocity
@@ -127,6 +134,7 @@ class State:
         self._scratch = scratch_for(display.columns)
         self._program = nothing(display)
         self._serials = 0
+        self._exposures = 0  # that were told
 
     def want(self, program: Program | None, line: int) -> None:
         """Have something else under the hand from the next tick on; it fades in. None is rest.
@@ -157,6 +165,12 @@ class State:
         self.now["moved_ns"] = now_ns
         self.now["begun"] = self.now["exhausted"] = 0
 
+    def take_events(self) -> list[Event]:
+        """What there is to tell since the last call: that a picture was felt for long enough."""
+        told, self._exposures = self._exposures, int(self.now["exposures"])
+        limit_s = float(self._program.numbers[work.EXPOSURE])
+        return [Exposed(limit_s)] * (self._exposures - told)
+
     def fade(self, share: float) -> None:
         """Make a frame on the way from the one that `hold` kept to rest."""
         self._target.fill(0.0)
@@ -166,17 +180,10 @@ class State:
         """Keep the frame last made, to fade from it."""
         self._held[:] = self.output
 
-    def advance(
-        self,
-        times_ns: NDArray[np.int64],
-        poses: NDArray[np.float64],
-        rested: int,
-        taking: bool,
-        columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
-        first: int = 0,
-    ) -> int:
-        """Do ticks; how many were done; see `vbraille.engine.kernels.advance`."""
-        return kernels.advance(
+    @property
+    def _arrays(self) -> _Eleven:
+        """What compiled code needs of what is known and wanted, in its order."""
+        return (
             self._numbers,
             self._window_ns,
             self._window_mm,
@@ -188,13 +195,19 @@ class State:
             self._program.numbers,
             self._program.table,
             self._scratch,
-            times_ns,
-            poses,
-            rested,
-            taking,
-            *columns,
-            first,
         )
+
+    def advance(
+        self,
+        times_ns: NDArray[np.int64],
+        poses: NDArray[np.float64],
+        rested: int,
+        taking: bool,
+        columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
+        first: int = 0,
+    ) -> int:
+        """Do ticks; how many were done; see `vbraille.engine.kernels.advance`."""
+        return kernels.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
 
     def run_steadily(
         self,
@@ -216,17 +229,7 @@ class State:
             lent.out,
             lent.talk,
             lent.actuators,
-            self._numbers,
-            self._window_ns,
-            self._window_mm,
-            self._velocities,
-            self.output,
-            self._held,
-            self._target,
-            self._at,
-            self._program.numbers,
-            self._program.table,
-            self._scratch,
+            *self._arrays,
             times_ns,
             poses,
             ring.published,

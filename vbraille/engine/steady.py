@@ -39,6 +39,7 @@ DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
     WRITTEN,  # bytes that went out of a FRAME that was torn
     SIZE,  # bytes of that FRAME
 ) = range(15)
+TOLD = 15  # numbers, in all
 _EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
 
 
@@ -139,7 +140,7 @@ def run(
 
     Parameters
     ----------
-    told : int64[15]
+    told : int64[TOLD]
         What it is told and tells, by the names above.
     orders, known : int64[8]
         Words of the mailbox, and what they were when they were last obeyed.
@@ -148,10 +149,11 @@ def run(
     work, out : uint8[bytes]
         Room to work in, and for a FRAME as it goes over the line.
     talks, actuators
-        Of `vbraille.devices.steady`; the first has one record.
+        The conversation, an array of one record, and what FRAMEs are made with; see
+        `vbraille.devices.steady`.
     state and on
-        As of `vbraille.engine.kernels.advance`; the last three are a ring's, and ``published``
-        tells its readers.
+        See `vbraille.engine.kernels.advance`; the last three are a ring's, and ``published``
+        tells its readers how many records there are.
 
     Returns
     -------

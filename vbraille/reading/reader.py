@@ -61,7 +61,7 @@ class Reader:
     echo
         What to say of each line.
     steering
-        Of the simulated hand that reads; None if a person's hand does.
+        What tells the simulated hand what to read; None if a person's hand reads.
     say
         Where to say it, one thing a call.
 

@@ -60,7 +60,7 @@ class Area:
 
     @property
     def height_mm(self) -> float:
-        """Of all lines together."""
+        """Height of all lines together."""
         return self.lines * self.pitch_mm
 
 

@@ -26,7 +26,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
         ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s or
         ``recorded:FILE``.
     seed
-        Of those that are drawn.
+        What a hand that is drawn at random begins from.
 
     Raises
     ------

@@ -106,12 +106,12 @@ class Steering:
     Parameters
     ----------
     descriptor
-        Of memory that another `Steering` has made; None makes some.
+        The descriptor of memory that another `Steering` has made; None makes some.
 
     Attributes
     ----------
     descriptor : int
-        Of the memory; it is closed with the `Steering` that has made it.
+        The descriptor of the memory; it is closed with the `Steering` that has made it.
 
     Raises
     ------

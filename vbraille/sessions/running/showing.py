@@ -103,7 +103,7 @@ class OnDevice:
         Tells which line of the journal is on the disk, for the traces to be tied to; None in a
         session of format 1.
     steering
-        Of the simulated hand that reads; None if a person's hand does.
+        What tells the simulated hand what to read; None if a person's hand reads.
     centred
         Whether the traces have places of the array's centre; else, in a session of format 1 or 2,
         of its left column.
