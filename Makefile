@@ -31,7 +31,7 @@ lint: .venv/tests
 tests: .venv/tests .venv/compiled
 	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
 	@# The kernels once more, as plain Python.
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/test_kernels.py tests/devices/test_wirekernels.py tests/devices/test_steady.py
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/wire/test_packing.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \
@@ -73,7 +73,7 @@ sound:
 	@touch .venv/runs $@
 
 # What drives the actuators is compiled here, so that no reading waits for it.
-.venv/compiled: .venv/runs vbraille/libc.py $(wildcard vbraille/render/*.py vbraille/devices/*.py vbraille/engine/*.py)
+.venv/compiled: .venv/runs vbraille/libc.py $(shell find vbraille/render vbraille/devices vbraille/engine -name "*.py")
 	$(BIN)/python -m vbraille.engine.compiling
 	@touch $@
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.messages import TRIPPED
+from vbraille.devices.wire.messages import TRIPPED
 from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:

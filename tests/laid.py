@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 
 
 def rebuilt(layout: Layout) -> str:

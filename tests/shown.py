@@ -6,9 +6,9 @@ import numpy as np
 
 from vbraille.display import Display
 from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping
-from vbraille.render.mappings import NONE
+from vbraille.render.braille.mappings import NONE
+from vbraille.render.braille.reference import deflections
 from vbraille.render.program import Program
-from vbraille.render.reference import deflections
 
 STRESS2_ARRAY = STRESS2.display
 VBD_ARRAY = VBD.display

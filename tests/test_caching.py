@@ -91,6 +91,6 @@ def test_a_first_reading_says_that_it_compiles(tmp_path):
         check=True,
     ).stdout.strip()
     (Path(folder) / "engine").mkdir(parents=True)
-    (Path(folder) / "engine" / "steady.run-1.nbc").touch()
+    (Path(folder) / "engine" / "serialtick.run-1.nbc").touch()
     again = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     assert again.stderr == ""

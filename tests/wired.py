@@ -27,17 +27,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.troubles import Troubles, troubles_of_host, troubles_of_line
-from vbraille.devices.conversation import Conversation
-from vbraille.devices.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
-from vbraille.devices.openserial import greet
-from vbraille.devices.ports import Address
-from vbraille.devices.serialdevice import SerialDevice
-from vbraille.devices.wire import Decoder
+from vbraille.braille.geometry import Geometry
+from vbraille.devices.serial.conversation import Conversation
+from vbraille.devices.serial.openserial import greet
+from vbraille.devices.serial.ports import Address
+from vbraille.devices.serial.serialdevice import SerialDevice
+from vbraille.devices.wire.codec import Decoder
+from vbraille.devices.wire.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
 from vbraille.display import Display
 from vbraille.engine.loop import Loop
 from vbraille.engine.record import X
 from vbraille.engine.ring import Ring
-from vbraille.geometry import Geometry
 from vbraille.render import BrailleStyle, Mapping, Profile, Tuning
 from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.simulator import split

@@ -1,5 +1,5 @@
 """``python -m vbraille``."""
 
-from vbraille.cli import main
+from vbraille.cli.main import main
 
 raise SystemExit(main())

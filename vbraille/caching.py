@@ -20,7 +20,7 @@ from pathlib import Path
 
 _log = logging.getLogger(__name__)
 # Where kernels are, and what they call.
-_ROOMS = ("render/*.py", "devices/*.py", "engine/*.py")
+_ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")
 
 
 @cache
@@ -50,7 +50,7 @@ def keep_compiled() -> bool:
 def is_compiled() -> bool:
     """Whether what drives actuators was compiled before, which takes a minute."""
     folder = _compiled_folder()
-    return folder is not None and any(folder.glob("*/steady.run-*.nbc"))
+    return folder is not None and any(folder.glob("*/serialtick.run-*.nbc"))
 
 
 @cache

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.render.models import Model
+    from vbraille.render.braille.models import Model
 
 FORMAT = 2
 CHUNK_FRAMES = 1024

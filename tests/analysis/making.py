@@ -1,10 +1,18 @@
 """Trials in a few words, and all the tables that are made of them."""
 
-from vbraille.analysis import characters, confusion, errors, legibility, levels, motion, overtime
-from vbraille.analysis.parsing import parse
-from vbraille.analysis.scores import of_trials
-from vbraille.analysis.sheets import from_rows
-from vbraille.analysis.trials import Places
+from vbraille.analysis.input.parsing import parse
+from vbraille.analysis.input.scoretable import of_trials
+from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.input.trials import Places
+from vbraille.analysis.measures import (
+    characters,
+    confusion,
+    doterrors,
+    legibility,
+    levels,
+    movement,
+    overtime,
+)
 
 COLUMNS = "participant condition presented answered duration_s"
 
@@ -44,7 +52,7 @@ def all_tables(trials, places):
     """Every table of trials."""
     by_participant = legibility.legibility(trials, places)
     measures = of_trials(trials, places, ["condition"])
-    seen = motion.trajectories([])
+    seen = movement.trajectories([])
     matrices = [confusion.of_characters(places), confusion.of_pairs(trials)]
     return [
         by_participant,
@@ -54,12 +62,12 @@ def all_tables(trials, places):
         characters.dots(trials, places),
         *(confusion.to_table(matrix, places) for matrix in matrices if matrix is not None),
         confusion.transmitted(trials, places, seed=1),
-        errors.errors(places),
+        doterrors.errors(places),
         overtime.over_time(trials),
         overtime.slopes(trials),
         seen,
-        motion.patterns(seen),
-        motion.correlations(trials),
+        movement.patterns(seen),
+        movement.correlations(trials),
         levels.level_means(measures),
         levels.t_tests(measures, "holm"),
         levels.analyses(measures)[0],

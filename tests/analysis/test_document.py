@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import vbraille.analysis
-from vbraille.analysis.tables import Schema
+from vbraille.analysis.schemas import Schema
 
 DOCUMENT = Path("docs/analysis.md").read_text(encoding="utf-8")
 

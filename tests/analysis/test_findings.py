@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.analysis.making import COLUMNS, sheet
-from vbraille.analysis.analyse import Options, analyse, analyse_scores
+from vbraille.analysis.chapters import Options, analyse, analyse_scores
 from vbraille.analysis.findings import findings, interval_words
-from vbraille.analysis.parsing import parse
-from vbraille.analysis.scores import Scores
-from vbraille.analysis.study import Study
-from vbraille.analysis.tables import Kind, to_print
+from vbraille.analysis.input.parsing import parse
+from vbraille.analysis.input.scoretable import Scores
+from vbraille.analysis.input.study import Study
+from vbraille.analysis.schemas import Kind, to_print
 
 
 def study(*lines, columns=COLUMNS):

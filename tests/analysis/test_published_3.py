@@ -17,12 +17,12 @@ from tests.analysis.published import (
     each,
     printed,
 )
-from vbraille.analysis import characters, confusion, errors
-from vbraille.analysis.legibility import averages, legibility
-from vbraille.analysis.parsing import parse
-from vbraille.analysis.sheets import from_rows
-from vbraille.analysis.tables import Kind, round_half_up, to_print
-from vbraille.analysis.trials import Places, name_cell
+from vbraille.analysis.input.parsing import parse
+from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.input.trials import Places, name_cell
+from vbraille.analysis.measures import characters, confusion, doterrors
+from vbraille.analysis.measures.legibility import averages, legibility
+from vbraille.analysis.schemas import Kind, round_half_up, to_print
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import load_protocol
 
@@ -275,7 +275,7 @@ def test_3_4_wrong_characters_of_wrong_strings(told):
 )
 def test_3_4_errors_by_kind(told):
     glyphs, added, removed, two = told
-    table = errors.errors(of_table_3_4(glyphs)[1])
+    table = doterrors.errors(of_table_3_4(glyphs)[1])
     assert {row["error"]: row["count"] for row in table.records()} == {
         "1 dot added": added,
         "1 dot moved": 42,
@@ -362,7 +362,7 @@ def test_3_5_frequent_errors_can_be_a_dot_added_or_moved(told):
         for pair in pairs:
             shown, answer = ("".join(glyph[place] for place in label) for label in pair)
             row = {"participant": "all", "condition": "all", "presented": shown, "answered": answer}
-            kinds.add(tuple(errors.errors(trials_of([row])[1]).column("error")))
+            kinds.add(tuple(doterrors.errors(trials_of([row])[1]).column("error")))
         assert kinds & {("1 dot added",), ("1 dot moved",)}
 
 

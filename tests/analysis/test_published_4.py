@@ -9,10 +9,10 @@ from scipy import stats
 
 from tests.analysis.making import record
 from tests.analysis.published import EXACT, RECONSTRUCTED, TOLD, each
-from vbraille.analysis.levels import analyses, level_means, t_tests
-from vbraille.analysis.scores import of_sheet
-from vbraille.analysis.sheets import from_rows
-from vbraille.analysis.tables import Kind, round_half_up, to_print
+from vbraille.analysis.input.scoretable import of_sheet
+from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.measures.levels import analyses, level_means, t_tests
+from vbraille.analysis.schemas import Kind, round_half_up, to_print
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import load_protocol
 

@@ -34,7 +34,7 @@ _SETTLED_S = 30.0
 # Longer than any lateness: beyond it cyclictest only counts.
 _HISTOGRAM_US = 100_000
 _TRANSLATE = """
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 from vbraille.translate import Book, Document, Table
 while True:
     list(Layout(Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb")), 26).lines())

@@ -35,10 +35,10 @@ _PATIENCE_S = 30.0
 _CONTROLLER = """
 import sys
 from tests.benchmarks.bench_engine import INFO
-from vbraille.cli.simulate import go_real_time
+from vbraille.cli.commands.simulate import go_real_time
 from vbraille.simulation.firmware import describe
 from vbraille.simulation.hand import Sweep
-from vbraille.devices.messages import Encoder
+from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Simulator
 simulator = Simulator(

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from tests.benchmarks.timing import Result, vbraille
 from tests.conftest import SEED, TEXTS
 from tests.laid import cuts_inside, laid_out, rebuilt
-from vbraille.page import Layout
-from vbraille.translate import Book, Cells, Document, Table, find_table
+from vbraille.layout.pages import Layout
+from vbraille.translate import Book, BrailleTable, Cells, Document, find_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,8 +76,8 @@ _PIECES = (
 
 
 @cache
-def _table(name: str) -> Table:
-    return Table(name)
+def _table(name: str) -> BrailleTable:
+    return BrailleTable(name)
 
 
 def run() -> Iterator[Result]:

@@ -10,17 +10,17 @@ import numpy as np
 from tests.benchmarks.timing import Result, ratio
 from tests.conftest import SEED, TEXTS
 from tests.shown import rendered
-from vbraille.engine.kernels import POSE_X, POSE_Y, POSED
 from vbraille.engine.record import columns_of, tick_dtype
-from vbraille.engine.state import State
-from vbraille.page import Layout
+from vbraille.engine.state import LoopState
+from vbraille.engine.ticks import POSE_X, POSE_Y, POSED
+from vbraille.layout.pages import Layout
 from vbraille.render import STRESS2
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, BrailleTable, Document
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from vbraille.page import Line
+    from vbraille.layout.pages import Line
     from vbraille.render.program import Program
 
 LINES, CELLS = 25, 40
@@ -118,7 +118,7 @@ def page_against_line(random: np.random.Generator) -> tuple[float, float]:
     records = columns_of(np.zeros(TICKS, tick_dtype(display.shape)))
 
     def ticks_of(program: Program) -> Callable[[], object]:
-        state = State(display, 1000.0, 0)
+        state = LoopState(display, 1000.0, 0)
         state.want(program, 1)
         times_ns = np.repeat(n[:, None] * 1_000_000, 2, axis=1)
 
@@ -138,7 +138,9 @@ def lines_of(count: int) -> Layout:
     """A book of so many lines, or a few more."""
     text = (TEXTS / "english.txt").read_text().strip().split("\n\n")
     paragraphs = text[1:] * (count // 200 + 1) if count > 1 else text[:1]
-    return Layout(Book(Document.from_text("\n\n".join(paragraphs)), Table("en-ueb-g2.ctb")), 26)
+    return Layout(
+        Book(Document.from_text("\n\n".join(paragraphs)), BrailleTable("en-ueb-g2.ctb")), 26
+    )
 
 
 def read(lines: list[Line], places: list[float], out: np.ndarray) -> None:

@@ -62,7 +62,8 @@ PLANNED_SEEDS = 500
 _START = """
 import time
 begun_s = time.perf_counter()
-import vbraille.cli.session, vbraille.sessions.running.console, vbraille.sessions.running.course
+import vbraille.cli.commands.session
+import vbraille.sessions.running.console, vbraille.sessions.running.course
 import vbraille.sessions.running.showing
 from vbraille.engine.host import Host
 from vbraille.render import VBD

@@ -18,7 +18,7 @@ FIRST_PAGE = ("--lines", "1-25")
 
 _PAGE_THROUGH = """
 import resource, sys
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 from vbraille.translate import Book, Document, Table
 layout = Layout(Book(Document.open(sys.argv[1]), Table("en-ueb-g2.ctb")), 26)
 lines = sum(1 for _ in layout.lines())
@@ -49,10 +49,10 @@ def _texts(folder: Path) -> Iterator[Result]:
 
     import louis
 
-    from vbraille.page import Layout
-    from vbraille.translate import Book, Document, Table
+    from vbraille.layout.pages import Layout
+    from vbraille.translate import Book, BrailleTable, Document
 
-    table = Table("en-ueb-g2.ctb")
+    table = BrailleTable("en-ueb-g2.ctb")
     path = big_text(folder / "1mb", 1_000_000)
     document = Document.open(path)
     texts = []

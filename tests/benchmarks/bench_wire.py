@@ -8,8 +8,8 @@ import numpy as np
 
 from tests.benchmarks.timing import Result
 from tests.conftest import SEED
-from vbraille.devices.messages import Frame, Hello, Rest, State, Watchdog
-from vbraille.devices.wire import Decoder, encode
+from vbraille.devices.wire.codec import Decoder, encode
+from vbraille.devices.wire.messages import Frame, Hello, Rest, State, Watchdog
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,12 +11,12 @@ from scipy.special import expit
 
 from tests.benchmarks.coverage_people import Found
 from tests.conftest import SEED
-from vbraille.analysis.motion import correlation
-from vbraille.analysis.overtime import slope
+from vbraille.analysis.measures.movement import correlation
+from vbraille.analysis.measures.overtime import slope
 from vbraille.analysis.statistics.information import transmitted_bits
 from vbraille.analysis.statistics.transmission import transmission
 from vbraille.analysis.statistics.unanswerable import Unanswerable
-from vbraille.sessions.planning.spelling import LETTERS
+from vbraille.braille.spelling import LETTERS
 
 _MASKS = list(LETTERS.values())
 DISTANCE = np.array([[(a ^ b).bit_count() for b in _MASKS] for a in _MASKS], float)

@@ -20,7 +20,7 @@ from vbraille.devices.firmware import Controller, describe
 from vbraille.devices.pty import Link, Port
 
 from tests.benchmarks.tick_baseline import INFO, RATE_HZ, page
-from vbraille.devices.messages import Encoder
+from vbraille.devices.wire.messages import Encoder
 
 LOW_MM, HIGH_MM, STEP_MM = 2.0, 8.0, 0.04
 _PRIORITY = 41  # the host has 40; a real controller has a processor of its own

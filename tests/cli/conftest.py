@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from vbraille.cli import main
+from vbraille.cli.main import main
 from vbraille.cli.stopping import SIGNALS
 
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"

@@ -8,8 +8,8 @@ import pytest
 
 from tests.cli import program
 from vbraille import __version__
-from vbraille.page import Layout
-from vbraille.translate import Book, Cells, Document, Table
+from vbraille.layout.pages import Layout
+from vbraille.translate import Book, BrailleTable, Cells, Document
 
 UNICODE = """\
 ⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑
@@ -37,7 +37,7 @@ def test_the_formats_say_the_same(call, text):
 
 
 def test_a_long_text_is_all_there(call, texts):
-    book = Book(Document.open(texts / "english.txt"), Table("en-ueb-g2.ctb"))
+    book = Book(Document.open(texts / "english.txt"), BrailleTable("en-ueb-g2.ctb"))
     lines = list(Layout(book, 26).lines())
     said = call("page", texts / "english.txt")
     assert said.out.splitlines() == [line.printed.to_unicode() for line in lines]

@@ -6,9 +6,9 @@ import signal
 import pytest
 
 from tests.cli import program
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, BrailleTable, Document
 
 SUMMARY = (
     r"summary: lines (\d+), seconds (\d+\.\d), mean scanning speed (\d+\.\d) mm/s, "
@@ -23,7 +23,7 @@ def of_lines(said):
 
 
 def spoken(path, first, last, labels=("line", "cells", "text")):
-    layout = Layout(Book(Document.open(path), Table("en-ueb-g2.ctb")), 26)
+    layout = Layout(Book(Document.open(path), BrailleTable("en-ueb-g2.ctb")), 26)
     said = []
     for line in layout.lines(first, last):
         parts = {"line": line.number, "cells": line.printed.to_unicode(), "text": line.text}

@@ -11,8 +11,8 @@ import pytest
 from tests.cli import program
 from tests.render.reader import read_back
 from tests.shown import LATERO, array_of
-from vbraille.devices.messages import Encoder
-from vbraille.render.models import model_of
+from vbraille.devices.wire.messages import Encoder
+from vbraille.render.braille.models import model_of
 from vbraille.simulation.firmware import Controller, describe
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.pty import Port

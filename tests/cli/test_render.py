@@ -14,11 +14,11 @@ from tests.cli import program
 from tests.render.reader import read_back
 from tests.shown import rendered, twin
 from vbraille import __version__
-from vbraille.geometry import PRESETS, Geometry
-from vbraille.page import Layout
+from vbraille.braille.geometry import PRESETS, Geometry
+from vbraille.layout.pages import Layout
 from vbraille.recording import anchor_mm, poses_of
 from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, BrailleTable, Document
 from vbraille.wording import count
 
 RECORDED = "t_s,x_mm\n" + "".join(f"{t / 10},{x}\n" for t, x in enumerate((-9, 40, 155, 20, -11)))
@@ -100,7 +100,7 @@ def test_the_file_holds_all_that_was_rendered(
 
         cells, length = file["page/cells"][:], file["page/length"][:]
         assert cells.dtype == np.uint8
-        layout = Layout(Book(Document.open(source), Table("en-ueb-g2.ctb")), cells.shape[1])
+        layout = Layout(Book(Document.open(source), BrailleTable("en-ueb-g2.ctb")), cells.shape[1])
         masks = [wanted.masks for wanted in layout.lines(first, last)]
         assert length.tolist() == [m.size for m in masks]
         for row, wanted in enumerate(masks):

@@ -12,7 +12,7 @@ from tests.cli import program
 # was called: a Ctrl-C at a moment that is the same in every run.
 AT_AN_EVENT = """
 import signal, sys
-from vbraille.cli import main
+from vbraille.cli.main import main
 
 moment, events = int(sys.argv[1]), 0
 

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from tests.cli import program
-from vbraille.devices.messages import Encoder, Frame, Hello, Info, State, Watchdog
-from vbraille.devices.wire import Decoder, Levels, encode
+from vbraille.devices.wire.codec import Decoder, Levels, encode
+from vbraille.devices.wire.messages import Encoder, Frame, Hello, Info, State, Watchdog
 
 PATIENCE_S = 30.0
 
@@ -229,7 +229,7 @@ def test_what_it_cannot_be_is_said_in_a_sentence(call, tmp_path, monkeypatch, op
 
 
 def test_it_loads_nothing_heavy():
-    code = "import sys, vbraille.cli.simulate; print(*sys.modules)"
+    code = "import sys, vbraille.cli.commands.simulate; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert "vbraille.simulation.simulator" in loaded

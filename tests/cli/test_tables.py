@@ -1,6 +1,6 @@
 """``vbraille tables``, and the sentences that name the nearest of them."""
 
-from vbraille.translate import Table, list_tables
+from vbraille.translate import BrailleTable, list_tables
 
 
 def test_every_table_is_a_line_that_says_what_it_is(call):
@@ -22,7 +22,7 @@ def test_the_tables_of_a_language(call):
     for spelling in ("FR", "fr_FR", "fr-CA"):
         assert call("tables", "--language", spelling).out.splitlines() == [usual, *lines]
     for line in lines:
-        Table(line.split(":")[0])
+        BrailleTable(line.split(":")[0])
     _, *chinese = call("tables", "--language", "CMN_hans").out.splitlines()
     assert chinese
     assert all("language cmn-Hans" in line for line in chinese)

@@ -18,12 +18,12 @@ import pytest
 
 from tests.cli.test_render import from_the_file_alone
 from tests.cli.test_session_bad_input import contents
+from vbraille.braille.cells import Cells
 from vbraille.recording import poses_of
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.replay import frames
 from vbraille.sessions.record.traces import LEFT_TRACE, read_trace
-from vbraille.translate.cells import Cells
 
 WRITTEN = Path(__file__).parent.parent / "written-by"
 SESSIONS = sorted(WRITTEN.glob("*/sessions/*"))

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.engine.test_loop import info
-from vbraille.devices.messages import Encoder
-from vbraille.devices.openserial import begin
-from vbraille.devices.ports import parse_address
 from vbraille.devices.saying import told
-from vbraille.devices.wire import Decoder
+from vbraille.devices.serial.openserial import begin
+from vbraille.devices.serial.ports import parse_address
+from vbraille.devices.wire.codec import Decoder
+from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.firmware import Controller, describe
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.serialdevice import SerialDevice
+    from vbraille.devices.serial.serialdevice import SerialDevice
     from vbraille.pose import Pose
 
 HOME_MM = -5.4  # of the centre of the array, which is 10.8 mm long, at the left stop

@@ -4,9 +4,18 @@ import pytest
 
 from tests.devices.bench import AWAY, HOME_MM, Bench, shown
 from vbraille.devices.base import Placing
-from vbraille.devices.messages import CountSign, Encoder, Error, Frame, Hello, Rest, State, Watchdog
 from vbraille.devices.saying import told
-from vbraille.devices.wire import encode, enframe
+from vbraille.devices.wire.codec import encode, enframe
+from vbraille.devices.wire.messages import (
+    CountSign,
+    Encoder,
+    Error,
+    Frame,
+    Hello,
+    Rest,
+    State,
+    Watchdog,
+)
 from vbraille.simulation.firmware import Controller
 
 

@@ -7,9 +7,9 @@ import pytest
 from tests.devices.bench import Bench
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Button, Placed, Silent, WatchdogTripped
-from vbraille.devices.messages import Encoder, Error
 from vbraille.devices.saying import told
-from vbraille.devices.wire import encode
+from vbraille.devices.wire.codec import encode
+from vbraille.devices.wire.messages import Encoder, Error
 from vbraille.errors import DeviceError
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vbraille.devices.conformance import CHECKS
 from vbraille.errors import InputError
+from vbraille.testing.conformance import CHECKS
 
 PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"
 

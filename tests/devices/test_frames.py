@@ -3,8 +3,8 @@
 import numpy as np
 
 from tests.devices.bench import REST, Bench
-from vbraille.devices.messages import Frame
-from vbraille.devices.wire import Levels
+from vbraille.devices.wire.codec import Levels
+from vbraille.devices.wire.messages import Frame
 
 
 def test_levels_are_those_of_the_formula(rng):

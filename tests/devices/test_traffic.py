@@ -6,11 +6,11 @@ from contextlib import suppress
 import pytest
 
 from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench, shown
-from tests.devices.test_transitions import AFTER_THE_START, ROWS, watched
-from vbraille.devices.messages import PLACED, RESTING, Error, Frame, Hello, State, Watchdog
-from vbraille.devices.messages import Rest as RestMessage
-from vbraille.devices.transitions import Stage
-from vbraille.devices.wire import Levels, encode, enframe
+from tests.devices.serial.test_transitions import AFTER_THE_START, ROWS, watched
+from vbraille.devices.serial.transitions import Stage
+from vbraille.devices.wire.codec import Levels, encode, enframe
+from vbraille.devices.wire.messages import PLACED, RESTING, Error, Frame, Hello, State, Watchdog
+from vbraille.devices.wire.messages import Rest as RestMessage
 from vbraille.errors import DeviceError
 from vbraille.simulation.firmware import Controller
 

@@ -9,17 +9,27 @@ import numpy as np
 import pytest
 from cobs import cobs
 
-from vbraille.devices import messages
-from vbraille.devices.fields import (
-    Choice,
+from vbraille.devices.serial.transitions import TRANSITIONS, Stage
+from vbraille.devices.wire import messages
+from vbraille.devices.wire.codec import (
+    CRC_RESIDUE,
+    MOST_FRAME_BYTES,
+    Decoder,
+    LevelPacking,
+    Levels,
+    encode,
+    line_bytes,
+)
+from vbraille.devices.wire.fields import (
     Fixed,
     Number,
+    OneOf,
     OptionalNumber,
     PerActuator,
     Text,
     fields_of,
 )
-from vbraille.devices.messages import (
+from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
     MESSAGES,
@@ -32,16 +42,6 @@ from vbraille.devices.messages import (
     Frame,
     State,
     Watchdog,
-)
-from vbraille.devices.transitions import TRANSITIONS, Stage
-from vbraille.devices.wire import (
-    CRC_RESIDUE,
-    MOST_FRAME_BYTES,
-    Decoder,
-    Layout,
-    Levels,
-    encode,
-    line_bytes,
 )
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
@@ -92,8 +92,8 @@ def example_of(message):
 def test_examples(code, message):
     example, body, crc, line = example_of(message)
     assert type(example) is message
-    assert Layout(code, message).encode(example) == body
-    assert Layout(code, message).decode(body) == example
+    assert LevelPacking(code, message).encode(example) == body
+    assert LevelPacking(code, message).decode(body) == example
     assert crc32(body).to_bytes(4, "little") == crc
     assert cobs.encode(body + crc) + b"\0" == line == encode(example)
     assert Decoder().feed(line) == [example]
@@ -105,7 +105,7 @@ def type_and_values(field):
             return TYPES[field.code], f"{field.low} … {field.high} {field.unit}, {field.none} none"
         case Number():
             return TYPES[field.code], f"{field.low} … {field.high} {field.unit}".strip()
-        case Choice():
+        case OneOf():
             choices = [f"{int(choice)} {choice.name.lower()}" for choice in field.of]
             return TYPES[field.code], ", ".join(choices)
         case Text():

@@ -22,13 +22,13 @@ from dataclasses import replace
 import numpy as np
 
 from tests.engine.test_loop import info
-from vbraille.devices.conversation import Conversation
-from vbraille.devices.messages import Encoder, State
-from vbraille.devices.openserial import greet
-from vbraille.devices.ports import Address
-from vbraille.devices.serialdevice import SerialDevice
-from vbraille.devices.seriallines import DescriptorLine
-from vbraille.devices.wire import Decoder, encode
+from vbraille.devices.serial.conversation import Conversation
+from vbraille.devices.serial.openserial import greet
+from vbraille.devices.serial.ports import Address
+from vbraille.devices.serial.serialdevice import SerialDevice
+from vbraille.devices.serial.seriallines import DescriptorLine
+from vbraille.devices.wire.codec import Decoder, encode
+from vbraille.devices.wire.messages import Encoder, State
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 from vbraille.simulation.firmware import Controller, describe

@@ -4,7 +4,7 @@ import pytest
 
 from tests.controllers import ControllerOf20261121
 from tests.wired import reading
-from vbraille.devices.conversation import Conversation
+from vbraille.devices.serial.conversation import Conversation
 from vbraille.simulation.firmware import Controller
 
 BLOCK = 20

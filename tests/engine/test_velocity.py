@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from vbraille.display import Display
-from vbraille.engine.kernels import POSE_X, POSE_Y, POSED
 from vbraille.engine.record import VX, VY, columns_of, tick_dtype
-from vbraille.engine.state import State
+from vbraille.engine.state import LoopState
+from vbraille.engine.ticks import POSE_X, POSE_Y, POSED
 
 MS = 1_000_000
 N, M = 10, 50  # of eqs. 9.4 and 9.5
@@ -15,7 +15,7 @@ N, M = 10, 50  # of eqs. 9.4 and 9.5
 def estimates(times_ns, places_mm):
     """Velocity after each pose, float64[n, 2]; the host's ticks are a millisecond apart."""
     display = Display("table", 1, 1, 1.0, 1.0, height_mm=300.0)
-    state = State(display, 1000.0, 0)
+    state = LoopState(display, 1000.0, 0)
     n = len(times_ns)
     times = np.stack((np.arange(1, n + 1) * MS, times_ns), axis=1)
     poses = np.zeros((n, 4))
@@ -89,7 +89,7 @@ def test_a_carriage_that_was_lost_and_found_again_has_no_speed():
 
 def test_a_slider_has_no_velocity_along_y():
     display = Display("slider", 1, 1, 1.0, 1.0)
-    state = State(display, 1000.0, 0)
+    state = LoopState(display, 1000.0, 0)
     poses = np.ones((80, 4))
     poses[:, POSE_X] = poses[:, POSE_Y] = np.arange(80) * 0.04
     columns = columns_of(np.zeros(80, tick_dtype(display.shape)))

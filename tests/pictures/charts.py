@@ -2,7 +2,7 @@
 
 import math
 
-from vbraille.pictures.charts import Bars, Matrix, Path, Paths, Run, Runs, Series
+from vbraille.pictures.charts import Bars, Curve, Matrix, Path, Paths, Runs, Series
 
 
 def series(name="T = 0 %", groups=3, missing=()):
@@ -24,7 +24,7 @@ def runs(count=1, trials=20):
     numbers = tuple(range(1, trials + 1))
     return Runs(
         "Legibility over time",
-        tuple(Run(f"S{n}, textured", numbers, correct, average) for n in range(count)),
+        tuple(Curve(f"S{n}, textured", numbers, correct, average) for n in range(count)),
     )
 
 

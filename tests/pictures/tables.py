@@ -2,11 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from vbraille.page import Line
+from vbraille.braille.cells import Cells
+from vbraille.layout.pages import Line
 from vbraille.pictures import mapping, page, profile, strain, wave
 from vbraille.render import STRESS2, VBD, Tuning
-from vbraille.translate.cells import Cells
-from vbraille.translate.paragraphs import Paragraph
+from vbraille.translate.documents.paragraphs import Paragraph
 
 NO_TEXT = Paragraph(np.zeros(0, np.uint32), np.zeros(0, np.int64), 0, False, frozenset())
 

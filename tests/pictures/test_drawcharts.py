@@ -16,14 +16,14 @@ from PIL import Image
 from tests.pictures.charts import CHARTS, bars, matrix, path, runs
 from vbraille.pictures.charts import Bars, Paths, Runs, Series
 from vbraille.pictures.drawcharts import draw_chart
-from vbraille.pictures.figures import to_bytes
+from vbraille.pictures.figurefiles import to_bytes
 
 KINDS = pytest.mark.parametrize("chart", CHARTS, ids=lambda chart: type(chart).__name__)
 DIGESTS = """
 import hashlib
 from tests.pictures.charts import CHARTS
 from vbraille.pictures.drawcharts import draw_chart
-from vbraille.pictures.figures import to_bytes
+from vbraille.pictures.figurefiles import to_bytes
 for chart in CHARTS:
     figure = draw_chart(chart)
     for kind, dpi in (("svg", 0), ("png", 40)):

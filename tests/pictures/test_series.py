@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.pictures.tables import TABLES, make_line, make_page, with_style
-from vbraille.pictures import Table, mapping, profile, strain, wave, write_csv
+from vbraille.pictures import FigureTable, mapping, profile, strain, wave, write_csv
 from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
 
@@ -214,7 +214,7 @@ def test_csv_gives_the_same_numbers_back(table):
 
 def test_a_table_refuses_columns_of_different_lengths():
     with pytest.raises(ValueError, match="differ in length"):
-        Table("wave", "", {"a": np.zeros(2), "b": np.zeros(3)})
+        FigureTable("wave", "", {"a": np.zeros(2), "b": np.zeros(3)})
 
 
 def test_the_numbers_need_neither_matplotlib_nor_the_kernels():

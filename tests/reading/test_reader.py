@@ -8,13 +8,13 @@ import pytest
 from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS
 from vbraille.reading.commands import BY_KEY
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, BrailleTable, Document
 
 SPAN_MM = 10.8
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
@@ -29,7 +29,7 @@ class Bench:
         self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
         self.loop = self.engine.loop
         self.said: list[str] = []
-        self.layout = Layout(Book(Document.from_text(text), Table("en-ueb-g2.ctb")), width)
+        self.layout = Layout(Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb")), width)
         self.reader = Reader(
             self.layout,
             self.engine,

@@ -9,8 +9,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left, twin
+from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.display import Display
-from vbraille.geometry import PRESETS, Geometry
 from vbraille.render import (
     MAPPINGS,
     STRESS2,

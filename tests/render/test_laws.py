@@ -19,8 +19,8 @@ from tests.render.scenes import (
     scenes_with_places,
 )
 from tests.shown import array_of
-from vbraille import geometry
-from vbraille.geometry import Geometry
+from vbraille.braille import geometry
+from vbraille.braille.geometry import Geometry
 from vbraille.render import (
     MAPPINGS,
     MODELS,

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.render.scenes import JIT, examples
 from tests.shown import LATERO
 from vbraille.render import MAPPINGS, STRESS2, VBD, Profile
-from vbraille.render.work import NO_PART, Kind
+from vbraille.render.work import NO_PART, ProgramKind
 
 LINES = 25
 MODELS = {
@@ -85,7 +85,7 @@ def test_a_page_shows_everywhere_the_line_nearest_the_centre(style, display, rng
     masks, page = page_of(style, display, rng)
     lines = [style.render(line, display) for line in masks]
     pitch = style.geometry.line_pitch_mm
-    assert page.kind is Kind.PAGE
+    assert page.kind is ProgramKind.PAGE
     shown = set()
     for _ in range(4000 if JIT else 400):
         x_mm, y_mm = rng.uniform(-15, 90), rng.uniform(0, LINES * pitch)

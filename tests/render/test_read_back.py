@@ -6,7 +6,7 @@ import pytest
 from tests.render.reader import read_back
 from tests.render.scenes import DOT_PLACES, JIT, cell
 from tests.shown import LATERO, rendered
-from vbraille import geometry
+from vbraille.braille import geometry
 from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
 
 TEXTURES = [0.0, 0.25, 1.0] if JIT else [0.25]

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
-from vbraille import geometry
-from vbraille.geometry import Geometry
+from vbraille.braille import geometry
+from vbraille.braille.geometry import Geometry
 from vbraille.render import (
     MAPPINGS,
     STRESS2,

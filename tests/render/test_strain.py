@@ -7,7 +7,7 @@ import pytest
 
 from tests.render.scenes import JIT, Scene, cell, frame_at, line
 from tests.shown import array_of
-from vbraille import geometry
+from vbraille.braille import geometry
 from vbraille.render import VBD, Tuning
 
 PITCH_MM = 0.7

@@ -8,7 +8,7 @@ import pytest
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY
 from vbraille.render import STRESS2
 from vbraille.render.program import nothing, vibration
-from vbraille.render.work import Kind
+from vbraille.render.work import ProgramKind
 
 
 def frames_of(program, times_s, **where):
@@ -54,7 +54,7 @@ def test_no_actuator_is_faster_than_frequency_and_amplitude():
 def test_what_moves_and_what_does_not():
     program = vibration(STRESS2_ARRAY)
     line = STRESS2.style.render(np.full(3, 63, np.uint8), STRESS2_ARRAY)
-    assert (program.kind, program.moves) == (Kind.VIBRATION, True)
+    assert (program.kind, program.moves) == (ProgramKind.VIBRATION, True)
     assert not line.moves
     assert not nothing(STRESS2_ARRAY).moves
     still = frames_of(line, [0.0, 0.3, 7.0])

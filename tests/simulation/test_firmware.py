@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.controllers import ControllerOf20261121
-from vbraille.devices.messages import (
+from vbraille.devices.wire.codec import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
+from vbraille.devices.wire.messages import (
     FAULTY,
     PLACED,
     RESTING,
@@ -23,7 +24,6 @@ from vbraille.devices.messages import (
     State,
     Watchdog,
 )
-from vbraille.devices.wire import DELIMITER, Decoder, Levels, OtherVersion, encode, enframe
 from vbraille.display import Display
 from vbraille.simulation.firmware import MARK_MM, Controller, describe
 

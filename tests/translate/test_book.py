@@ -7,10 +7,10 @@ import re
 import pytest
 
 from tests.conftest import SEED
-from vbraille.translate import Book, Cells, Document, Table
+from vbraille.translate import Book, BrailleTable, Cells, Document
 
 
-class Counting(Table):
+class Counting(BrailleTable):
     """A table that keeps what it was asked for."""
 
     def __init__(self, name: str) -> None:
@@ -28,8 +28,8 @@ def english(texts) -> str:
 
 
 @pytest.fixture(scope="module")
-def table() -> Table:
-    return Table("en-ueb-g2.ctb")
+def table() -> BrailleTable:
+    return BrailleTable("en-ueb-g2.ctb")
 
 
 class TestLazy:
@@ -94,7 +94,7 @@ class TestCells:
     def test_every_cell_stands_for_characters_of_its_paragraph(self, texts, file):
         text = (texts / file).read_text()
         name = {"e": "en-ueb-g2.ctb", "f": "fr-bfu-comp6.utb", "d": "de-g2.ctb"}[file[0]]
-        book = Book(Document.from_text(text), Table(name))
+        book = Book(Document.from_text(text), BrailleTable(name))
         n = 0
         while (found := book.paragraph(n)) is not None:
             paragraph, cells = found

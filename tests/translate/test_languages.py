@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.translate import Table, find_table, list_tables, six_dot_table, tables_of
+from vbraille.translate import BrailleTable, find_table, list_tables, six_dot_table, tables_of
 
 DOCUMENT = Path("docs/languages.md").read_text(encoding="utf-8")
 LANGUAGES = sorted({table.language for table in list_tables() if table.language})
@@ -60,9 +60,9 @@ def test_what_readers_expect(language, grade, name):
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_language_has_a_table_of_six_dots_unless_there_is_none(language):
     name = find_table(language)
-    assert Table(name).eight_dots == (language in EIGHT_DOTS)
+    assert BrailleTable(name).eight_dots == (language in EIGHT_DOTS)
     assert (six_dot_table(language) is None) == (language in EIGHT_DOTS)
-    info = Table(name).info
+    info = BrailleTable(name).info
     # One has no metadata, and of the Dravidian languages together there is nothing else.
     if info is not None and language not in EIGHT_DOTS | {"dra"}:
         assert info.kind != "computer"
@@ -72,7 +72,7 @@ def test_every_language_has_a_table_of_six_dots_unless_there_is_none(language):
 def test_the_document_names_it(language):
     titles = {table.name: table.title for table in list_tables()}
     name = find_table(language)
-    dots = "8" if Table(name).eight_dots else "6"
+    dots = "8" if BrailleTable(name).eight_dots else "6"
     assert f"| {language} | `{name}` | {titles.get(name, '')} | {dots} |" in DOCUMENT
 
 
@@ -95,11 +95,11 @@ def test_what_a_sentence_offers_can_be_had():
     for language in LANGUAGES:
         for grade in range(4):
             try:
-                Table(find_table(language, grade))
+                BrailleTable(find_table(language, grade))
             except InputError as refused:
                 there = str(refused).partition("there is ")[2].partition("there is ")[2]
                 for other in there.partition(" (")[0].split(", "):
-                    Table(find_table(language, int(other)))
+                    BrailleTable(find_table(language, int(other)))
 
 
 def test_tables_of_a_language_are_found_by_any_spelling_of_it():

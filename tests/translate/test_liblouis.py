@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from vbraille.errors import InputError
-from vbraille.translate import Cells, Document, Table
+from vbraille.translate import BrailleTable, Cells, Document
 from vbraille.translate.liblouis import nearest
 
 TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "de-g2.ctb")
@@ -29,11 +29,11 @@ IGNORABLE = {0x34F, 0x61C, 0xFEFF}.union(
 
 
 @pytest.fixture(scope="module", params=TABLES)
-def table(request) -> Table:
-    return Table(request.param)
+def table(request) -> BrailleTable:
+    return BrailleTable(request.param)
 
 
-def translate(table: Table, text: str) -> Cells:
+def translate(table: BrailleTable, text: str) -> Cells:
     paragraph = Document.from_text(text, keep_lines=True).paragraph(0)
     assert paragraph is not None
     return table.translate(paragraph)
@@ -61,8 +61,8 @@ class TestTable:
         with pytest.raises(
             InputError, match="has no braille in it, as tables for hyphenation have"
         ):
-            Table(name)
-        assert Table(f"en-ueb-g2.ctb,{name}").name
+            BrailleTable(name)
+        assert BrailleTable(f"en-ueb-g2.ctb,{name}").name
 
     @pytest.mark.parametrize(
         "name",
@@ -88,38 +88,38 @@ class TestTable:
     )
     def test_no_such_table(self, name, capfd):
         with pytest.raises(InputError, match="there is no braille table"):
-            Table(name)
+            BrailleTable(name)
         assert capfd.readouterr() == ("", "")
 
     def test_the_nearest_are_named(self):
         with pytest.raises(InputError, match=r"the nearest are en-ueb-g2\.ctb, en-ueb-g1\.ctb"):
-            Table("en-ueb-g2")
+            BrailleTable("en-ueb-g2")
         assert nearest("fr-bfu-g3", ["fr-bfu-g2.ctb"]).startswith("; the nearest are fr-bfu-g2.ctb")
 
     def test_a_file_that_is_no_table(self, texts, capfd):
         with pytest.raises(InputError, match=r"liblouis cannot use .* as a braille table"):
-            Table(str(texts / "english.txt"))
+            BrailleTable(str(texts / "english.txt"))
         assert capfd.readouterr() == ("", "")
 
     def test_a_table_of_the_users_own(self, tmp_path):
         path = tmp_path / "mine.utb"
         path.write_text("space \\s 0\nlowercase a 1\nlowercase b 1278\n")
-        assert translate(Table(str(path)), "a b").to_dots() == "1 0 1-2-7-8"
+        assert translate(BrailleTable(str(path)), "a b").to_dots() == "1 0 1-2-7-8"
 
     def test_metadata(self):
-        info = Table("en-ueb-g2.ctb").info
+        info = BrailleTable("en-ueb-g2.ctb").info
         assert info is not None
         assert (info.language, info.grade, info.kind) == ("en", "2", "literary")
 
     def test_known_cells(self):
-        assert translate(Table("en-ueb-g2.ctb"), "The child can.").to_brf() == ",! * C4"
-        assert translate(Table("en-ueb-g1.ctb"), "child").to_brf() == "CHILD"
-        assert translate(Table("fr-bfu-comp6.utb"), "été").to_dots() == (
+        assert translate(BrailleTable("en-ueb-g2.ctb"), "The child can.").to_brf() == ",! * C4"
+        assert translate(BrailleTable("en-ueb-g1.ctb"), "child").to_brf() == "CHILD"
+        assert translate(BrailleTable("fr-bfu-comp6.utb"), "été").to_dots() == (
             "1-2-3-4-5-6 2-3-4-5 1-2-3-4-5-6"
         )
 
     def test_dots_7_and_8_come_through(self):
-        cells = translate(Table("fr-bfu-comp8.utb"), "Aé")
+        cells = translate(BrailleTable("fr-bfu-comp8.utb"), "Aé")
         assert cells.to_dots().split()[0] == "1-7"
         assert Cells.from_unicode(cells.to_unicode()).masks.tolist() == cells.masks.tolist()
 
@@ -170,14 +170,14 @@ class TestNothingLost:
         assert cells.masks.all()
 
     def test_ligatures_and_wide_letters_are_read_as_letters(self):
-        table = Table("fr-bfu-comp6.utb")
+        table = BrailleTable("fr-bfu-comp6.utb")
         assert translate(table, "ﬁ").to_brf() == translate(table, "fi").to_brf()
         assert translate(table, "ｆ").to_brf() == translate(table, "f").to_brf()
 
     @settings(max_examples=100)
     @given(st.text(likely, min_size=1, max_size=20))
     def test_maps_hold_for_any_text(self, text):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         paragraph = Document.from_text(text).paragraph(0)
         if paragraph is None:
             return
@@ -212,10 +212,10 @@ class TestThreads:
         assert (done.returncode, done.stdout, done.stderr) == (0, "same\n", "")
 
     def test_one_table_in_many_threads(self, texts):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         lines = (texts / "english.txt").read_text().splitlines()
         lines = [f"{line} {c}" for line, c in zip(lines, sample_of_unicode(), strict=False) if line]
-        expected = [translate(Table("en-ueb-g2.ctb"), line).to_unicode() for line in lines]
+        expected = [translate(BrailleTable("en-ueb-g2.ctb"), line).to_unicode() for line in lines]
         with ThreadPoolExecutor(8) as pool:
             found = list(pool.map(lambda line: translate(table, line).to_unicode(), lines))
         assert found == expected

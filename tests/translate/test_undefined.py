@@ -5,14 +5,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.translate.test_liblouis import sample_of_unicode
-from vbraille.translate import Cells, Document, Table, Undefined, find_table, list_tables
+from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
 from vbraille.translate.scripts import script_of
 from vbraille.translate.undefined import describe, likenesses
 
 SIX_DOT_TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "ru-litbrl.ctb", "ko-g2.ctb", "bh.tbl")
 
 
-def translate(table: Table, text: str) -> Cells:
+def translate(table: BrailleTable, text: str) -> Cells:
     paragraph = Document.from_text(text).paragraph(0)
     assert paragraph is not None
     return table.translate(paragraph)
@@ -29,38 +29,38 @@ class TestSpelling:
     )
     @pytest.mark.parametrize("name", ["en-ueb-g2.ctb", "fr-bfu-comp6.utb"])
     def test_it_is_written_by_the_tables_own_rules(self, name, how, instead):
-        found = translate(Table(name, how), "hi \U0001f600 there")
-        written = translate(Table(name), instead)
+        found = translate(BrailleTable(name, how), "hi \U0001f600 there")
+        written = translate(BrailleTable(name), instead)
         assert found.to_brf() == written.to_brf()
 
     def test_dropped_it_leaves_nothing(self):
-        dropped = translate(Table("en-ueb-g2.ctb", Undefined.DROP), "hi\U0001f600 there")
-        assert dropped.to_brf() == translate(Table("en-ueb-g2.ctb"), "hi there").to_brf()
+        dropped = translate(BrailleTable("en-ueb-g2.ctb", Undefined.DROP), "hi\U0001f600 there")
+        assert dropped.to_brf() == translate(BrailleTable("en-ueb-g2.ctb"), "hi there").to_brf()
 
     def test_one_marker_stands_for_a_run(self):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         run = translate(table, "a \u0434\u0430\U0001f600 b")
         assert run.to_brf() == translate(table, "a [?] b").to_brf()
         assert run.source(2) == (2, 5)
 
     def test_what_has_no_name_is_numbered(self):
-        table = Table("en-ueb-g2.ctb", Undefined.NAME)
+        table = BrailleTable("en-ueb-g2.ctb", Undefined.NAME)
         assert translate(table, "\ue000").to_brf() == translate(table, "[U+E000]").to_brf()
 
     def test_a_table_without_brackets_or_letters_crosses_out(self):
         for how in (Undefined.MARK, Undefined.NAME, Undefined.CODE):
-            assert translate(Table("bh.tbl", how), "\U0001f600").to_brf() == "==="
+            assert translate(BrailleTable("bh.tbl", how), "\U0001f600").to_brf() == "==="
 
     @pytest.mark.parametrize("how", Undefined)
     @pytest.mark.parametrize("name", SIX_DOT_TABLES)
     def test_six_dots_are_enough_for_every_kind_of_character(self, name, how):
-        table = Table(name, how)
+        table = BrailleTable(name, how)
         for c in sample_of_unicode():
             if not c.isspace() and c not in "\xad\ufeff":
                 translate(table, f"{c}a").to_brf()
 
     def test_the_dash_of_a_table_that_writes_it_in_eight_dots(self):
-        table = Table("zh-tw.ctb")
+        table = BrailleTable("zh-tw.ctb")
         assert translate(table, "\u2014").to_brf() == translate(table, "--").to_brf()
         assert translate(table, "\u4e2d\u2014A").to_brf().strip()
         assert not table.undefined
@@ -74,7 +74,7 @@ class TestSpelling:
     @given(st.text(st.sampled_from("abc \U0001f600\u0434\u4e2d\x01,"), min_size=1, max_size=20))
     def test_maps_hold_in_every_manner(self, text):
         for how in Undefined:
-            table = Table("en-ueb-g2.ctb", how)
+            table = BrailleTable("en-ueb-g2.ctb", how)
             paragraph = Document.from_text(text).paragraph(0)
             if paragraph is None:
                 return
@@ -100,7 +100,7 @@ class TestEightDots:
         ],
     )
     def test_which_tables_have_them(self, name, eight):
-        assert Table(name).eight_dots is eight
+        assert BrailleTable(name).eight_dots is eight
 
 
 class TestForeign:
@@ -116,7 +116,7 @@ class TestForeign:
         ],
     )
     def test_it_is_said_once_with_its_languages(self, text, script, language):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         translate(table, text)
         note = table.note()
         assert script in note
@@ -126,18 +126,18 @@ class TestForeign:
         assert table.note() is None
 
     def test_latin_in_a_table_of_another_script(self):
-        table = Table("bh.tbl")
+        table = BrailleTable("bh.tbl")
         translate(table, "English words")
         assert "‹language› en (English, en-ueb-g2.ctb)" in table.note()
 
     def test_a_script_without_a_table(self):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         translate(table, "สวัสดี")
         assert table.note().endswith("liblouis has no table for Thai letters")
 
     @pytest.mark.parametrize("text", ["a word in да Russian", "\U0001f600 \U0001f600", "1 + 1"])
     def test_nothing_is_said_of_a_few(self, text):
-        table = Table("en-ueb-g2.ctb")
+        table = BrailleTable("en-ueb-g2.ctb")
         translate(table, text)
         assert table.note() is None
 
@@ -151,7 +151,7 @@ class TestForeign:
         languages = [tag for tag in script.languages if tag in there]
         assert languages
         for language in languages:
-            table = Table(find_table(language))
+            table = BrailleTable(find_table(language))
             translate(table, letter)
             assert not table.undefined, language
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.tables import NOTE, Kind, to_print
-from vbraille.analysis.trials import UNREAD, count, times
+from vbraille.analysis.input.trials import UNREAD, count, times
+from vbraille.analysis.schemas import NOTE, Kind, to_print
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from vbraille.analysis.tables import Row, Table
+    from vbraille.analysis.schemas import ResultTable, Row
 
 SURE = 0.05  # p below which a difference is called one
 _TOLD = ("legibility of strings", "duration (s)", "score")  # of the measures; the tables have all
@@ -18,7 +18,7 @@ _MOST = 6  # sentences about pairs of levels, or conditions in one; the tables h
 _NO_INTERVAL = "no interval"
 
 
-def findings(tables: Iterable[Table]) -> tuple[str, ...]:
+def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
     """Sentences, in the order of the report; what the tables do not have is not told.
 
     Parameters
@@ -57,7 +57,7 @@ def interval_words(
     return f"95 % interval {to_print(low, kind)} to {to_print(high, kind)}{unit}"
 
 
-def _averages(of: Mapping[str, Table]) -> Iterator[str]:
+def _averages(of: Mapping[str, ResultTable]) -> Iterator[str]:
     if "averages" not in of:
         return
     rows = [row for row in of["averages"].records() if row["legibility"] is not None]
@@ -81,7 +81,7 @@ def _averages(of: Mapping[str, Table]) -> Iterator[str]:
         yield f"On average a string took {_and(told)}."
 
 
-def _differences(of: Mapping[str, Table]) -> Iterator[str]:
+def _differences(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for measure, rows in _by_measure(of, "t_tests"):
         tested = [row for row in rows if row["p"] is not None]
         differ = [row for row in tested if row["p_corrected"] < SURE]
@@ -121,7 +121,7 @@ def _difference(measure: str, row: Row) -> str:
     )
 
 
-def _effects(of: Mapping[str, Table]) -> Iterator[str]:
+def _effects(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for measure, rows in _by_measure(of, "anova"):
         for row in rows:
             if row["f"] is None:
@@ -142,7 +142,7 @@ def _effects(of: Mapping[str, Table]) -> Iterator[str]:
             yield f"{_plain(measure)} {said} {row['effect']} ({numbers})."
 
 
-def _characters(of: Mapping[str, Table]) -> Iterator[str]:
+def _characters(of: Mapping[str, ResultTable]) -> Iterator[str]:
     if "characters" not in of or len(of["characters"].rows) < 2:
         return
     rows = of["characters"].records()
@@ -156,7 +156,7 @@ def _characters(of: Mapping[str, Table]) -> Iterator[str]:
         yield f"Of {len(rows)} characters the most legible was {ends[0]}, the least {ends[1]}."
 
 
-def _confusions(of: Mapping[str, Table]) -> Iterator[str]:
+def _confusions(of: Mapping[str, ResultTable]) -> Iterator[str]:
     if "errors" in of:
         first = of["errors"].records()[0]
         total = sum(row["count"] for row in of["errors"].records())
@@ -184,7 +184,7 @@ def _confusions(of: Mapping[str, Table]) -> Iterator[str]:
                 yield f"Most often {told}: {times(most)}{' each' if len(alike) > 1 else ''}."
 
 
-def _information(of: Mapping[str, Table]) -> Iterator[str]:
+def _information(of: Mapping[str, ResultTable]) -> Iterator[str]:
     rows = of["information"].records() if "information" in of else []
     for row in rows:
         if row["condition"] != "all" or row["of"] != "characters":
@@ -200,7 +200,7 @@ def _information(of: Mapping[str, Table]) -> Iterator[str]:
             )
 
 
-def _over_time(of: Mapping[str, Table]) -> Iterator[str]:
+def _over_time(of: Mapping[str, ResultTable]) -> Iterator[str]:
     rows = of["slopes"].records() if "slopes" in of else []
     known = [row for row in rows if row["p"] is not None]
     if known:
@@ -215,7 +215,7 @@ def _over_time(of: Mapping[str, Table]) -> Iterator[str]:
         )
 
 
-def _preferred(of: Mapping[str, Table]) -> Iterator[str]:
+def _preferred(of: Mapping[str, ResultTable]) -> Iterator[str]:
     for row in of["preferred"].records() if "preferred" in of else []:
         name = row["parameter"]
         unit = " mm" if name.endswith("_mm") else ""
@@ -235,7 +235,7 @@ def _preferred(of: Mapping[str, Table]) -> Iterator[str]:
         )
 
 
-def _by_measure(of: Mapping[str, Table], name: str) -> Iterator[tuple[str, list[Row]]]:
+def _by_measure(of: Mapping[str, ResultTable], name: str) -> Iterator[tuple[str, list[Row]]]:
     rows = of[name].records() if name in of else []
     for measure in _TOLD:
         found = [row for row in rows if row["measure"] == measure]

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.analysis.tables import Table
+    from vbraille.analysis.schemas import ResultTable
     from vbraille.pictures.charts import Chart
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class ReportFigure:
     """A figure of the report.
 
     Parameters
@@ -38,7 +38,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class Chapter:
     """A part of the report.
 
     Parameters
@@ -53,8 +53,8 @@ class Section:
 
     title: str
     text: str
-    tables: tuple[Table, ...]
-    pictures: tuple[Picture, ...] = ()
+    tables: tuple[ResultTable, ...]
+    pictures: tuple[ReportFigure, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class Results:
     title: str
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
-    sections: tuple[Section, ...]
+    sections: tuple[Chapter, ...]
     findings: tuple[str, ...] = ()
     main: str = ""
 
@@ -93,16 +93,16 @@ class Results:
         if self.main and self.main not in {picture.name for picture in self.pictures()}:
             raise ValueError(f"there is no picture {self.main} to stand first")
 
-    def main_picture(self) -> Picture | None:
+    def main_picture(self) -> ReportFigure | None:
         """The picture that stands first; None if none does."""
         return next((picture for picture in self.pictures() if picture.name == self.main), None)
 
-    def tables(self) -> Iterator[Table]:
+    def tables(self) -> Iterator[ResultTable]:
         """All tables, in the order of the report."""
         for section in self.sections:
             yield from section.tables
 
-    def pictures(self) -> Iterator[Picture]:
+    def pictures(self) -> Iterator[ReportFigure]:
         """All pictures, in the order of the report."""
         for section in self.sections:
             yield from section.pictures

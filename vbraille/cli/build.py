@@ -6,19 +6,19 @@ import sys
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.braille.geometry import PRESETS
 from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
-from vbraille.geometry import PRESETS
-from vbraille.page import Layout
+from vbraille.layout.pages import Layout
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
-from vbraille.translate import Book, Document, Table, Undefined, find_table, six_dot_table
+from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table, six_dot_table
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
 
-    from vbraille.page import Line
+    from vbraille.layout.pages import Line
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ def build_lengths(
     return replace(model, style=replace(model.style, geometry=geometry))
 
 
-def build_table(arguments: argparse.Namespace) -> Table:
+def build_table(arguments: argparse.Namespace) -> BrailleTable:
     """Table of the text.
 
     Raises
@@ -133,10 +133,10 @@ def build_table(arguments: argparse.Namespace) -> Table:
     undefined = Undefined(arguments.undefined)
     if arguments.table is None:
         language = "en" if arguments.language is None else arguments.language
-        return Table(find_table(language, arguments.grade), undefined)
+        return BrailleTable(find_table(language, arguments.grade), undefined)
     if arguments.language is not None or arguments.grade is not None:
         raise InputError("a table has its language and grade; give either --table or those")
-    return Table(arguments.table, undefined)
+    return BrailleTable(arguments.table, undefined)
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
@@ -206,7 +206,7 @@ def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page
     return lay_out(arguments, build_book(arguments, six_dots=six_dots), model)
 
 
-def _eight_dots(table: Table) -> str:
+def _eight_dots(table: BrailleTable) -> str:
     """What to say of a table of eight dots where only six can be written."""
     info = table.info
     other = None if info is None else six_dot_table(info.language)

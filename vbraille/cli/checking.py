@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.messages import RAMP_MS, WATCHDOG_MS
 from vbraille.devices.saying import told
+from vbraille.devices.wire.messages import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.checkup import (
     NS_PER_S,
     hold_rate,

@@ -1,4 +1,4 @@
-"""The commands and what their help says; `options` and `laboptions` have the options of each."""
+"""The commands and what their help says; `options` and `lab` have the options of each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import os
 
 from vbraille import __version__
-from vbraille.cli import laboptions, options
+from vbraille.cli.options import lab, reading
 from vbraille.errors import InputError
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -20,27 +20,27 @@ if TYPE_CHECKING:
 COMMANDS: dict[str, tuple[str, Options, str]] = {
     "read": (
         "Read a text on a device, line after line.",
-        options.read,
+        reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
     "page": (
         "Print the page as it is laid out.",
-        options.page,
+        reading.page,
         "vbraille page book.txt --format brf --lines 1-25",
     ),
     "render": (
         "Write every frame of a reading to an HDF5 file.",
-        options.render,
+        reading.render,
         "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
     ),
     "plot": (
         "Draw a picture of what the display does, or print its numbers.",
-        options.plot,
+        reading.plot,
         "vbraille plot page book.txt --lines 1-4 --at 120 --out page.png",
     ),
     "simulate": (
         "Be a device, at a port that a program can read on, until Ctrl-C.",
-        options.simulate,
+        reading.simulate,
         "vbraille simulate --link ./vb0 --hand slow",
     ),
     "device": (
@@ -55,62 +55,62 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
     ),
     "analyse": (
         "Make tables, statistics and a report of sessions.",
-        laboptions.analyse,
+        lab.analyse,
         "vbraille analyse P01-letters-* P02-letters-* --out report",
     ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
-        options.tables,
+        reading.tables,
         "vbraille tables --language fr",
     ),
 }
 DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "list": (
         "List the serial ports, with their names and ids.",
-        options.nothing,
+        reading.nothing,
         "vbraille device list",
     ),
     "info": (
         "Print what a device says of itself.",
-        options.device_info,
+        reading.device_info,
         "vbraille device info serial:/dev/ttyACM0",
     ),
     "check": (
         "Swing each actuator, hold the rate, measure the clock, the round trip and the watchdog, "
         "and judge whether a person can read on the device.",
-        options.device_info,
+        reading.device_info,
         "vbraille device check serial:/dev/ttyACM0 --model stress2",
     ),
 }
 SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "protocols": (
         "List the protocols that come with the program, or print one to be copied and edited.",
-        laboptions.session_protocols,
+        lab.session_protocols,
         "vbraille session protocols letters > mine.toml",
     ),
     "plan": (
         "Print the whole order of a session before anyone sits down.",
-        laboptions.session_plan,
+        lab.session_plan,
         "vbraille session plan legibility --participant P07 --seed 42",
     ),
     "run": (
         "Run a session; at its prompt, help says what can be typed.",
-        laboptions.session_run,
+        lab.session_run,
         "vbraille session run legibility --participant P07 --device serial:/dev/ttyACM0",
     ),
     "resume": (
         "Go on with a session at the next trial of the same order.",
-        laboptions.session_resume,
+        lab.session_resume,
         "vbraille session resume P07-legibility-20261121-101500",
     ),
     "export": (
         "Make tables of a session.",
-        laboptions.session_export,
+        lab.session_export,
         "vbraille session export P07-legibility-20261121-101500 --out trials.csv",
     ),
     "check": (
         "See whether every file of a session is whole, and nothing was changed.",
-        laboptions.session_check,
+        lab.session_check,
         "vbraille session check P07-legibility-20261121-101500",
     ),
 }

@@ -9,8 +9,8 @@ from vbraille.translate import Undefined
 from vbraille.translate.undefined import describe
 
 if TYPE_CHECKING:
-    from vbraille.page import Line
-    from vbraille.translate import Table
+    from vbraille.layout.pages import Line
+    from vbraille.translate import BrailleTable
 
 _NAMED = 3  # so many characters are named in the sentence, those that are most frequent
 
@@ -26,7 +26,7 @@ class Unknown:
         What was written for them.
     """
 
-    def __init__(self, table: Table, how: Undefined) -> None:
+    def __init__(self, table: BrailleTable, how: Undefined) -> None:
         self._table = table
         self._how = how
         self._last = 0

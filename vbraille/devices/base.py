@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.steady import Actuators
+    from vbraille.devices.serial.steady import Actuators
     from vbraille.display import Display
     from vbraille.pose import Pose
 
@@ -63,7 +63,7 @@ class Lent(NamedTuple):
     received, work, out : uint8[bytes]
         What has come; room to work in, and for a message that goes out.
     talk, actuators
-        Numbers of the conversation, as of `vbraille.devices.steady`.
+        Numbers of the conversation, as of `vbraille.devices.serial.steady`.
     """
 
     descriptor: int

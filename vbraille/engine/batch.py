@@ -13,10 +13,10 @@ import numpy as np
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import NS_PER_S
 from vbraille.engine.engine import place_of
-from vbraille.engine.kernels import POSE_THETA, POSE_X, POSED
 from vbraille.engine.record import columns_of, tick_dtype
-from vbraille.engine.state import State
+from vbraille.engine.state import LoopState
 from vbraille.engine.tally import Tally
+from vbraille.engine.ticks import POSE_THETA, POSE_X, POSED
 from vbraille.errors import InputError
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
@@ -85,7 +85,7 @@ class BatchEngine:
         self._clock = ManualClock()
         self.device = device
         device.go_by(self._clock.now_ns)
-        self._state = State(device.display, rate_hz, 0, rested=device.rested)
+        self._state = LoopState(device.display, rate_hz, 0, rested=device.rested)
         self._poll_ticks = poll_ticks
         self._period_ns = round(NS_PER_S / rate_hz)
         self._dtype = tick_dtype(device.display.shape)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vbraille.engine import kernels, shared
+from vbraille.engine import shared, ticks
 from vbraille.engine.hosted import warm_up
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS
@@ -27,7 +27,7 @@ def main() -> None:
         frames = np.zeros((4, 1, *display.shape))
         scratch = scratch_for(display.columns)
         output, held, target = frames[1:, 0]
-        kernels.replay(
+        ticks.replay(
             line.numbers,
             line.table,
             scratch,

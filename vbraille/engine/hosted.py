@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
 from vbraille.devices.events import is_known, shortened, to_json
-from vbraille.devices.notices import EVERY_NS, Notices
+from vbraille.devices.serial.notices import EVERY_NS, Notices
 from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock, RealClock

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.lending import example
-from vbraille.engine import steady
+from vbraille.devices.serial.lending import example
+from vbraille.engine import serialtick
 from vbraille.engine.constants import FADE_S, IDLE_S, NS_PER_S
-from vbraille.engine.kernels import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag
 from vbraille.engine.ring import Ring
-from vbraille.engine.state import State
+from vbraille.engine.state import LoopState
 from vbraille.engine.tally import Tally
+from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError
 from vbraille.pose import Pose
 
@@ -37,7 +37,7 @@ _PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
 
 
 class Loop:
-    """Drive a device, tick by tick, in plain Python but for what `State.advance` does.
+    """Drive a device, tick by tick, in plain Python but for what `LoopState.advance` does.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Loop:
         self.clock = clock
         self.rate_hz = rate_hz
         display = device.display
-        self.state = State(
+        self.state = LoopState(
             display,
             rate_hz,
             clock.now_ns(),
@@ -98,12 +98,12 @@ class Loop:
         self._fade_ns = int(fade_s * NS_PER_S)
         self._period_ns = round(NS_PER_S / rate_hz)
         self._deadline_ns = clock.now_ns()
-        self._told = np.zeros(steady.TOLD, np.int64)
-        self._told[steady.MOST] = max(1, round(_LOOK_S * rate_hz))
-        self._told[steady.PERIOD] = self._period_ns
+        self._told = np.zeros(serialtick.TOLD, np.int64)
+        self._told[serialtick.MOST] = max(1, round(_LOOK_S * rate_hz))
+        self._told[serialtick.PERIOD] = self._period_ns
         # A device that tells its place as often as there are ticks has each begin with that.
         same = abs(display.rate_hz - rate_hz) <= _SAME_RATE * rate_hz
-        self._told[steady.GUARD] = self._period_ns // _GUARD if same else 0
+        self._told[serialtick.GUARD] = self._period_ns // _GUARD if same else 0
         self._silence = np.zeros(1, np.int64), np.zeros(1, np.int64)
 
     def show(self, program: Program | None, line: int = 0) -> None:
@@ -238,24 +238,23 @@ class Loop:
     def _run_steadily(self, lent: Lent, mailbox: Mailbox | None) -> None:
         """Do ticks in compiled code, and in Python the one that it leaves to it."""
         told, ring = self._told, self.ring
-        told[steady.DESCRIPTOR], told[steady.HELD] = lent.descriptor, lent.begun
-        told[steady.DEADLINE], told[steady.APPENDED] = self._deadline_ns, ring.appended
-        told[steady.LATE_SO_FAR], told[steady.OVERRUNS_SO_FAR] = self.late, self.overruns
-        told[steady.UNSENT], told[steady.RESTED] = 0, self.device.rested
+        told[serialtick.DESCRIPTOR], told[serialtick.HELD] = lent.descriptor, lent.begun
+        told[serialtick.DEADLINE], told[serialtick.APPENDED] = self._deadline_ns, ring.appended
+        told[serialtick.LATE_SO_FAR], told[serialtick.OVERRUNS_SO_FAR] = self.late, self.overruns
+        told[serialtick.UNSENT], told[serialtick.RESTED] = 0, self.device.rested
         orders, known = self._silence if mailbox is None else (mailbox.orders, mailbox.obeyed)
         why = self.state.run_steadily(told, orders, known, lent, self._times_ns, self._poses, ring)
-        done = int(told[steady.APPENDED]) - ring.appended
+        done = int(told[serialtick.APPENDED]) - ring.appended
         ring.end(done)
-        self.late = int(told[steady.LATE_SO_FAR])
-        self._deadline_ns = int(told[steady.DEADLINE])
-        woken_ns, lateness_ns = int(told[steady.WOKEN]), int(told[steady.LATENESS_OF_IT])
-        torn = (
-            bytes(lent.out[told[steady.WRITTEN] : told[steady.SIZE]]) if why == steady.TORN else b""
-        )
-        self.device.take_back(lent, int(told[steady.HELD]), int(told[steady.UNSENT]), torn)
-        if why == steady.NOWHERE:
+        self.late = int(told[serialtick.LATE_SO_FAR])
+        self._deadline_ns = int(told[serialtick.DEADLINE])
+        woken_ns, lateness_ns = int(told[serialtick.WOKEN]), int(told[serialtick.LATENESS_OF_IT])
+        unwritten = slice(told[serialtick.WRITTEN], told[serialtick.SIZE])
+        torn = bytes(lent.out[unwritten]) if why == serialtick.TORN else b""
+        self.device.take_back(lent, int(told[serialtick.HELD]), int(told[serialtick.UNSENT]), torn)
+        if why == serialtick.NOWHERE:
             raise self._nowhere()
-        if why == steady.UNMADE:
+        if why == serialtick.UNMADE:
             slot = ring.begin()
             self.device.write(self.state.output)
             self._finish(slot, woken_ns, lateness_ns, self.clock.now_ns())
@@ -270,7 +269,7 @@ class Loop:
 
     def load(self) -> None:
         """Load, or compile, what steady ticks are done by; no tick is done."""
-        told, silence = np.zeros(steady.TOLD, np.int64), np.zeros(1, np.int64)
+        told, silence = np.zeros(serialtick.TOLD, np.int64), np.zeros(1, np.int64)
         self.state.run_steadily(
             told,
             silence,

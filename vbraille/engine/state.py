@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.events import Exposed
-from vbraille.engine import kernels, steady
+from vbraille.engine import serialtick, ticks
 from vbraille.engine.constants import (
     DIFFERENCE,
     FADE_S,
@@ -69,7 +69,7 @@ _STATE = np.dtype(
 )  # fmt: skip
 
 
-class State:
+class LoopState:
     """What one loop knows, and the blocks of ticks that are done with it.
 
     Parameters
@@ -206,8 +206,8 @@ class State:
         columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
         first: int = 0,
     ) -> int:
-        """Do ticks; how many were done; see `vbraille.engine.kernels.advance`."""
-        return kernels.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
+        """Do ticks; how many were done; see `vbraille.engine.ticks.advance`."""
+        return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
 
     def run_steadily(
         self,
@@ -219,8 +219,8 @@ class State:
         poses: NDArray[np.float64],
         ring: Ring,
     ) -> int:
-        """Do ticks of a device that is lent; see `vbraille.engine.steady.run`."""
-        return steady.run(
+        """Do ticks of a device that is lent; see `vbraille.engine.serialtick.run`."""
+        return serialtick.run(
             told,
             orders,
             known,

@@ -1,6 +1,6 @@
 """What the source draws, as numbers and as pictures.
 
-`series` and `surface` compute a `Table` of numbers for each picture, `draw`
+`series` and `surface` compute a `FigureTable` of numbers for each picture, `draw`
 makes a figure of it. `charts` says what charts of results hold, and
 `drawcharts` draws them. `figures`, `draw` and `drawcharts` alone import
 matplotlib, and so are not imported here.
@@ -9,8 +9,8 @@ matplotlib, and so are not imported here.
 from vbraille.caching import keep_fonts
 from vbraille.pictures.series import mapping, profile, strain, wave
 from vbraille.pictures.surface import page
-from vbraille.pictures.table import Table, write_csv
+from vbraille.pictures.table import FigureTable, write_csv
 
 keep_fonts()
 
-__all__ = ["Table", "mapping", "page", "profile", "strain", "wave", "write_csv"]
+__all__ = ["FigureTable", "mapping", "page", "profile", "strain", "wave", "write_csv"]

@@ -53,7 +53,7 @@ class Bars:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class Curve:
     """Trials in their order: one line of `Runs`.
 
     Parameters
@@ -79,7 +79,7 @@ class Runs:
     """Legibility over time, a panel a run: Lévesque 2009, fig. 3.14."""
 
     title: str
-    runs: tuple[Run, ...]
+    runs: tuple[Curve, ...]
 
 
 @dataclass(frozen=True, slots=True)

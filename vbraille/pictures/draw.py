@@ -12,13 +12,13 @@ from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from vbraille.pictures.figures import FAINT, MIDDLE, save, styled
+from vbraille.pictures.figurefiles import FAINT, MIDDLE, save, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from vbraille.pictures.table import Table
+    from vbraille.pictures.table import FigureTable
 
 __all__ = ["draw", "save"]
 
@@ -28,13 +28,13 @@ BANDS = "deflection from rest (grey) to full swing (dotted)"
 BAND = 1.25  # from one curve's rest to the next one's, in full swings
 
 
-def draw(table: Table) -> Figure:
+def draw(table: FigureTable) -> Figure:
     """Draw a table by its kind."""
     with styled():
         return DRAWINGS[table.kind](table)
 
 
-def profile(table: Table) -> Figure:
+def profile(table: FigureTable) -> Figure:
     """Fig. 4.3: a panel a texture level."""
     names = [name for name in table.columns if name != "u_mm"]
     figure = Figure(figsize=(1 + 2.7 * len(names), 3.6))
@@ -50,7 +50,7 @@ def profile(table: Table) -> Figure:
     return figure
 
 
-def mapping(table: Table) -> Figure:
+def mapping(table: FigureTable) -> Figure:
     """Fig. 4.5: a panel a method, a curve an actuator row."""
     methods = list(dict.fromkeys(table["method"].tolist()))
     across = min(3, len(methods))
@@ -69,7 +69,7 @@ def mapping(table: Table) -> Figure:
     return figure
 
 
-def wave(table: Table) -> Figure:
+def wave(table: FigureTable) -> Figure:
     """Figs. 3.8 and 3.9: the array at four positions, and each column along all of them."""
     series = _numbered(table, "deflection_column_")
     figure = Figure(figsize=(8, 8.5))
@@ -94,7 +94,7 @@ def wave(table: Table) -> Figure:
     return figure
 
 
-def strain(table: Table) -> Figure:
+def strain(table: FigureTable) -> Figure:
     """Fig. 3.10: two neighbours above, the strain between them below, a dot width a column."""
     widths = np.unique(table["dot_width_mm"])
     figure = Figure(figsize=(1 + 2.8 * len(widths), 5.4))
@@ -119,7 +119,7 @@ def strain(table: Table) -> Figure:
     return figure
 
 
-def page(table: Table) -> Figure:
+def page(table: FigureTable) -> Figure:
     """The lines with the array's outline, and the array by itself: bars fill to the deflection."""
     dots, actuators = table.where("what", "dot"), table.where("what", "actuator")
     x, y, pitch = actuators["x_mm"], actuators["y_mm"], actuators["width_mm"][0]
@@ -182,7 +182,7 @@ def _curves(axes: Axes, x_mm: NDArray, series: NDArray) -> None:
     axes.set_xlim(x_mm[0], x_mm[-1])
 
 
-def _numbered(table: Table, prefix: str) -> NDArray:
+def _numbered(table: FigureTable, prefix: str) -> NDArray:
     return np.array([table[name] for name in table.columns if name.startswith(prefix)])
 
 
@@ -192,7 +192,7 @@ def _against(width_mm: float, pitch_mm: float) -> str:
     return "> ε" if width_mm > pitch_mm else "= ε" if width_mm == pitch_mm else "< ε"
 
 
-def _dots(axes: Axes, dots: Table, raised: str, share: float) -> None:
+def _dots(axes: Axes, dots: FigureTable, raised: str, share: float) -> None:
     """Dots of the page: raised ones filled, of the others rings of a share of their width."""
     places = zip(dots["x_mm"], dots["y_mm"], dots["width_mm"] / 2, dots["raised"], strict=True)
     circles = [(Circle((x, y), r if up else share * r), up) for x, y, r, up in places]

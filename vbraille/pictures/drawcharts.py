@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from vbraille.pictures.charts import Bars, Matrix, Paths, Runs
-from vbraille.pictures.figures import FAINT, MIDDLE, styled
+from vbraille.pictures.figurefiles import FAINT, MIDDLE, styled
 from vbraille.pictures.words import plain
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.typing import ColorType
     from numpy.typing import NDArray
 
-    from vbraille.pictures.charts import Chart, Numbers, Path, Run, Series
+    from vbraille.pictures.charts import Chart, Curve, Numbers, Path, Series
 
 # Fill and hatch of each series' bars: light enough for the black of their error bars.
 FILLS: tuple[tuple[ColorType, str], ...] = (
@@ -165,7 +165,7 @@ def _runs(chart: Runs) -> Figure:
     return figure
 
 
-def _draw_run(axes: Axes, run: Run) -> None:
+def _draw_run(axes: Axes, run: Curve) -> None:
     # Dots are short strokes with round ends: one path, where marks were thousands.
     dots = np.repeat(np.array(run.trials, float), 3) + np.tile(
         [-0.05, 0.05, math.nan], len(run.trials)

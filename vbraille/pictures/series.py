@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.pictures.table import Table, contrast_words, tuning_words
-from vbraille.render.mappings import MAPPINGS
-from vbraille.render.models import STRESS2, VBD
-from vbraille.render.profiles import Profile
-from vbraille.render.reference import SWINGS, deflections
+from vbraille.pictures.table import FigureTable, contrast_words, tuning_words
+from vbraille.render.braille.mappings import MAPPINGS
+from vbraille.render.braille.models import STRESS2, VBD
+from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.reference import SWINGS, deflections
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vbraille.geometry import Geometry
-    from vbraille.render.mappings import Mapping
-    from vbraille.render.models import Model
-    from vbraille.render.style import BrailleStyle
-    from vbraille.render.tuning import Tuning
+    from vbraille.braille.geometry import Geometry
+    from vbraille.render.braille.mappings import Mapping
+    from vbraille.render.braille.models import Model
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.braille.tuning import Tuning
 
 # Lévesque 2009, fig. 4.3, and the VBD's nominal and textured dots of 3.2.
 LEVELS = {Profile.RAISED_COSINE: (0.0, 0.25, 1.0), Profile.HALF_SINE: (0.0, 1.0)}
@@ -37,7 +37,7 @@ STRAIN_WIDTHS_MM = (0.5, 1.0, 2.0)
 LETTER = np.array([0b110101], np.uint8)
 
 
-def profile(model: Model) -> Table:
+def profile(model: Model) -> FigureTable:
     """Deflection across one dot, at each texture level of the source's.
 
     Lévesque 2009, fig. 4.3 (STReSS²) and 3.2 (VBD).
@@ -64,14 +64,14 @@ def profile(model: Model) -> Table:
         )
     cycles = f", k = {tuning.cycles}" if style.profile is Profile.RAISED_COSINE else ""
     title = f"{model.title}: profile of a dot {width:g} mm wide{cycles}{contrast_words(tuning)}"
-    return Table("profile", title, columns)
+    return FigureTable("profile", title, columns)
 
 
 def mapping(
     style: BrailleStyle,
     masks: NDArray[np.uint8] = LETTER,
     methods: Sequence[Mapping] = tuple(MAPPINGS.values()),
-) -> Table:
+) -> FigureTable:
     """Deflection of the six rows of the STReSS² along a letter, under each method.
 
     Lévesque 2009, fig. 4.5, and the two methods of its author's later code.
@@ -103,10 +103,10 @@ def mapping(
     }
     letters = "".join(chr(0x2800 + mask) for mask in masks.tolist())
     title = f"{STRESS2.title}: {letters} on six actuator rows{tuning_words(tuning)}"
-    return Table("mapping", title, columns)
+    return FigureTable("mapping", title, columns)
 
 
-def wave(model: Model) -> Table:
+def wave(model: Model) -> FigureTable:
     """Deflection of each column while the array passes one dot.
 
     Lévesque 2009, eq. 3.1 and figs. 3.8-3.9.
@@ -128,10 +128,10 @@ def wave(model: Model) -> Table:
     surface = x + array.column_offsets_mm()[:, None]  # eq. 3.1
     swing = _swing(surface, width, style.profile, tuning)
     title = f"{model.title}: the array passes a dot {width:g} mm wide{tuning_words(tuning)}"
-    return Table("wave", title, {"x_mm": x, **_numbered("deflection_column_", swing)})
+    return FigureTable("wave", title, {"x_mm": x, **_numbered("deflection_column_", swing)})
 
 
-def strain(geometry: Geometry, tuning: Tuning) -> Table:
+def strain(geometry: Geometry, tuning: Tuning) -> FigureTable:
     """Two neighbouring actuators of the VBD, and the strain of the skin between them.
 
     Lévesque 2009, 3.2 and fig. 3.10: (δ_{i+1} - δ_i) / ε.
@@ -167,7 +167,7 @@ def strain(geometry: Geometry, tuning: Tuning) -> Table:
     )
     joined = (np.concatenate(values) for values in zip(*parts, strict=True))
     title = f"{VBD.title}: strain between neighbours, ε = {pitch:g} mm apart{tuning_words(tuning)}"
-    return Table("strain", title, dict(zip(names, joined, strict=True)))
+    return FigureTable("strain", title, dict(zip(names, joined, strict=True)))
 
 
 def _swing(

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.pictures.table import Table, tuning_words
-from vbraille.render.mappings import NONE
-from vbraille.render.reference import deflections
+from vbraille.pictures.table import FigureTable, tuning_words
+from vbraille.render.braille.mappings import NONE
+from vbraille.render.braille.reference import deflections
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.geometry import Geometry
-    from vbraille.page import Line
-    from vbraille.render.models import Model
+    from vbraille.braille.geometry import Geometry
+    from vbraille.layout.pages import Line
+    from vbraille.render.braille.models import Model
 
 
 def page(
@@ -26,7 +26,7 @@ def page(
     *,
     x_mm: float,
     line_index: int = 0,
-) -> Table:
+) -> FigureTable:
     """Dots of some lines where they stand on the surface, and the array upon one of them.
 
     Parameters
@@ -84,7 +84,7 @@ def page(
         f"{model.title}: line {line.number}, left column at {x_mm - array.span_mm / 2:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
-    return Table("page", title, columns)
+    return FigureTable("page", title, columns)
 
 
 def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:

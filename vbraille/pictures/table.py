@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.tuning import Tuning
+    from vbraille.render.braille.tuning import Tuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Table:
+class FigureTable:
     """All that one picture draws.
 
     Parameters
@@ -51,7 +51,7 @@ class Table:
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
 
-    def where(self, name: str, value: object) -> Table:
+    def where(self, name: str, value: object) -> FigureTable:
         """Return the rows in which a column has a value."""
         chosen = self.columns[name] == value
         return replace(self, columns={n: v[chosen] for n, v in self.columns.items()})
@@ -61,7 +61,7 @@ class Table:
         return zip(*(values.tolist() for values in self.columns.values()), strict=True)
 
 
-def write_csv(table: Table, stream: TextIO) -> None:
+def write_csv(table: FigureTable, stream: TextIO) -> None:
     """Write a table, its column names first; numbers to the sixth decimal."""
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(table.columns)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.engine.advance import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.page import locate
+from vbraille.layout.pages import locate
 from vbraille.reading.commands import BY_KEY, COMMANDS
 from vbraille.reading.keys import PASTE
 from vbraille.reading.waiting import Waiting
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.engine.engine import Engine
-    from vbraille.page import Layout, Line
+    from vbraille.layout.pages import Layout, Line
     from vbraille.render import BrailleStyle, Model
     from vbraille.simulation.steering import Steering
 

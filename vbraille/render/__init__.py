@@ -4,11 +4,11 @@ Knows no file, no device and no clock. The kernels are compiled when a `Program`
 not when this is imported.
 """
 
-from vbraille.render.mappings import MAPPINGS, Mapping, single_row
-from vbraille.render.models import MODELS, STRESS2, VBD, Model, model_of
-from vbraille.render.profiles import Profile
-from vbraille.render.style import BrailleStyle
-from vbraille.render.tuning import Tuning
+from vbraille.render.braille.mappings import MAPPINGS, Mapping, single_row
+from vbraille.render.braille.models import MODELS, STRESS2, VBD, Model, model_of
+from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.style import BrailleStyle
+from vbraille.render.braille.tuning import Tuning
 
 __all__ = [
     "MAPPINGS",

@@ -1,8 +1,8 @@
 """The compiled inner loops of rendering, and nothing else.
 
-They fill ``out`` and allocate nothing. `vbraille.render.style` compiles what they need into two
-arrays, ``numbers`` and ``table`` (see `vbraille.render.work`); `vbraille.render.reference` is the
-same in plain numpy.
+They fill ``out`` and allocate nothing. `vbraille.render.braille.style` compiles what they need
+into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`);
+`vbraille.render.braille.reference` is the same in plain numpy.
 
 ``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
 the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),

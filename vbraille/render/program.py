@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import kernels, work
-from vbraille.render.work import Kind
+from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,9 +51,9 @@ class Program:
         self._at = np.zeros(6)
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> ProgramKind:
         """What it is of."""
-        return Kind(int(self.numbers[work.KIND]))
+        return ProgramKind(int(self.numbers[work.KIND]))
 
     @property
     def nbytes(self) -> int:
@@ -145,7 +145,7 @@ class Program:
         ValueError
             If ``out`` has not that shape, or the picture is no line.
         """
-        if self.kind is not Kind.LINE:
+        if self.kind is not ProgramKind.LINE:
             raise ValueError(f"a {self.kind.name.lower()} has no frames along a line")
         x_mm = np.ascontiguousarray(x_mm, np.float64)
         shape = (x_mm.size, *self.shape)
@@ -201,7 +201,9 @@ def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
     return np.zeros((2, places * columns))
 
 
-def head(display: Display, kind: Kind, places: int, own_y_mm: float = 0.0) -> NDArray[np.float64]:
+def head(
+    display: Display, kind: ProgramKind, places: int, own_y_mm: float = 0.0
+) -> NDArray[np.float64]:
     """Numbers of a program that does not move by itself, with room for so many in all."""
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
@@ -213,7 +215,9 @@ def head(display: Display, kind: Kind, places: int, own_y_mm: float = 0.0) -> ND
 
 def nothing(display: Display) -> Program:
     """A line without a dot, for before there is anything to show."""
-    return Program(head(display, Kind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16))
+    return Program(
+        head(display, ProgramKind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16)
+    )
 
 
 def vibration(
@@ -250,7 +254,7 @@ def vibration(
         raise ValueError(f"the amplitude is {amplitude:g}; it must be above 0 to 1")
     if not exposure_s > 0:
         raise ValueError(f"the exposure is {exposure_s:g} s; it must be above 0")
-    numbers = head(display, Kind.VIBRATION, work.OWN)
+    numbers = head(display, ProgramKind.VIBRATION, work.OWN)
     numbers[work.FREQUENCY] = frequency_hz
     numbers[work.AMPLITUDE] = amplitude
     numbers[work.EXPOSURE] = exposure_s

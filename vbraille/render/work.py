@@ -7,7 +7,7 @@ every kind begin with the same head; what follows is the kind's own.
 from enum import IntEnum
 
 
-class Kind(IntEnum):
+class ProgramKind(IntEnum):
     """What a program is of; only the kernels look at it."""
 
     LINE = 0

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from vbraille import __version__
-from vbraille.devices.messages import (
+from vbraille.devices.wire.codec import Decoder, Levels, encode
+from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
     NOTICES,
@@ -32,12 +33,11 @@ from vbraille.devices.messages import (
     State,
     Watchdog,
 )
-from vbraille.devices.wire import Decoder, Levels, encode
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.wire import Event
+    from vbraille.devices.wire.codec import Heard
     from vbraille.display import Display
 
 WATCHDOG_US: Final = WATCHDOG_MS * 1000
@@ -212,7 +212,7 @@ class Controller:
         self._decoder = Decoder()  # what was begun to be received is gone
         self._decoder.dropped = dropped
 
-    def _take(self, event: Event) -> bytes:
+    def _take(self, event: Heard) -> bytes:
         match event:
             case Frame():
                 return self._take_frame(event)

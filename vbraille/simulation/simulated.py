@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.motion import Motion
-    from vbraille.simulation.steering import Order
+    from vbraille.simulation.steering import HandOrder
 
 NS_PER_S = 1_000_000_000
 # How a hand goes to where its next motion begins, or to where somebody has it be, and turns.
@@ -132,7 +132,7 @@ class SimulatedDevice(Device):
             return times_ns.size
         return int(done.argmax()) + 1
 
-    def _do(self, order: Order) -> None:
+    def _do(self, order: HandOrder) -> None:
         """Have the hand do something; a recorded one sets out with the first, and goes on."""
         hand, home_mm = self._hand, -self._info.span_mm
         if isinstance(order, BeAt):

@@ -14,15 +14,15 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.messages import Encoder
-from vbraille.devices.wire import DELIMITER, MOST_FRAME_BYTES
+from vbraille.devices.wire.codec import DELIMITER, MOST_FRAME_BYTES
+from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.messages import Info
+    from vbraille.devices.wire.messages import Info
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.pty import Port
     from vbraille.simulation.recorded import Recorded

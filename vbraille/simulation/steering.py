@@ -96,8 +96,8 @@ class BeAt:
             raise ValueError(f"a hand cannot be at {astuple(self)}; it must be numbers")
 
 
-Order = ReadLine | ReadPage | BeAt
-_KINDS: Final[tuple[type[Order], ...]] = (ReadLine, ReadPage, BeAt)
+HandOrder = ReadLine | ReadPage | BeAt
+_KINDS: Final[tuple[type[HandOrder], ...]] = (ReadLine, ReadPage, BeAt)
 
 
 class Steering:
@@ -137,7 +137,7 @@ class Steering:
         # Orders that were given before are not for whoever takes them from now on.
         self._taken = self._words[_GIVEN]
 
-    def give(self, order: Order) -> None:
+    def give(self, order: HandOrder) -> None:
         """Have the hand do something else from now on.
 
         It sets out at once: show first what it is to read.
@@ -154,7 +154,7 @@ class Steering:
         given = self._words[_GIVEN]
         return given > 0 and self._words[_DONE] == given and self._words[_DONE_NS] <= time_ns
 
-    def take(self) -> Order | None:
+    def take(self) -> HandOrder | None:
         """The last order given, for the device; None if it was taken before, or is not whole."""
         number = self._words[_GIVEN]
         if number == self._taken:

@@ -1,19 +1,19 @@
 """Text in, cells out; nothing here knows of millimetres."""
 
+from vbraille.braille.cells import Cells
 from vbraille.translate.book import Book
-from vbraille.translate.cells import Cells
-from vbraille.translate.documents import Document
+from vbraille.translate.documents.document import Document
+from vbraille.translate.documents.paragraphs import Paragraph
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
-from vbraille.translate.liblouis import Table, TableInfo, list_tables
-from vbraille.translate.paragraphs import Paragraph
+from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
 from vbraille.translate.undefined import Undefined
 
 __all__ = [
     "Book",
+    "BrailleTable",
     "Cells",
     "Document",
     "Paragraph",
-    "Table",
     "TableInfo",
     "Undefined",
     "find_table",

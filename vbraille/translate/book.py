@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from vbraille.translate.cells import Cells
-    from vbraille.translate.documents import Document
-    from vbraille.translate.liblouis import Table
-    from vbraille.translate.paragraphs import Paragraph
+    from vbraille.braille.cells import Cells
+    from vbraille.translate.documents.document import Document
+    from vbraille.translate.documents.paragraphs import Paragraph
+    from vbraille.translate.liblouis import BrailleTable
 
 
 class Book:
@@ -24,7 +24,7 @@ class Book:
 
     _REMEMBERED = 16
 
-    def __init__(self, document: Document, table: Table) -> None:
+    def __init__(self, document: Document, table: BrailleTable) -> None:
         self.document = document
         self.table = table
         self._recent: dict[int, tuple[Paragraph, Cells]] = {}

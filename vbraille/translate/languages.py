@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate.liblouis import Table, list_tables
+from vbraille.translate.liblouis import BrailleTable, list_tables
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def six_dot_table(language: str) -> str | None:
     except InputError:
         return None
     names = [find_table(language), *(table.name for table in sorted(tables, key=_preference))]
-    return next((name for name in names if not Table(name).eight_dots), None)
+    return next((name for name in names if not BrailleTable(name).eight_dots), None)
 
 
 def tables_for(script: Script) -> str:

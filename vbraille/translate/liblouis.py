@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.cells import UNICODE_BLANK, Cells
-from vbraille.translate.paragraphs import SPACE, to_codes, to_text
+from vbraille.translate.documents.paragraphs import SPACE, to_codes, to_text
 from vbraille.translate.scripts import script_of
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.translate.paragraphs import Paragraph
+    from vbraille.translate.documents.paragraphs import Paragraph
     from vbraille.translate.scripts import Script
 
 # Bytes; liblouis puts a name, with a folder before it, into 2 kB, and does not look if it fits.
@@ -83,7 +83,7 @@ class TableInfo:
     Parameters
     ----------
     name
-        File name, which is what `Table` takes.
+        File name, which is what `BrailleTable` takes.
     title
         Display name.
     language
@@ -137,7 +137,7 @@ def nearest(name: str, names: list[str]) -> str:
     return f"; the nearest are {', '.join(close)} (vbraille tables lists all)"
 
 
-class Table:
+class BrailleTable:
     """A compiled braille table.
 
     Parameters

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from tests.pictures.charts import bars, matrix, runs
-from vbraille.analysis.results import Picture, Results, Section
-from vbraille.analysis.tables import NOTE_COLUMN, Column, Kind, Table
+from vbraille.analysis.results import Chapter, ReportFigure, Results
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, ResultTable
 
 SCRIPT = "<script>alert('1')</script>"
 NASTY = (
@@ -14,7 +14,7 @@ NASTY = (
     "S4\n\n# 1. ~~x~~ $y$ \\ ]]> &amp; www.evil.example",
 )
 
-LEGIBILITY = Table(
+LEGIBILITY = ResultTable(
     "legibility",
     "Legibility, by participant & condition",
     "Legibility is the share of strings that are right, <as in 3.4>.",
@@ -37,7 +37,7 @@ LEGIBILITY = Table(
     ),
     ("The order of conditions: all began with nominal.", f"Why {SCRIPT}?"),
 )
-CONFUSIONS = Table(
+CONFUSIONS = ResultTable(
     "confusions",
     "Confusions of letters",
     "",
@@ -48,14 +48,14 @@ CONFUSIONS = Table(
     (("a", 30, 5, 0), ("b", 10, 28, 4)),
     marks=(4, 9),
 )
-TRIALS = Table(
+TRIALS = ResultTable(
     "trials",
     "All trials",
     "",
     (Column("trial", "trial", "number", Kind.COUNT), Column("strain", "strain", "", Kind.NUMBER)),
     tuple((number, number / 3) for number in range(1, 151)),
 )
-NOTHING = Table(
+NOTHING = ResultTable(
     "patterns", "Reading patterns", "", (Column("a", "a", ""),), (), ("No traces were given.",)
 )
 
@@ -64,30 +64,32 @@ RESULTS = Results(
     (("data", "2 sessions of “a & b”"), ("versions", "vbraille 0.1"), ("left out", NASTY[2])),
     ("The device was simulated.", SCRIPT),
     (
-        Section(
+        Chapter(
             "Legibility",
             "Who read what.",
             (LEGIBILITY, CONFUSIONS),
             (
-                Picture(
+                ReportFigure(
                     "legibility",
                     "Legibility",
                     f"S1 reads best. {SCRIPT}",
                     "legibility",
                     bars(NASTY),
                 ),
-                Picture("confusions", "Confusions", "a is taken for b.", "confusions", matrix()),
+                ReportFigure(
+                    "confusions", "Confusions", "a is taken for b.", "confusions", matrix()
+                ),
             ),
         ),
-        Section(
+        Chapter(
             "Over <time>",
             "How it went on.",
             (TRIALS, NOTHING),
-            (Picture("runs", "Over time", "It falls.", "trials", runs()),),
+            (ReportFigure("runs", "Over time", "It falls.", "trials", runs()),),
         ),
     ),
     ("Participants read right 86.3 % of strings.", f"The least was {NASTY[0]}."),
     "legibility",
 )
-BARE = Results("Nothing", (), (), (Section("Patterns", "None.", (NOTHING,)),))
+BARE = Results("Nothing", (), (), (Chapter("Patterns", "None.", (NOTHING,)),))
 ONE_MARK = replace(CONFUSIONS, marks=(4,))

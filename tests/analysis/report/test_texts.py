@@ -23,8 +23,8 @@ from tests.analysis.report.made import (
 from vbraille.analysis.report import shown, to_html, to_json, to_markdown
 from vbraille.analysis.report.tolines import to_lines
 from vbraille.analysis.report.tomarkdown import escape
-from vbraille.analysis.results import Results, Section
-from vbraille.analysis.tables import Column, Kind
+from vbraille.analysis.results import Chapter, Results
+from vbraille.analysis.schemas import Column, Kind
 
 SVG = b"<svg xmlns='http://www.w3.org/2000/svg'/>"
 FIGURES = dict.fromkeys(("legibility", "confusions", "runs"), SVG)
@@ -138,7 +138,7 @@ def test_rare_answers_of_a_matrix_are_gathered():
     assert sum(sum(row[1:]) for row in found.rows) == sum(sum(row[1:]) for row in rows)
     assert "Column . gathers 2 answers that were never presented" in found.about
     assert "more than 4 times: d, e." in found.about
-    results = Results("Confusions", (), (), (Section("All", "", (table,)),))
+    results = Results("Confusions", (), (), (Chapter("All", "", (table,)),))
     assert "| presented | a | b | c | f | ? | . |" in to_markdown(results)
     assert "answered d" in table.to_csv()
     assert CONFUSIONS.gathered() is CONFUSIONS
@@ -257,7 +257,7 @@ def test_a_column_of_notes_is_left_out_where_there_are_none():
     """Every empty cell is one that a reader hears."""
     rows = tuple((*row[:-1], "") for row in LEGIBILITY.rows if None not in row)
     silent = replace(LEGIBILITY, rows=rows)
-    results = replace(RESULTS, sections=(Section("Legibility", "", (silent,)),), main="")
+    results = replace(RESULTS, sections=(Chapter("Legibility", "", (silent,)),), main="")
     for made in (to_html(results, {}), to_markdown(results)):
         assert "mean duration (s)" in made
         assert "note" not in made
@@ -344,6 +344,6 @@ def test_texts_are_the_same_in_every_process_and_need_no_drawing():
 
 
 def test_a_mark_needs_a_count():
-    results = Results("Confusions", (), (), (Section("All", "", (ONE_MARK,)),))
+    results = Results("Confusions", (), (), (Chapter("All", "", (ONE_MARK,)),))
     assert "**28**" not in to_markdown(results)
     assert "**10** (\\> 4)" in to_markdown(results)

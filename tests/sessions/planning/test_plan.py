@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.sessions.planning.rulebook import broken_rules
+from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.plan import Plan, check_plan, make_plan
 from vbraille.sessions.planning.protocol import builtin_names, load_protocol, parse_protocol
-from vbraille.sessions.planning.spelling import LETTERS
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")

@@ -8,11 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import TEXTS
+from vbraille.braille.geometry import VBD
+from vbraille.braille.spelling import spell
 from vbraille.errors import InputError
-from vbraille.geometry import VBD
 from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
-from vbraille.sessions.planning.conduct import Field, Tone
+from vbraille.sessions.planning.conduct import Question, Tone
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.protocol import (
     builtin_names,
@@ -20,7 +21,6 @@ from vbraille.sessions.planning.protocol import (
     load_protocol,
     parse_protocol,
 )
-from vbraille.sessions.planning.spelling import spell
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
 VBD_HEAD = f'{HEAD}model = "vbd"\n'
@@ -213,7 +213,7 @@ class TestParsing:
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)
         assert not protocol.repeat_faults
         assert protocol.sound.cue == Tone(1000, 100)
-        assert protocol.fields == (Field("finger", "Which?"),)
+        assert protocol.fields == (Question("finger", "Which?"),)
 
     @pytest.mark.parametrize(
         ("value", "width_mm", "spacing_mm"), [(None, 2.0, 4.0), (1.5, 2.0, 3.5), (0.0, 2.0, 2.0)]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vbraille.geometry import STRESS2, VBD
+from vbraille.braille.geometry import STRESS2, VBD
 from vbraille.render import MAPPINGS, single_row
 from vbraille.sessions.record.trajectory import duration, first_edge_mm
 

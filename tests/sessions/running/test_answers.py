@@ -7,7 +7,7 @@ from tests.sessions.sittings import MINI, Session, of
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
-from vbraille.sessions.running.answers import Script, Simulated, parse_answers
+from vbraille.sessions.running.answers import ScriptedAnswers, Simulated, parse_answers
 from vbraille.sessions.simulated.skin import Exploration
 
 # Coverage would double their time, and others cover what these do.
@@ -77,9 +77,9 @@ def test_a_repeated_trial_has_noise_of_its_own(tmp_path):
 def test_a_file_gives_its_lines_in_order_without_comments(tmp_path):
     path = tmp_path / "answers"
     path.write_text("# of P07\nab\n\n  cd \nundo\n", "utf-8-sig")
-    script = Script(path)
+    script = ScriptedAnswers(path)
     assert [script.next(None, 1, []) for _ in range(4)] == [("ab", 2), ("cd", 4), ("undo", 5), None]
-    assert Script(path, after=2).left == [("cd", 4), ("undo", 5)]
+    assert ScriptedAnswers(path, after=2).left == [("cd", 4), ("undo", 5)]
 
 
 @pytest.mark.parametrize("spec", ["simulated:x", "simulated:-1", "simulated:nan", "simulated:1e9"])

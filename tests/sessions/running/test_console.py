@@ -3,9 +3,9 @@
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
+from vbraille.braille.spelling import say_cells
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.record import Flag
-from vbraille.sessions.planning.spelling import say_cells
 from vbraille.sessions.record.notes import read_notes
 from vbraille.sessions.running.orders import ORDERS
 

@@ -79,7 +79,7 @@ def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
     """Contents of all files, by their paths in the directory."""
     # Here, as matplotlib takes longer to import than all else to be written.
     from vbraille.pictures.drawcharts import draw_chart
-    from vbraille.pictures.figures import to_bytes
+    from vbraille.pictures.figurefiles import to_bytes
 
     drawn: dict[str, bytes] = {}
     pictures: dict[str, bytes] = {}

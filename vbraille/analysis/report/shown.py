@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.tables import NOTE, Kind, to_print
+from vbraille.analysis.schemas import NOTE, Kind, to_print
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.analysis.results import Picture
-    from vbraille.analysis.tables import Table, Value
+    from vbraille.analysis.results import ReportFigure
+    from vbraille.analysis.schemas import ResultTable, Value
 
 ROWS = 60  # of a table that a report shows: more are heard by nobody, and its CSV has all
 WARNINGS = "Read this first"
@@ -25,7 +25,7 @@ NO_ROWS = "This table has no rows."
 FILES = "Files beside this report"
 
 
-def in_report(table: Table) -> Table:
+def in_report(table: ResultTable) -> ResultTable:
     """Return the table without its notes, if no row has one: empty cells are a noise in speech.
 
     Of a confusion matrix rare answers are gathered.
@@ -37,24 +37,24 @@ def in_report(table: Table) -> Table:
     return replace(table, columns=table.columns[:-1], rows=kept)
 
 
-def rows(table: Table) -> Sequence[tuple[Value, ...]]:
+def rows(table: ResultTable) -> Sequence[tuple[Value, ...]]:
     """Rows that are shown."""
     return table.rows[:ROWS]
 
 
-def caption(table: Table) -> str:
+def caption(table: ResultTable) -> str:
     """Title of a table, and how many rows it has."""
     return f"{table.title}: {_count(table)}"
 
 
-def numbers(table: Table) -> str:
+def numbers(table: ResultTable) -> str:
     """Where all of a table is, before the name of its file."""
     if len(table.rows) > ROWS:
         return f"Shown are {_count(table)}. All rows, in full precision:"
     return "In full precision:"
 
 
-def marking(table: Table) -> str:
+def marking(table: ResultTable) -> str:
     """How errors of a confusion matrix are marked; empty if none are."""
     if not table.marks:
         return ""
@@ -62,7 +62,7 @@ def marking(table: Table) -> str:
     return f"Marked are counts of wrong answers {above}."
 
 
-def heads(table: Table) -> int:
+def heads(table: ResultTable) -> int:
     """How many of the first columns head a row: the fewest of words that tell the rows apart."""
     words = 1
     while words < len(table.columns) and table.columns[words].kind is Kind.TEXT:
@@ -72,31 +72,31 @@ def heads(table: Table) -> int:
     return words
 
 
-def values(table: Table, row: Sequence[Value]) -> list[str]:
+def values(table: ResultTable, row: Sequence[Value]) -> list[str]:
     """Texts of a row, a missing value in words."""
     return [to_print(value, column.kind) for value, column in zip(row, table.columns, strict=True)]
 
 
-def alternative(picture: Picture) -> str:
+def alternative(picture: ReportFigure) -> str:
     """What stands for a picture, next to its text."""
     return f"Figure: {picture.title}. What it shows is told beside it."
 
 
-def csv_name(table: Table) -> str:
+def csv_name(table: ResultTable) -> str:
     """Path of a table's file in the report's directory."""
     return f"tables/{table.name}.csv"
 
 
-def picture_name(picture: Picture, kind: str) -> str:
+def picture_name(picture: ReportFigure, kind: str) -> str:
     """Path of a picture's file in the report's directory."""
     return f"figures/{picture.name}.{kind}"
 
 
-def _tell_apart(table: Table, columns: int) -> bool:
+def _tell_apart(table: ResultTable, columns: int) -> bool:
     return len({row[:columns] for row in table.rows}) == len(table.rows)
 
 
-def _count(table: Table) -> str:
+def _count(table: ResultTable) -> str:
     if len(table.rows) > ROWS:
         return f"the first {ROWS} of {len(table.rows)} rows"
     return "1 row" if len(table.rows) == 1 else f"{len(table.rows)} rows"

@@ -13,14 +13,14 @@ from urllib.parse import quote
 from xml.etree import ElementTree
 
 from vbraille.analysis.report import shown
-from vbraille.analysis.tables import Kind
+from vbraille.analysis.schemas import Kind
 from vbraille.pictures.words import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from vbraille.analysis.results import Picture, Results, Section
-    from vbraille.analysis.tables import Table, Value
+    from vbraille.analysis.results import Chapter, ReportFigure, Results
+    from vbraille.analysis.schemas import ResultTable, Value
 
 Element = ElementTree.Element
 _INLINE = {"a", "span", "strong"}  # after all others the source has a new line
@@ -150,7 +150,7 @@ def _contents(results: Results) -> Element:
 
 
 def _section(
-    section: Section,
+    section: Chapter,
     number: int,
     titles: Mapping[str, str],
     figures: Mapping[str, bytes],
@@ -168,7 +168,7 @@ def _section(
     return made
 
 
-def _table(table: Table) -> Iterator[Element]:
+def _table(table: ResultTable) -> Iterator[Element]:
     table = shown.in_report(table)
     yield _e("h3", table.title, id=f"table-{table.name}")
     for text in filter(None, (table.about, shown.marking(table))):
@@ -194,7 +194,7 @@ def _table(table: Table) -> Iterator[Element]:
     yield _e("p", f"{shown.numbers(table)} ", _link(shown.csv_name(table)))
 
 
-def _row(table: Table, row: tuple[Value, ...], heads: int) -> Element:
+def _row(table: ResultTable, row: tuple[Value, ...], heads: int) -> Element:
     made = _e("tr")
     for at, (text, column) in enumerate(zip(shown.values(table, row), table.columns, strict=True)):
         if at < heads:
@@ -213,7 +213,7 @@ def _row(table: Table, row: tuple[Value, ...], heads: int) -> Element:
     return made
 
 
-def _figure(picture: Picture, title: str, svg: bytes) -> Element:
+def _figure(picture: ReportFigure, title: str, svg: bytes) -> Element:
     source = f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
     return _e(
         "figure",
@@ -235,7 +235,7 @@ def _figure(picture: Picture, title: str, svg: bytes) -> Element:
     )
 
 
-def _files(picture: Picture) -> Iterator[Element | str]:
+def _files(picture: ReportFigure) -> Iterator[Element | str]:
     for number, kind in enumerate(shown.KINDS):
         if number:
             yield ", "

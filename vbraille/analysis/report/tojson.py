@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.analysis.results import Results
-    from vbraille.analysis.tables import Table
+    from vbraille.analysis.schemas import ResultTable
 
 # A value is a line, for who compares two files; json's own indenting takes ten times as long.
 _ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",\n", ": ")).encode
@@ -35,7 +35,7 @@ def to_json(results: Results) -> Iterator[str]:
     yield "}}\n"
 
 
-def _table(table: Table) -> dict[str, Any]:
+def _table(table: ResultTable) -> dict[str, Any]:
     return {
         "title": table.title,
         "about": table.about,

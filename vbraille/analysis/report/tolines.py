@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.analysis.report.shown import ROWS
-from vbraille.analysis.tables import NOTE, to_print
+from vbraille.analysis.schemas import NOTE, to_print
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.analysis.results import Results
-    from vbraille.analysis.tables import Column, Table, Value
+    from vbraille.analysis.schemas import Column, ResultTable, Value
 
 _UNIT = " (%)"
 
@@ -38,7 +38,7 @@ def to_lines(results: Results) -> Iterator[str]:
                 yield f"note: {note}"
 
 
-def _rows(table: Table) -> Iterator[str]:
+def _rows(table: ResultTable) -> Iterator[str]:
     if len(table.rows) > ROWS:
         yield f"{len(table.rows)} rows; {setting('out')} writes them"
         return

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from vbraille.analysis.report import shown
-from vbraille.analysis.tables import Kind
+from vbraille.analysis.schemas import Kind
 from vbraille.pictures.words import plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from vbraille.analysis.results import Picture, Results
-    from vbraille.analysis.tables import Table, Value
+    from vbraille.analysis.results import ReportFigure, Results
+    from vbraille.analysis.schemas import ResultTable, Value
 
 # What Markdown does something with: anywhere, in an address, at the beginning of a line.
 _ACTIVE = re.compile(r"[\\`*_{}\[\]<>|~$&]|(?<=:)//|(?<=www)\.|^[#+=-]")
@@ -61,7 +61,7 @@ def escape(text: str) -> str:
     return _NUMBERED.sub(r"\1\\", escaped)
 
 
-def _table(table: Table) -> Iterator[str]:
+def _table(table: ResultTable) -> Iterator[str]:
     table = shown.in_report(table)
     yield f"### {escape(table.title)}"
     yield escape(table.about)
@@ -79,7 +79,7 @@ def _table(table: Table) -> Iterator[str]:
     yield f"{shown.numbers(table)} {_link(shown.csv_name(table))}"
 
 
-def _row(table: Table, row: tuple[Value, ...]) -> list[str]:
+def _row(table: ResultTable, row: tuple[Value, ...]) -> list[str]:
     texts = [escape(text) for text in shown.values(table, row)]
     for at, text in enumerate(texts):
         if (mark := table.mark(row, at)) is not None:
@@ -87,7 +87,7 @@ def _row(table: Table, row: tuple[Value, ...]) -> list[str]:
     return texts
 
 
-def _picture(picture: Picture, title: str) -> Iterator[str]:
+def _picture(picture: ReportFigure, title: str) -> Iterator[str]:
     yield f"### Figure: {escape(picture.title)}"
     yield f"![{escape(shown.alternative(picture))}]({quote(shown.picture_name(picture, 'svg'))})"
     yield escape(picture.text)

@@ -18,17 +18,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import f
 
-from vbraille.analysis.statistics.design import arrange
 from vbraille.analysis.statistics.effectsizes import partial_eta2_interval
 from vbraille.analysis.statistics.sphericity import sphericity
 from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.analysis.statistics.withinsubject import arrange
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.analysis.statistics.design import Cell
+    from vbraille.analysis.statistics.withinsubject import Cell
 
 # Sums of squares below this share of the scores' own are rounding.
 ROUNDING = 1e-24

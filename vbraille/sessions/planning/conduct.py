@@ -125,7 +125,7 @@ class Tone:
 
 
 @dataclass(frozen=True, slots=True)
-class Sound:
+class SignalSound:
     """What is heard.
 
     Parameters
@@ -141,7 +141,7 @@ class Sound:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class Question:
     """A question about the participant, asked before the session; nothing personal.
 
     Parameters

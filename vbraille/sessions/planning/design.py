@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from itertools import permutations, product
 from typing import TYPE_CHECKING
 
+from vbraille.braille.spelling import LETTERS, name_dots, to_braille
 from vbraille.sessions.planning.conduct import check_name, check_range
-from vbraille.sessions.planning.spelling import LETTERS, name_dots, to_braille
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

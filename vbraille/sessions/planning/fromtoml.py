@@ -6,9 +6,10 @@ from dataclasses import replace
 from itertools import permutations
 from typing import TYPE_CHECKING
 
-from vbraille.geometry import BOUNDS_MM
+from vbraille.braille.geometry import BOUNDS_MM
+from vbraille.braille.spelling import UNREAD, spell, spell_string
 from vbraille.render import MAPPINGS, Mapping, Model, Profile, single_row
-from vbraille.sessions.planning.conduct import Field, SessionPace, Sound, Tone, TrialPace
+from vbraille.sessions.planning.conduct import Question, SessionPace, SignalSound, Tone, TrialPace
 from vbraille.sessions.planning.design import (
     PARAMETERS,
     Choice,
@@ -20,12 +21,11 @@ from vbraille.sessions.planning.design import (
 )
 from vbraille.sessions.planning.practice import Item, Practice
 from vbraille.sessions.planning.section import quote
-from vbraille.sessions.planning.spelling import UNREAD, spell, spell_string
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.geometry import Geometry
+    from vbraille.braille.geometry import Geometry
     from vbraille.render import Tuning
     from vbraille.sessions.planning.section import Section
 
@@ -166,7 +166,7 @@ def read_paces(root: Section) -> tuple[TrialPace, SessionPace]:
         )
 
 
-def read_sound(root: Section) -> Sound:
+def read_sound(root: Section) -> SignalSound:
     """What ``[sound]`` has."""
     table = root.table("sound", ("cue", "warning"))
     tones = {}
@@ -177,16 +177,16 @@ def read_sound(root: Section) -> Sound:
                 table.fail(f"{name} has {len(numbers)} numbers; give two, of Hz and of ms")
             with table.checking(f"{name}: "):
                 tones[name] = Tone(*numbers)
-    return Sound(**tones)
+    return SignalSound(**tones)
 
 
-def read_fields(root: Section) -> tuple[Field, ...]:
+def read_fields(root: Section) -> tuple[Question, ...]:
     """All ``[[fields]]``."""
     questions = []
     for table in root.tables("fields", ("name", "ask", "choices")):
         choices = table.texts("choices") if "choices" in table else ()
         with table.checking():
-            questions.append(Field(table.text("name"), table.text("ask"), choices))
+            questions.append(Question(table.text("name"), table.text("ask"), choices))
     return tuple(questions)
 
 

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.geometry import Geometry
+from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
-from vbraille.geometry import Geometry
 from vbraille.render import Tuning
-from vbraille.sessions.planning.spelling import spell, to_braille
 from vbraille.sessions.planning.stimuli import Stimulus, Trial
 
 if TYPE_CHECKING:

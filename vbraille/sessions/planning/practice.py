@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vbraille.braille.spelling import to_braille
 from vbraille.sessions.planning.conduct import check_range
 from vbraille.sessions.planning.design import (
     MOST_TRIALS,
@@ -12,7 +13,6 @@ from vbraille.sessions.planning.design import (
     Design,
     StringList,
 )
-from vbraille.sessions.planning.spelling import to_braille
 
 Item = tuple[float, ...]  # the cells asked for, or the values compared
 

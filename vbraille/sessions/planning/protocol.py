@@ -10,6 +10,7 @@ import tomllib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.braille.spelling import name_dots
 from vbraille.errors import InputError
 from vbraille.render import MODELS
 from vbraille.sessions.planning import fromtoml
@@ -17,12 +18,11 @@ from vbraille.sessions.planning.conduct import check_line
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList, name_cell
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, read_file
 from vbraille.sessions.planning.section import Section
-from vbraille.sessions.planning.spelling import name_dots
 
 if TYPE_CHECKING:
-    from vbraille.geometry import Geometry
+    from vbraille.braille.geometry import Geometry
     from vbraille.render import Mapping, Model
-    from vbraille.sessions.planning.conduct import Field, SessionPace, Sound, TrialPace
+    from vbraille.sessions.planning.conduct import Question, SessionPace, SignalSound, TrialPace
     from vbraille.sessions.planning.design import Condition, Design, Rules
     from vbraille.sessions.planning.practice import Practice
 
@@ -103,8 +103,8 @@ class Protocol:
     trial: TrialPace
     session: SessionPace
     repeat_faults: bool
-    sound: Sound
-    fields: tuple[Field, ...]
+    sound: SignalSound
+    fields: tuple[Question, ...]
     text: str
 
     def __post_init__(self) -> None:

@@ -6,11 +6,11 @@ from collections import Counter
 from itertools import groupby, pairwise, permutations, product
 from typing import TYPE_CHECKING
 
+from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.design import Choice, Combinations
 from vbraille.sessions.planning.practice import Item, content
-from vbraille.sessions.planning.spelling import to_braille
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.sessions.planning.spelling import to_braille
+from vbraille.braille.spelling import to_braille
 
 if TYPE_CHECKING:
-    from vbraille.geometry import Geometry
+    from vbraille.braille.geometry import Geometry
     from vbraille.render import Tuning
 
 MOST_SEED = 2**63 - 1

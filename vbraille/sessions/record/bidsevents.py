@@ -32,7 +32,7 @@ _VALUES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class BidsRun:
     """A run of a session.
 
     Parameters
@@ -93,13 +93,13 @@ class Run:
         }
 
 
-def runs_of(record: Record) -> list[Run]:
+def runs_of(record: Record) -> list[BidsRun]:
     """Runs of a session, in their order."""
     notes = {note.event: note for note in read_notes(record.told.events)}
-    runs: list[Run] = []
+    runs: list[BidsRun] = []
     for event in record.told.events:
         if event["event"] == "run":
-            runs.append(Run(event, [], notes))
+            runs.append(BidsRun(event, [], notes))
         elif runs:
             runs[-1].events.append(event)
     return runs

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vbraille.braille.geometry import BOUNDS_MM
+from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
 from vbraille.errors import InputError, VbrailleError
-from vbraille.geometry import BOUNDS_MM
 from vbraille.sessions.planning.design import StringList
-from vbraille.sessions.planning.spelling import to_braille
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.geometry import Geometry
+    from vbraille.braille.geometry import Geometry
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import Note
-    from vbraille.sessions.record.progress import Told
+    from vbraille.sessions.record.progress import TrialsTold
     from vbraille.sessions.record.traces import Trace
 
 _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
@@ -204,7 +204,7 @@ def walk(
         yield row | fields, seen
 
 
-def _row(record: Record, trial: Trial, told: Told) -> dict[str, Any]:
+def _row(record: Record, trial: Trial, told: TrialsTold) -> dict[str, Any]:
     """Row of a trial, without what its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
@@ -293,7 +293,7 @@ def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
 
-def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Trajectory | str:
+def _trajectory(record: Record, trial: Trial, told: TrialsTold, traces: Traces) -> Trajectory | str:
     """What the trace tells of the last attempt; why, if it tells nothing."""
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
@@ -315,7 +315,7 @@ def _trajectory(record: Record, trial: Trial, told: Told, traces: Traces) -> Tra
 
     def moved() -> NDArray[np.bool_]:
         # Few sessions need it, and numba takes its time to be imported.
-        from vbraille.sessions.planning.pictures import render
+        from vbraille.sessions.planning.programs import render
 
         tuning = replace(stimulus.tuning, **told.tuning)
         renderer = render(protocol, stimulus, tuning, anchor_mm=0.0)

@@ -39,7 +39,7 @@ class Showing:
 
 
 @dataclass(slots=True)
-class Told:
+class TrialsTold:
     """What is known of a trial.
 
     Parameters
@@ -47,7 +47,7 @@ class Told:
     attempts
         How often it was begun.
     answer
-        The one that counts, None before there is one; `vbraille.sessions.planning.spelling` says
+        The one that counts, None before there is one; `vbraille.braille.spelling` says
         how it is written.
     first_answer
         The one before an undo.
@@ -133,8 +133,8 @@ class Progress:
 
     def __init__(self, plan: Plan, events: Iterable[Event] = ()) -> None:
         self.plan = plan
-        self.trials = {trial.number: Told() for trial in plan.trials}
-        self.practice = {trial.number: Told() for trial in plan.practice}
+        self.trials = {trial.number: TrialsTold() for trial in plan.trials}
+        self.practice = {trial.number: TrialsTold() for trial in plan.practice}
         self.begun = not plan.practice
         self.correcting: Trial | None = None
         self.broken = 0
@@ -174,7 +174,7 @@ class Progress:
         """Planned trials that have an answer."""
         return self._answered
 
-    def told(self, trial: Trial) -> Told:
+    def told(self, trial: Trial) -> TrialsTold:
         """What is known of a trial."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
@@ -195,12 +195,12 @@ class Progress:
             self._mark_lost(event["trial"])
             self._trial = event["trial"]
 
-    def _of(self, event: Event) -> Told | None:
+    def _of(self, event: Event) -> TrialsTold | None:
         if "trial" not in event:
             return None
         return (self.practice if event.get("practice") else self.trials)[event["trial"]]
 
-    def _told(self, event: Event) -> Told:
+    def _told(self, event: Event) -> TrialsTold:
         told = self._of(event)
         assert told is not None, f"a {event['event']} is of a trial"
         return told
@@ -275,7 +275,7 @@ class Progress:
     def _take_go(self, event: Event) -> None:
         self._end_pause(self._of(event), event)
 
-    def _end_pause(self, told: Told | None, event: Event) -> None:
+    def _end_pause(self, told: TrialsTold | None, event: Event) -> None:
         if told is not None and self._paused_s is not None:
             told.paused_s += event["t_s"] - self._paused_s
         self._paused_s = None

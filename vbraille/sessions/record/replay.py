@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.kernels import replay
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
+from vbraille.engine.ticks import replay
 from vbraille.render.program import nothing, scratch_for
-from vbraille.sessions.planning.pictures import render
+from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import read_trace
 

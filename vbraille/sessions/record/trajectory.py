@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.geometry import Geometry
-    from vbraille.render.mappings import Mapping
+    from vbraille.braille.geometry import Geometry
+    from vbraille.render.braille.mappings import Mapping
 
 _COLUMNS = (0b01000111, 0b10111000)  # masks of a cell's left dots, 1, 2, 3, 7, and its right ones
 

@@ -17,7 +17,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.simulated.observer import Observer
 
 if TYPE_CHECKING:
-    from vbraille.render.models import Model
+    from vbraille.render.braille.models import Model
     from vbraille.sessions.planning.plan import Plan, Trial
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.simulated.observer import Parameter
@@ -105,7 +105,7 @@ class Typed:
         return None
 
 
-class Script:
+class ScriptedAnswers:
     """Lines of a file, the next one whenever a trial has been read.
 
     Empty lines, and those that begin with #, are passed over.
@@ -237,4 +237,4 @@ def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> An
             return Simulated(protocol, plan, float(noise or 0.0))
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-    return Script(Path(spec), after)
+    return ScriptedAnswers(Path(spec), after)

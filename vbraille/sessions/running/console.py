@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
-from vbraille.sessions.planning.spelling import parse_answer, parse_choice, say_cells
 from vbraille.sessions.running.course import POLL_S, Phase
 from vbraille.sessions.running.orders import ORDERS, find_order
 

@@ -18,7 +18,7 @@ from vbraille.sessions.record.folder import versions
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.render.tuning import Tuning
+    from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.conduct import Tone
     from vbraille.sessions.planning.plan import Plan, Trial
     from vbraille.sessions.planning.protocol import Protocol

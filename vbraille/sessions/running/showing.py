@@ -11,7 +11,7 @@ from vbraille.devices.saying import told
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
-from vbraille.sessions.planning.pictures import render
+from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import Exploration
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render.tuning import Tuning
+    from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.record.journal import Tie

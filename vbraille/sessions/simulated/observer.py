@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
-    from vbraille.render.style import BrailleStyle
+    from vbraille.render.braille.style import BrailleStyle
 
 Parameter = Literal["dot width", "gap"]
 

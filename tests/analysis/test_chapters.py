@@ -1,0 +1,306 @@
+"""Whole analyses: of sessions, of tables of trials, of scores."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.sessions.sittings import COMPARED, MINI, Session
+from vbraille.analysis.chapters import Options, analyse, analyse_scores
+from vbraille.analysis.input.study import load_scores, load_study, trials_file
+from vbraille.analysis.report.files import write_report
+from vbraille.analysis.report.tojson import to_json
+from vbraille.errors import InputError
+from vbraille.sessions.record.export import rows, to_csv
+from vbraille.sessions.record.folder import load
+
+CONDITIONS = """
+[[conditions]]
+name = "T0"
+texture = 0.0
+[[conditions]]
+name = "T100"
+texture = 1.0
+"""
+TRIALS = """participant,condition,presented,answered,duration_s,finger
+A,T0,ab,ab,3,left
+A,T0,cd,c?,4,left
+A,T100,ab,ab,2,left
+B,T0,ab,aa,5,right
+B,T100,cd,cd,3,right
+B,T100,ab,ab,4,right
+C,T0,ab,,2,left
+C,T0,cd,cd,2,left
+C,T100,cd,ad,1,left
+"""
+
+
+@pytest.fixture(scope="module")
+def sessions(tmp_path_factory):
+    """Two participants who read four characters in two conditions, one who compares widths."""
+    folder = tmp_path_factory.mktemp("sessions")
+    for number, who in enumerate(("P2", "P10"), 1):
+        Session(folder / f"read-{who}", MINI + CONDITIONS, who, seed=number).sit(noise=0.6)
+    Session(folder / "compared", COMPARED, "P2").sit()
+    return folder
+
+
+@pytest.fixture
+def table(tmp_path):
+    """A table of trials."""
+    path = tmp_path / "trials.csv"
+    path.write_text(TRIALS)
+    return path
+
+
+def tables(results):
+    return {table.name: table for table in results.tables()}
+
+
+def test_sessions_of_all_kinds_together(sessions):
+    study = load_study([sessions / name for name in ("read-P10", "compared", "read-P2")])
+    results = analyse(study, Options())
+    found = tables(results)
+    assert [section.title for section in results.sections] == [
+        "Legibility",
+        "Characters and strings",
+        "Confusions",
+        "Errors",
+        "Over time",
+        "How strings were read",
+        "Levels compared",
+        "Which of two was chosen",
+    ]
+    rows = [(row["participant"], row["condition"]) for row in found["legibility"].records()]
+    assert rows == [("P2", "T0"), ("P2", "T100"), ("P10", "T0"), ("P10", "T100")]
+    assert all(row["timed"] == row["trials"] for row in found["legibility"].records())
+    assert len(found["trajectories"].rows) == len(study.trials)
+    assert {row["parameter"] for row in found["choices"].records()} == {"dot_width_mm"}
+    about = dict(results.about)
+    assert "seed 2, model vbd" in about["Session read-P10"]
+    assert "numba" in about["Versions of compared, read-P2, read-P10"]
+    assert about["Excluded"] == "nothing"
+    assert any("no data about people" in warning for warning in results.warnings)
+    names = [picture.name for picture in results.pictures()]
+    assert len(names) == len(set(names)) == 8
+    assert all(picture.table in found for picture in results.pictures())
+
+
+def test_durations_are_those_of_the_export(sessions):
+    study = load_study([sessions / "read-P2"])
+    row = tables(analyse(study, Options()))["legibility"].records()[0]
+    (sitting,) = study.sittings
+    own = [r["duration_s"] for r in sitting.rows if r["condition"] == row["condition"]]
+    assert row["duration_mean_s"] == pytest.approx(sum(own) / len(own))
+
+
+def test_the_order_in_which_things_are_given_is_of_no_matter(sessions, table):
+    paths = [table, *(sessions / name for name in ("read-P10", "read-P2", "compared"))]
+    texts = {
+        "".join(to_json(analyse(load_study(order), Options()))) for order in (paths, paths[::-1])
+    }
+    assert len(texts) == 1
+
+
+def test_a_table_has_what_a_table_can_tell(table):
+    results = analyse(load_study([table]), Options())
+    found = tables(results)
+    assert not found["trajectories"].rows
+    assert found["trajectories"].notes == ("no trial has a trajectory",)
+    about = dict(results.about)
+    assert about["Excluded"] == "1 trial of trials.csv: no answer"
+    assert about["File trials.csv"].startswith("9 rows, SHA-256 ")
+    json.loads("".join(to_json(results)))
+
+
+def test_other_columns_are_kept_and_compared_by(table):
+    study = load_study([table])
+    (content,) = trials_file(study).values()
+    lines = content.decode().splitlines()
+    assert lines[0].endswith("duration_s,finger")
+    assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,,⠁⠃,1,3.0,left"
+    assert len(lines) == 1 + 8
+    found = tables(analyse(study, Options(factors=("finger",))))
+    assert {row["level"] for row in found["level_means"].records()} == {"left", "right"}
+    with pytest.raises(InputError, match=r"no column 'fingre' to compare by; there are condition"):
+        analyse(study, Options(factors=("fingre",)))
+
+
+def test_trials_written_are_trials_read(table, tmp_path):
+    study = load_study([table])
+    again = tmp_path / "again.csv"
+    again.write_bytes(trials_file(study)["trials.csv"])
+    first, second = (tables(analyse(each, Options())) for each in (study, load_study([again])))
+    for name, of in first.items():
+        assert of.rows == second[name].rows, name
+
+
+def test_who_is_left_out_is_named_with_the_reason(table):
+    study = load_study([table], exclude={"C": "fell asleep"})
+    results = analyse(study, Options())
+    assert {row["participant"] for row in tables(results)["legibility"].records()} == {"A", "B"}
+    assert "participant C: fell asleep" in dict(results.about)["Excluded"]
+    with pytest.raises(InputError, match="no participant 'D' with answered trials; there are A, B"):
+        load_study([table], exclude={"D": "is not there"})
+
+
+def test_a_simulated_reader_is_told_of_when_its_trials_come_as_a_table(sessions, tmp_path):
+    path = tmp_path / "exported.csv"
+    path.write_text(to_csv(rows(load(sessions / "read-P2"))))
+    (warning,) = load_study([path]).warnings
+    assert warning.startswith("A simulated reader answered in exported.csv: that is no data")
+    path.write_text(path.read_text().replace("simulated:0.6", "typed"))
+    assert load_study([path]).warnings == ()
+    path.write_text(path.read_text().replace("typed", "answers.txt"))
+    assert load_study([path]).warnings == ("Answers came from a file in exported.csv.",)
+
+
+def test_only_one_protocol(sessions):
+    paths = [sessions / "read-P2", sessions / "compared"]
+    study = load_study(paths, protocol="widths")
+    assert study.trials is None
+    assert [sitting.head["protocol"] for sitting in study.sittings] == ["widths"]
+    results = analyse(study, Options())
+    assert [section.title for section in results.sections] == ["Which of two was chosen"]
+    assert "protocols other than widths" in dict(results.about)["Excluded"]
+    with pytest.raises(InputError, match="no protocol 'letters'"):
+        load_study(paths, protocol="letters")
+
+
+def test_several_protocols_are_told_of_and_kept_apart(sessions, tmp_path):
+    Session(tmp_path / "one", MINI, "P2").sit()
+    study = load_study([tmp_path / "one", sessions / "read-P2"])
+    assert not any("protocols" in warning for warning in study.warnings)
+    other = Session(tmp_path / "other", MINI.replace('"mini"', '"other"'), "P2")
+    with pytest.raises(InputError, match="other: no answered trial, and so nothing to analyse"):
+        load_study([other.folder])
+    other.sit()
+    study = load_study([tmp_path / "one", other.folder])
+    assert any("2 protocols, mini, other" in warning for warning in study.warnings)
+    found = tables(analyse(study, Options()))
+    for name in ("legibility", "trajectories", "patterns"):
+        assert {row["condition"] for row in found[name].records()} == {"mini", "other"}
+
+
+def test_a_session_broken_off_is_told_of(tmp_path):
+    session = Session(tmp_path / "broken", MINI, "P1")
+    session.sit(("read:", "a"), ("cue: trial 2", "stop"))
+    study = load_study([session.folder])
+    assert any("broken is not whole: broken off in trial 2" in w for w in study.warnings)
+    assert len(study.trials) == 1
+    assert "trials of broken: no answer" in study.left_out[0].what + ": " + study.left_out[0].reason
+    assert tables(analyse(study, Options()))["legibility"].records()[0]["trials"] == 1
+
+
+def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
+    session = Session(tmp_path / "paused", MINI, "P1")
+    session.sit(("cue: trial 1", "pause"), ("pause", ""), ("read:", "a"), ("cue: trial 2", "stop"))
+    study = load_study([session.folder])
+    (told,) = [row for row in study.sittings[0].rows if row["answered"]]
+    assert told["paused_s"] > 0
+    assert told["duration_s"] > 0
+    assert [left.reason for left in study.left_out] == [
+        "no answer",
+        "the trial was paused meanwhile",
+    ]
+    found = tables(analyse(study, Options()))
+    (row,) = found["legibility"].records()
+    assert (row["trials"], row["timed"]) == (1, 0)
+    (row,) = found["trajectories"].records()
+    assert row["note"].startswith("it was paused for ")
+    assert row["duration_s"] is None
+
+
+def test_a_damaged_session_is_analysed_as_far_as_it_is_whole(tmp_path):
+    session = Session(tmp_path / "hurt", MINI, "P1")
+    session.sit()
+    trace = next(session.folder.glob("trace-*.gz"))
+    content = bytearray(trace.read_bytes())
+    content[len(content) // 2] ^= 1
+    trace.write_bytes(content)
+    study = load_study([session.folder])
+    assert len(study.faults) == 1
+    assert "does not match its checksum" in study.faults[0]
+    found = tables(analyse(study, Options()))
+    assert found["legibility"].records()[0]["trials"] == len(study.trials)
+    assert found["trajectories"].records()[-1]["note"].endswith("is damaged before the end of it")
+
+
+def test_nothing_is_given_twice(table):
+    with pytest.raises(InputError, match="is there twice; give it once"):
+        load_study([table, table])
+
+
+def test_scores(tmp_path):
+    path = tmp_path / "scores.csv"
+    path.write_text(
+        "participant,texture,score\nA,0,1\nA,1,2\nB,0,3\nB,1,5\nC,0,2\nC,1,\nD,0,1\nD,1,1.5\n"
+    )
+    scores, about = load_scores(path)
+    results = analyse_scores(scores, about, Options(correction="holm"))
+    (section,) = results.sections
+    names = [table.name for table in section.tables]
+    assert names == ["level_means", "level_scores", "t_tests", "anova"]
+    told = dict(results.about)
+    assert told["Excluded"] == "participant C, of the analysis of score: no 1"
+    assert told["Correction of t-tests"] == "Holm's step-down"
+    assert told["Compared by"] == "texture"
+    (effect,) = tables(results)["anova"].records()
+    (test,) = tables(results)["t_tests"].records()
+    assert effect["f"] == pytest.approx(test["t"] ** 2)  # two levels
+    assert test["note"] == "without C: a score is missing"
+
+
+def test_options_check_themselves():
+    with pytest.raises(ValueError, match="correction is 'bonferoni'"):
+        replace(Options(), correction="bonferoni")
+
+
+@pytest.mark.no_cover
+def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
+    """Here, and in a process whose sets have another order, with the sessions given in another."""
+    paths = [sessions / "read-P2", sessions / "compared"]
+    here, there = tmp_path / "here", tmp_path / "there"
+    again = subprocess.Popen(
+        [sys.executable, "-m", "vbraille", "analyse", *reversed(paths), "--out", there],
+        stdout=subprocess.DEVNULL,
+        env={**os.environ, "PYTHONHASHSEED": "1"},
+    )
+    study = load_study(paths)
+    write_report(analyse(study, Options()), here, trials_file(study))
+    assert again.wait() == 0
+    written = [
+        {path.relative_to(out): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+        for out in (here, there)
+    ]
+    assert written[0] == written[1]
+    kinds = {".html", ".md", ".json", ".csv", ".svg", ".png", ".pdf"}
+    assert {path.suffix for path in written[0]} == kinds
+    assert Path("trials.csv") in written[0]
+
+
+def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
+    session = Session(tmp_path / "early", MINI, "P1", hand="sweep:10")
+    notes = [("note", "note x")] * 9
+    session.sit(
+        ("cue: trial 1", "note x"), *notes, ("note", "c"), ("no answer", "c"),
+        ("read:", "c"), ("cue: trial 3", "stop"),
+    )  # fmt: skip
+    study = load_study([session.folder])
+    first, second = [row for row in study.sittings[0].rows if row["answered"]]
+    assert (first["early"], second["early"]) == (1, 0)
+    assert first["duration_s"] > 0
+    assert [left.reason for left in study.left_out] == [
+        "no answer",
+        "it was answered before it was read to its end",
+    ]
+    found = tables(analyse(study, Options()))
+    (row,) = found["legibility"].records()
+    assert (row["trials"], row["timed"]) == (2, 1)
+    early, timed = found["trajectories"].records()
+    assert early["note"] == "it was answered before it was read to its end"
+    assert (early["duration_s"], timed["note"]) == (None, "")

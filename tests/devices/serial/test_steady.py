@@ -1,0 +1,288 @@
+"""The compiled conversation beside the one in Python, over traffic of every kind.
+
+Each read and each frame of a `Conversation` is done by the compiled functions, too, from the same
+numbers. Where these answer, the conversation must have done the same, in every number and every
+byte; where they leave it to Python, they must have changed nothing.
+"""
+
+import math
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.controllers import ControllerOf20261121
+from tests.troubles import Troubles
+from tests.wired import Wired, reading
+from vbraille.devices.serial import steady
+from vbraille.devices.serial.conversation import IDLE_MS, Conversation
+from vbraille.devices.serial.lending import Lending
+from vbraille.devices.wire.codec import CRC_BYTES, encode, frame_head
+from vbraille.devices.wire.messages import (
+    FAULTY,
+    PLACED,
+    RESTING,
+    SILENCE_MS,
+    STALL_MS,
+    TRIPPED,
+    Error,
+    State,
+    Watchdog,
+)
+from vbraille.pose import Pose
+from vbraille.simulation.firmware import Controller
+
+NS_PER_MS = 1_000_000
+
+
+def lent(conversation):
+    """What a conversation lends, copied, and the part of a message that has come; None if nothing.
+
+    The conversation is as it was before.
+    """
+    lending = Lending()
+    begun = lending.lend(conversation)
+    if begun is None:
+        return None
+    part = lending.received[:begun].tobytes()
+    conversation.decoder.feed(part)
+    actuators = lending.actuators
+    lending.actuators = actuators._replace(
+        last=actuators.last.copy(), wanted=actuators.wanted.copy()
+    )
+    return lending, part
+
+
+def numbers_of(lending):
+    """All numbers of a conversation but the last place, which is there once a STATE was taken."""
+    return {name: lending.talk[name][0] for name in steady.CONVERSATION.names if name != "x_mm"}
+
+
+def record_of(lending):
+    """The same numbers, as compiled code takes and changes them."""
+    return lending.talk.view(np.recarray)[0]
+
+
+class Beside(Conversation):
+    """A conversation whose every read and frame is done by the compiled functions, too."""
+
+    def __init__(self, now_ns, rate_hz=None):
+        self.steady_reads = self.other_reads = self.steady_frames = self.other_frames = 0
+        self._before = self._made = None
+        super().__init__(now_ns, rate_hz)
+
+    def mind_stall(self, now_ns):
+        self._before = lent(self)
+        return super().mind_stall(now_ns)
+
+    def hear(self, chunk, now_ns):
+        pose = super().hear(chunk, now_ns)
+        if self._before is None:
+            return pose
+        (lending, part), self._before = self._before, None
+        begun, talk = numbers_of(lending), record_of(lending)
+        received = np.frombuffer(part + chunk, np.uint8).copy()
+        consumed, states = steady.take(received, received.size, now_ns, talk, lending.work)
+        if consumed == steady.SOMETHING_ELSE:
+            self.other_reads += 1
+            assert numbers_of(lending) == begun
+            return pose
+        self.steady_reads += 1
+        assert self.is_as(lending) == received[consumed:].tobytes()
+        assert (pose is None) == (states == 0)
+        assert pose is None or pose == Pose(talk.device_ns, talk.x_mm)
+        return pose
+
+    def show(self, frame, now_ns):
+        before = lent(self)
+        super().show(frame, now_ns)
+        if before is None:
+            return
+        lending, _ = before
+        begun, talk = numbers_of(lending), record_of(lending)
+        size = steady.make(frame, now_ns, talk, lending.actuators, lending.out)
+        if size == steady.SOMETHING_ELSE:
+            self.other_frames += 1
+            assert numbers_of(lending) == begun
+            return
+        self.steady_frames += 1
+        assert self.due() == lending.out[:size].tobytes()
+        steady.sent(now_ns, talk, lending.actuators)
+        self._made = lending
+
+    def sent(self):
+        super().sent()
+        if self._made is not None:
+            self.is_as(self._made)
+            np.testing.assert_array_equal(self._made.actuators.last, self.drive.last)
+            self._made = None
+
+    def is_as(self, lending):
+        """Assert that it is what the compiled functions came to; the part of a message."""
+        python, left = lent(self)
+        assert numbers_of(python) == numbers_of(lending)
+        lending.give_back(self)
+        assert numbers_of(lent(self)[0]) == numbers_of(lending)
+        return left
+
+
+def test_undisturbed_nothing_is_left_to_python_once_frames_are_taken():
+    wired = Wired(random.Random(1), Troubles(), conversation=Beside, swing=0.5)
+    wired.run(0.1)
+    talk = wired.device.conversation
+    before = talk.other_reads, talk.other_frames, talk.steady_reads, talk.steady_frames
+    wired.run(0.5)
+    after = talk.other_reads, talk.other_frames, talk.steady_reads, talk.steady_frames
+    assert after[:2] == before[:2]
+    assert after[2] - before[2] >= 499
+    assert after[3] - before[3] >= 499
+
+
+@pytest.mark.parametrize("controller", [Controller, ControllerOf20261121])
+@pytest.mark.parametrize("kind", ["host", "line"])
+@pytest.mark.parametrize("seed", range(8))
+def test_beside_python_over_traffic_with_troubles(seed, kind, controller):
+    talk = reading(seed, kind, controller, Beside).device.conversation
+    assert talk.steady_reads > 20
+    assert talk.steady_frames > 20
+
+
+def conversation(**changes):
+    """A conversation in which a STATE and a FRAME have come and gone, at 1 s of the host's."""
+    talk = np.zeros(1, steady.CONVERSATION).view(np.recarray)[0]
+    talk.heard_ns = talk.felt_ns = talk.owed_ns = talk.moved_ns = 1_000_000_000
+    talk.sent_ns = talk.acknowledged_ns = steady.NEVER
+    talk.state_sequence, talk.sequence, talk.device_us = 10, 7, 5_000
+    talk.count_bits, talk.mm_per_count = 24, 0.005
+    talk.slew_per_ns, talk.period_ns = math.inf, 1e6
+    talk.top_level, talk.bits, talk.idle_ns = 1023, 10, IDLE_MS * NS_PER_MS
+    for name, value in changes.items():
+        setattr(talk, name, value)
+    return talk
+
+
+def state(sequence=11, flags=PLACED, **changes):
+    numbers = {"time_us": 6_000, "count": 200, "frame_sequence": 7, "buttons": 0, "force_mn": None}
+    return encode(State(sequence=sequence, flags=flags, **(numbers | changes)))
+
+
+def taken(received, talk, now_ns=1_001_000_000):
+    source = np.frombuffer(received, np.uint8).copy()
+    work = np.zeros(steady.WORK_BYTES, np.uint8)
+    return steady.take(source, source.size, now_ns, talk, work)
+
+
+@pytest.mark.parametrize(
+    "received",
+    [
+        state(flags=PLACED | RESTING),
+        state(flags=PLACED | FAULTY),
+        state(flags=PLACED | TRIPPED),
+        state(buttons=1),
+        encode(Watchdog(0, 0)),
+        encode(Error(200, "warm")),
+        b"\x05garbage\0",
+        state()[:-3] + b"\0",
+    ],
+)
+def test_what_is_no_good_state_leaves_all_of_it_to_python(received):
+    for stream in (received, state() + received, received + state(), state() * 3 + received):
+        talk = conversation()
+        assert taken(stream, talk) == (steady.SOMETHING_ELSE, 0)
+        assert talk == conversation()
+
+
+def test_an_encoder_that_has_lost_its_mark_is_left_to_python():
+    assert taken(state(flags=0), conversation()) == (len(state()), 1)
+    assert taken(state(flags=0), conversation(must_be_placed=1)) == (steady.SOMETHING_ELSE, 0)
+
+
+def test_a_button_that_is_held_is_steady_and_one_that_is_let_go_is_not():
+    assert taken(state(buttons=4), conversation(buttons=4)) == (len(state()), 1)
+    assert taken(state(buttons=0), conversation(buttons=4)) == (steady.SOMETHING_ELSE, 0)
+
+
+def test_the_newest_of_some_states_is_the_sample():
+    talk = conversation(sent_ns=1_000_500_000)
+    stream = state(11) + b"\0\0" + state(13, count=400, time_us=8_000) + state(14)[:9]
+    assert taken(stream, talk) == (len(stream) - 9, 2)
+    assert (talk.x_mm, talk.device_ns, talk.missed) == (2.0, 8_000_000, 1)
+    assert (talk.acknowledged_ns, talk.sent_ns) == (500_000, steady.NEVER)
+
+
+def test_a_state_that_comes_again_misses_none_and_turns_no_clock_back():
+    talk = conversation(device_ns=5_000_000)
+    assert taken(state(10, time_us=4_000), talk) == (len(state()), 1)
+    assert (talk.missed, talk.device_us, talk.device_ns) == (0, 4_000, 5_000_000)
+
+
+def test_silence_and_a_stall_are_left_to_python():
+    late_ns = 1_000_000_000 + SILENCE_MS * NS_PER_MS
+    for received in (b"", state()[:5]):
+        assert taken(received, conversation(owed_ns=late_ns), late_ns - 1) == (0, 0)
+        assert taken(received, conversation(owed_ns=late_ns), late_ns)[0] == steady.SOMETHING_ELSE
+    stalled_ns = 1_000_000_000 + STALL_MS * NS_PER_MS
+    assert taken(state(), conversation(), stalled_ns - 1)[1] == 1
+    assert taken(state(), conversation(), stalled_ns)[0] == steady.SOMETHING_ELSE
+
+
+def test_what_is_begun_and_never_ends_is_left_to_python():
+    assert taken(b"\x01" * steady.WORK_BYTES, conversation()) == (0, 0)
+    more = b"\x01" * (steady.WORK_BYTES + 1)
+    assert taken(more, conversation())[0] == steady.SOMETHING_ELSE
+    assert taken(more + b"\0", conversation())[0] == steady.SOMETHING_ELSE
+
+
+@given(st.lists(st.one_of(st.binary(max_size=30), st.just(state()), st.just(b"\0"))).map(b"".join))
+def test_no_bytes_read_or_write_out_of_bounds(received):
+    source = np.concatenate([np.frombuffer(received, np.uint8), np.zeros(8, np.uint8)])
+    work = np.full(steady.WORK_BYTES + 8, 0xA5, np.uint8)
+    room = work[: steady.WORK_BYTES]
+    consumed, _ = steady.take(source, len(received), 1_001_000_000, conversation(), room)
+    assert consumed <= len(received)
+    assert (work[steady.WORK_BYTES :] == 0xA5).all()
+
+
+def one_actuator():
+    body = np.zeros(3 + 2 + CRC_BYTES, np.uint8)
+    body[:3] = np.frombuffer(frame_head(0), np.uint8)
+    zeros = np.zeros((1, 1))
+    return steady.Actuators(
+        zeros, zeros.copy(), np.full((1, 1), 1023.0), np.zeros((1, 1), int), body, body[3:5]
+    )
+
+
+def made(frame, talk, now_ns=1_001_000_000, actuators=None):
+    out = np.zeros(20, np.uint8)
+    return steady.make(np.array([[frame]]), now_ns, talk, actuators or one_actuator(), out)
+
+
+@pytest.mark.parametrize(
+    ("after_ns", "step"), [(500_000, 0.05), (1_000_000, 0.1), (9_000_000, 0.1)]
+)
+def test_the_slew_limit_goes_by_the_time_passed_but_by_no_more_than_a_period(after_ns, step):
+    actuators = one_actuator()
+    assert made(1.0, conversation(slew_per_ns=1e-7), 1_000_000_000 + after_ns, actuators) > 0
+    assert actuators.wanted[0, 0] == pytest.approx(step)
+
+
+@pytest.mark.parametrize("deflection", [math.nan, math.inf, -math.inf, -1e-9, 1.0000001])
+def test_a_deflection_that_is_none_is_not_sent(deflection):
+    talk = conversation()
+    assert made(deflection, talk) == steady.SOMETHING_ELSE
+    assert talk == conversation()
+
+
+def test_frames_that_nobody_feels_end_after_a_while():
+    idle_ns = 1_000_000_000 + IDLE_MS * NS_PER_MS
+    for after_ns, sends in ((idle_ns - 1, True), (idle_ns, False)):
+        assert (made(0.0, conversation(owed_ns=after_ns), after_ns) > 0) == sends
+        assert made(0.5, conversation(owed_ns=after_ns), after_ns) > 0
+
+
+def test_no_frame_is_made_after_a_stall():
+    stalled_ns = 1_000_000_000 + STALL_MS * NS_PER_MS
+    assert made(0.5, conversation(), stalled_ns - 1) > 0
+    assert made(0.5, conversation(), stalled_ns) == steady.SOMETHING_ELSE

@@ -1,0 +1,524 @@
+"""The protocol from both ends: what is sent arrives, and nothing else does."""
+
+import tracemalloc
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Annotated
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from vbraille.devices.wire.codec import (
+    DELIMITER,
+    MOST_FRAME_BYTES,
+    Decoder,
+    Drop,
+    LevelPacking,
+    Levels,
+    OtherVersion,
+    encode,
+    enframe,
+    line_bytes,
+    unwrap,
+)
+from vbraille.devices.wire.fields import (
+    Fixed,
+    Number,
+    OneOf,
+    OptionalNumber,
+    Packed,
+    PerActuator,
+    Text,
+    WrongLengthError,
+    fields_of,
+)
+from vbraille.devices.wire.messages import (
+    FAULTY,
+    MESSAGES,
+    PLACED,
+    RESTING,
+    U16,
+    VERSION,
+    CountSign,
+    Encoder,
+    Error,
+    Frame,
+    Hello,
+    Info,
+    Message,
+    Rest,
+    RestSide,
+    State,
+    Watchdog,
+)
+
+EVERY_MESSAGE = pytest.mark.parametrize("kind", MESSAGES.values(), ids=lambda k: k.__name__)
+LAYOUTS = {message: LevelPacking(code, message) for code, message in MESSAGES.items()}
+PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
+
+STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
+INFO = Info(
+    version=VERSION,
+    rows=2,
+    columns=3,
+    column_pitch_nm=1_200_000,
+    row_pitch_nm=1_800_000,
+    rest_side=RestSide.RIGHT,
+    top_level=150,
+    rate_hz=1000,
+    largest_slew_per_s=0,
+    travel_um=300_000,
+    encoder=Encoder.INDEX,
+    counts_per_m=200_000,
+    count_sign=CountSign.LEFTWARD,
+    count_bits=24,
+    left_stop_count=100,
+    name="STReSS²",
+    firmware="1.0",
+    inverted=bytes(6),
+    gain=bytes([255] * 6),
+    enabled=bytes([1] * 6),
+)
+SAMPLES = [
+    Hello(),
+    Frame(1, b"\x00\xff\x80"),
+    Rest(),
+    INFO,
+    STATE,
+    Watchdog(0, 0),
+    Error(255, "It rattles."),
+]
+
+
+def values(field, actuators):
+    match field:
+        case OptionalNumber():
+            return st.none() | st.integers(field.low, field.high)
+        case Number():
+            return st.integers(field.low, field.high)
+        case OneOf():
+            return st.sampled_from(field.of)
+        case Text():
+            texts = st.text(PRINTABLE, min_size=field.fewest, max_size=20)
+            return texts.filter(lambda text: text.strip() or not field.fewest)
+        case PerActuator():
+            size = {"min_size": actuators, "max_size": actuators}
+            return st.lists(st.integers(0, field.high), **size).map(bytes)
+        case Packed():
+            return st.binary(min_size=1, max_size=300)
+
+
+@st.composite
+def messages_of(draw, kind):
+    known = {}
+    if kind is Info:
+        known = {"rows": draw(st.integers(1, 4)), "columns": draw(st.integers(1, 6))}
+    actuators = known.get("rows", 0) * known.get("columns", 0)
+    for name, field in fields_of(kind):
+        if name not in known:
+            known[name] = draw(values(field, actuators))
+    return kind(**known)
+
+
+any_message = st.sampled_from(sorted(MESSAGES)).flatmap(lambda code: messages_of(MESSAGES[code]))
+# Zeros, length bytes and types come often, so that garbage gets as far as it can.
+garbage = st.binary(max_size=60) | st.lists(
+    st.sampled_from([0, 0, 1, 2, 3, 0x81, 0x82, 0xFF]), max_size=60
+).map(bytes)
+
+
+def body_of(message):
+    return LAYOUTS[type(message)].encode(message)
+
+
+def fed(stream, levels=None):
+    decoder = Decoder(levels)
+    return decoder.feed(stream), decoder.dropped
+
+
+def only(kind, times=1):
+    return dict.fromkeys(Drop, 0) | {kind: times}
+
+
+# There and back
+
+
+@EVERY_MESSAGE
+@settings(max_examples=50)  # of each of seven messages
+@given(choice=st.data())
+def test_what_is_encoded_is_decoded(kind, choice):
+    message = choice.draw(messages_of(kind))
+    line = encode(message)
+    assert line.index(DELIMITER) == len(line) - 1
+    assert len(line) <= line_bytes(len(body_of(message)))
+    assert fed(line) == ([message], dict.fromkeys(Drop, 0))
+
+
+def test_messages_are_frozen():
+    with pytest.raises(AttributeError):
+        STATE.count = 5
+
+
+def test_flags_of_a_state():
+    assert [s.placed for s in (STATE, replace(STATE, flags=0))] == [True, False]
+    assert [s.resting for s in (STATE, replace(STATE, flags=RESTING))] == [False, True]
+    assert [s.faulty for s in (STATE, replace(STATE, flags=FAULTY))] == [False, True]
+
+
+def test_the_largest_messages_fit():
+    actuators = 16 * 64
+    largest = replace(
+        INFO,
+        rows=16,
+        columns=64,
+        name="n" * 255,
+        firmware="f" * 255,
+        inverted=bytes(actuators),
+        gain=b"\xff" * actuators,
+        enabled=bytes(actuators),
+    )
+    for message in (largest, Frame(0, b"\xff" * 2048), Error(0, "e" * 255)):
+        assert len(encode(message)) <= MOST_FRAME_BYTES
+        assert fed(encode(message))[0] == [message]
+
+
+# Any bytes, in any chunks
+
+
+@given(
+    pieces=st.lists(garbage | any_message.map(encode), max_size=6),
+    cuts=st.lists(st.integers(0, 2000), max_size=10),
+)
+def test_chunks_make_no_difference(pieces, cuts):
+    stream = b"".join(pieces)
+    whole = fed(stream)
+    for bounds in (range(len(stream) + 1), sorted({0, len(stream), *cuts})):
+        decoder = Decoder()
+        events = [e for a, b in pairwise(bounds) for e in decoder.feed(stream[a:b])]
+        assert (events, decoder.dropped) == whole
+
+
+@pytest.mark.parametrize("sort", [bytes, bytearray, memoryview])
+def test_any_bytes_like_chunk(sort):
+    assert fed(sort(encode(STATE)))[0] == [STATE]
+
+
+@st.composite
+def damage(draw, stream):
+    """A stream after flips, cuts, repeats and garbage."""
+    stream = bytearray(stream)
+    for _ in range(draw(st.integers(1, 6))):
+        a, b = sorted(draw(st.tuples(*[st.integers(0, len(stream))] * 2)))
+        match draw(st.sampled_from(["flip", "cut", "repeat", "insert"])):
+            case "flip" if a < len(stream):
+                stream[a] ^= 1 << draw(st.integers(0, 7))
+            case "cut":
+                del stream[a:b]
+            case "repeat":
+                stream[draw(st.integers(0, len(stream))) :] = stream[a:b]
+            case "insert":
+                stream[a:a] = draw(garbage)
+    return bytes(stream)
+
+
+@given(sent=st.lists(any_message, min_size=1, max_size=4), choice=st.data())
+def test_nothing_is_accepted_that_was_not_sent(sent, choice):
+    stream = choice.draw(damage(b"".join(map(encode, sent))))
+    assert all(event in sent for event in fed(stream)[0])
+
+
+def test_random_bytes_come_to_nothing(rng):
+    decoder = Decoder()
+    for _ in range(50):
+        assert decoder.feed(rng.bytes(4096)) == []
+    assert decoder.dropped[Drop.BAD_CRC] + decoder.dropped[Drop.BAD_COBS] > 500
+
+
+@given(noise=garbage, first=any_message, second=any_message)
+def test_in_step_again_within_a_frame(noise, first, second):
+    events = fed(noise + encode(first) + encode(second))[0]
+    assert events[-1] == second
+    events = fed(noise + DELIMITER + encode(first) + encode(second))[0]
+    assert events[-2:] == [first, second]
+
+
+@pytest.mark.parametrize("chunk", [1, 64, 5000, 100_000])
+def test_a_stream_without_an_end_is_one_drop_and_little_memory(chunk):
+    decoder = Decoder()
+    noise = b"\x55" * chunk
+    tracemalloc.start()
+    try:
+        for _ in range(1 + 5 * MOST_FRAME_BYTES // chunk):
+            assert decoder.feed(noise) == []
+        held, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert held < 3 * MOST_FRAME_BYTES
+    assert decoder.dropped == only(Drop.TOO_LONG)
+    assert decoder.feed(DELIMITER + encode(STATE)) == [STATE]
+
+
+def test_the_longest_frame_is_not_too_long():
+    for surplus, kind in ((0, Drop.BAD_COBS), (1, Drop.TOO_LONG)):
+        noise = b"\xfe" * (MOST_FRAME_BYTES + surplus) + DELIMITER
+        assert fed(noise) == ([], only(kind))
+
+
+def test_empty_frames_mean_nothing():
+    assert fed(DELIMITER * 5) == ([], dict.fromkeys(Drop, 0))
+
+
+# What is dropped is counted by kind
+
+
+def changed(message, at, byte):
+    body = bytearray(body_of(message))
+    body[at] = byte
+    return enframe(bytes(body))
+
+
+@pytest.mark.parametrize(
+    ("line", "kind"),
+    [
+        (b"\x05ab\x00", Drop.BAD_COBS),
+        (b"\x01\x00", Drop.BAD_CRC),
+        (b"\x03ab\x00", Drop.BAD_CRC),
+        (enframe(b""), Drop.BAD_CRC),
+        (encode(STATE)[:-3] + b"\x77\x77\x00", Drop.BAD_CRC),
+        (enframe(b"\x7f later"), Drop.UNKNOWN_TYPE),
+        (enframe(body_of(STATE)[:-1]), Drop.WRONG_LENGTH),
+        (enframe(b"\x02\x00\x00"), Drop.WRONG_LENGTH),
+        (enframe(b"\x02\x00\x00" + bytes(2049)), Drop.WRONG_LENGTH),
+        (changed(Hello(), 1, 0), Drop.OUT_OF_RANGE),
+        (changed(INFO, 2, 0), Drop.OUT_OF_RANGE),  # no rows, and so no actuators
+        (changed(INFO, 23, 3), Drop.OUT_OF_RANGE),  # an encoder of no known kind
+        (changed(INFO, 28, 0), Drop.OUT_OF_RANGE),  # a sign that is none
+        (changed(INFO, len(body_of(INFO)) - 1, 2), Drop.OUT_OF_RANGE),
+    ],
+)
+def test_drops_by_kind(line, kind):
+    assert fed(line + encode(STATE)) == ([STATE], only(kind))
+
+
+@EVERY_MESSAGE
+def test_a_body_too_short_is_dropped_wherever_it_ends(kind):
+    message = next(m for m in SAMPLES if type(m) is kind)
+    levels = Levels(2, 1023)
+    body = body_of(message)
+    assert fed(enframe(body), levels)[0] == [message]
+    for end in range(1, len(body)):
+        assert fed(enframe(body[:end]), levels) == ([], only(Drop.WRONG_LENGTH))
+
+
+@pytest.mark.parametrize(
+    ("packed", "kind"),
+    [
+        (bytes(5), Drop.WRONG_LENGTH),
+        (bytes(7), Drop.WRONG_LENGTH),
+        (b"\x97\x00\x00\x00\x00\x00", Drop.OUT_OF_RANGE),  # 151
+    ],
+)
+def test_a_device_drops_a_frame_that_is_not_its_own(packed, kind):
+    own = Frame(2, b"\x96" * 6)
+    stream = encode(Frame(1, packed)) + encode(own)
+    assert fed(stream, Levels(6, 150)) == ([own], only(kind))
+
+
+def test_text_that_a_terminal_should_not_see_is_replaced():
+    body = bytearray(body_of(Error(1, "aXbYc")))
+    body[4], body[6] = 0x1B, 0xE9  # escape, and é in Latin-1
+    assert fed(enframe(bytes(body)))[0] == [Error(1, "a\ufffdb\ufffdc")]
+
+
+# Other versions
+
+
+@EVERY_MESSAGE
+@given(appended=st.binary(min_size=1, max_size=40))
+def test_what_a_later_version_appends_is_left_alone(kind, appended):
+    message = next(m for m in SAMPLES if type(m) is kind)
+    events, dropped = fed(enframe(body_of(message) + appended), Levels(2, 1023))
+    if kind is Frame:
+        assert (events, dropped) == ([], only(Drop.WRONG_LENGTH))
+    else:
+        assert (events, dropped) == ([message], dict.fromkeys(Drop, 0))
+
+
+@pytest.mark.parametrize("rest", [b"", b"all that is different"])
+def test_another_version_is_told_and_not_guessed_at(rest):
+    assert fed(enframe(b"\x81\x02" + rest))[0] == [OtherVersion(2)]
+    assert fed(encode(Hello(version=2)))[0] == [Hello(2)]
+
+
+# One table, both ways
+
+
+def test_a_new_field_is_encoded_decoded_and_checked():
+    @dataclass(frozen=True, slots=True)
+    class StateWithSkin(State):
+        skin_ck: Annotated[int, Number("H", 0, 40_000, "cK")]
+        mood: Annotated[str, Text(fewest=1)]
+        pulse: Annotated[int | None, OptionalNumber("H", 0, 300, none=0xFFFF)]
+
+    layout = LevelPacking(0x82, StateWithSkin)
+    state = StateWithSkin(1, 2, 3, 4, 0, 0, None, skin_ck=30_500, mood="ö", pulse=None)
+    body = layout.encode(state)
+    assert body[:17] == body_of(State(1, 2, 3, 4, 0, 0, None))
+    assert body[17:] == b"\x24\x77" + b"\x02\xc3\xb6" + b"\xff\xff"
+    assert layout.decode(body) == state
+    assert fed(enframe(body))[0] == [State(1, 2, 3, 4, 0, 0, None)]
+    for end in range(len(body)):
+        with pytest.raises(WrongLengthError):
+            layout.decode(body[:end])
+    with pytest.raises(ValueError, match="skin_ck is 40001; it must be 0 to 40000 cK"):
+        replace(state, skin_ck=40_001)
+
+
+def test_fields_follow_one_another_in_the_order_of_the_class():
+    @dataclass(frozen=True, slots=True)
+    class Pair(Message):
+        first: Annotated[int, U16]
+        second: Annotated[int, U16]
+
+    assert LevelPacking(0x55, Pair).encode(Pair(first=1, second=2)) == b"\x55\x01\x00\x02\x00"
+
+
+# Bounds
+
+NUMBERS = [
+    pytest.param(message, name, field, id=f"{type(message).__name__}-{name}")
+    for message in SAMPLES
+    for name, field in fields_of(type(message))
+    if isinstance(field, Number)
+]
+
+
+@pytest.mark.parametrize(("message", "name", "field"), NUMBERS)
+def test_numbers_have_bounds(message, name, field):
+    for value in (field.low - 1, field.high + 1):
+        with pytest.raises(ValueError, match=f"{name} is {value}; it must be {field.low} to"):
+            replace(message, **{name: value})
+    # Within what its bytes can hold, or struct would refuse what the table allows.
+    for value in (field.low, field.high):
+        assert isinstance(field, Fixed)
+        assert field.unpack(field.pack(value), 0, {}) == (value, len(field.pack(0)))
+
+
+@pytest.mark.parametrize(
+    ("message", "change", "match"),
+    [
+        (INFO, {"encoder": 3}, r"encoder is 3; .* 2 \(INCREMENTAL\)"),
+        (INFO, {"count_sign": 0}, "count_sign is 0"),
+        (INFO, {"name": " "}, "name is ' '; .* not blank"),
+        (INFO, {"name": ""}, "name is ''"),
+        (INFO, {"firmware": "1\n"}, "firmware is .* printable"),
+        (INFO, {"firmware": "é" * 128}, "0 to 255 bytes"),
+        (INFO, {"gain": bytes(5)}, "gain are 5 bytes; there are 6 actuators"),
+        (INFO, {"enabled": b"\2" * 6}, "enabled are up to 2; they must be 0 to 1"),
+        (SAMPLES[1], {"packed": b""}, "packed are 0 bytes; they must be 1 to 2048"),
+        (SAMPLES[1], {"packed": bytes(2049)}, "packed are 2049 bytes"),
+    ],
+)
+def test_other_fields_have_bounds(message, change, match):
+    with pytest.raises(ValueError, match=match):
+        replace(message, **change)
+
+
+@pytest.mark.parametrize("value", [1.5, 1.0, float("nan")])
+def test_a_number_that_is_no_integer_is_not_sent(value):
+    with pytest.raises(ValueError, match=r"cannot be encoded|time_us is nan"):
+        encode(replace(STATE, time_us=value))
+
+
+# Levels
+
+
+def packed_by_hand(levels, bits):
+    number = 0
+    for level in levels:
+        number = number << bits | level
+    left_over = -len(levels) * bits % 8
+    return (number << left_over).to_bytes((len(levels) * bits + left_over) // 8, "big")
+
+
+@pytest.mark.parametrize("bits", range(1, 17))
+@settings(max_examples=30)  # of each of sixteen widths
+@given(choice=st.data())
+def test_levels_of_any_width(bits, choice):
+    top_level = choice.draw(st.integers(1 << (bits - 1), (1 << bits) - 1))
+    wanted = choice.draw(st.lists(st.integers(0, top_level), min_size=1, max_size=70))
+    levels = Levels(len(wanted), top_level)
+    packed = levels.pack(np.array(wanted, np.uint16))
+    assert levels.bits == bits
+    assert packed == packed_by_hand(wanted, bits)
+    assert len(packed) == levels.packed_bytes
+    assert levels.unpack(packed).tolist() == wanted
+    levels.check(packed)
+
+
+@pytest.mark.parametrize("dtype", [np.uint16, np.int64, np.uint8, np.int32, ">i4"])
+def test_levels_of_any_integers_in_rows_and_columns(dtype):
+    wanted = np.arange(60).reshape(6, 10)
+    levels = Levels(60, 1023)
+    for order in ("C", "F"):
+        packed = levels.pack(np.asarray(wanted, dtype, order=order))
+        assert packed == packed_by_hand(range(60), 10)
+
+
+def test_bits_left_over_are_not_read():
+    levels = Levels(1, 1)
+    assert levels.unpack(b"\xff").tolist() == [1]
+    assert levels.unpack(b"\x7f").tolist() == [0]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        np.array([0, 151, 0]),
+        np.array([0, 151, 0], np.uint16),
+        np.array([0, -1, 0]),
+        np.array([0, 65536, 0]),
+        np.array([0.0, 1.0, 2.0]),
+        np.array([0, np.nan, 2]),
+        np.array([True, False, True]),
+        np.array([0, 1]),
+        np.array([0, 1, 2, 3]),
+    ],
+)
+def test_levels_have_bounds(wrong):
+    with pytest.raises(ValueError, match="levels are"):
+        Levels(3, 150).pack(wrong)
+
+
+def test_no_levels_are_not_possible():
+    with pytest.raises(ValueError, match="actuators"):
+        Levels(0, 1023)
+    for top_level in (0, 65536):
+        with pytest.raises(ValueError, match="top level"):
+            Levels(1, top_level)
+
+
+# Counters that wrap
+
+
+@given(
+    bits=st.integers(1, 32),
+    start=st.integers(-(2**40), 2**40),
+    shares=st.lists(st.floats(-1, 1, exclude_max=True), max_size=30),
+)
+@example(bits=8, start=0, shares=[-1.0, -1.0, 0.999])
+def test_counts_are_unwrapped(bits, start, shares):
+    half = 1 << (bits - 1)
+    true = last = start
+    for share in shares:
+        true += max(int(share * half), -half)
+        last = unwrap(true % (2 * half), last, bits)
+        assert last == true
+
+
+def test_unwrapping_ignores_bits_above_the_width():
+    assert unwrap(0xFFFF_FFFF, 0, 16) == -1
+    assert unwrap(5, 0xFFFE, 16) == 0x10005
+    assert unwrap(0x80, 0, 8) == -0x80  # as near either way: the lower

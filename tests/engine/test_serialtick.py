@@ -1,0 +1,401 @@
+"""The compiled tick beside the one in Python, and all that it leaves to Python."""
+
+import os
+import random
+import select
+import signal
+import socket
+import threading
+from contextlib import suppress
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.engine.lendable import Rig, Twin, assert_same_tick, known, sockets, terminal
+from tests.engine.test_loop import picture
+from vbraille.devices.events import Notice, Silent, Unplugged
+from vbraille.devices.serial.conversation import IDLE_MS
+from vbraille.devices.wire.codec import Decoder, Levels, encode
+from vbraille.devices.wire.messages import SILENCE_MS, STALL_MS, Error, Frame, Watchdog
+from vbraille.engine.record import Flag
+from vbraille.errors import DeviceError
+from vbraille.sessions.record.replay import Replay
+
+NS_PER_MS = 1_000_000
+TOP = 1023
+PICTURES = [picture((line + 1, 63, 21) * 8, mapping="sheared") for line in range(4)]
+LEVELS = Levels(60, TOP)
+
+
+@pytest.fixture
+def rig():
+    rig = Rig()
+    rig.loop.show(PICTURES[0], 0)
+    rig.settle()
+    yield rig
+    rig.close()
+
+
+def levels_of(messages):
+    """Levels of each FRAME."""
+    return [LEVELS.unpack(message.packed) for message in messages if isinstance(message, Frame)]
+
+
+class Wrong:
+    """What goes wrong on the way to the host and from it, at random; and what a reader does."""
+
+    def __init__(self, rig, twin, seed):
+        self._rig, self._twin = rig, twin
+        self._chance = random.Random(seed)
+        self.late = b""  # comes with the next tick
+        self.deaf = 0  # ticks in which the controller hears nothing
+
+    def next(self):
+        """The bytes that come before the next tick."""
+        chance, message, late = self._chance, self._rig.say(), self.late
+        self.late = b""
+        if chance.random() < 0.6:
+            return late + message
+        kind = chance.choice(
+            (
+                *(self.garbled, self.split, self.doubled, self.dropped, self.delayed),
+                *(self.other, self.button, self.deafness, self.warp, self.reader),
+            )
+        )
+        return late + kind(message)
+
+    def garbled(self, message):
+        if not message:
+            return b""
+        at = self._chance.randrange(len(message))
+        return message[:at] + bytes((message[at] ^ 0x10,)) + message[at + 1 :]
+
+    def split(self, message):
+        cut = self._chance.randrange(len(message) + 1)
+        self.late = message[cut:]
+        return message[:cut]
+
+    def doubled(self, message):
+        return message * 2
+
+    def dropped(self, _message):
+        return b""
+
+    def delayed(self, message):
+        self.late = message
+        return b""
+
+    def other(self, message):
+        trips = self._rig.controller.trips
+        said = Error(200, "warm"), Watchdog(trips, 0), Watchdog(trips + 1, 0)
+        return encode(self._chance.choice(said)) + message
+
+    def button(self, message):
+        self._rig.controller.buttons ^= 1 << self._chance.randrange(8)
+        return message
+
+    def deafness(self, message):
+        self.deaf = self._chance.choice((1, 5, 70))
+        return message
+
+    def warp(self, message):
+        """Have something been so long ago that the conversation must mind it."""
+        which = self._chance.randrange(3)
+        for device in (self._rig.device, self._twin.device):
+            talk = device.conversation
+            if which == 0:
+                talk.states.heard_ns -= SILENCE_MS * NS_PER_MS
+                if talk.time.host_ns is not None:  # when the last STATE came, too
+                    talk.time.host_ns -= SILENCE_MS * NS_PER_MS
+            elif which == 1:
+                talk.frames.felt_ns -= IDLE_MS * NS_PER_MS
+            elif talk.delivery.sent_ns is not None:
+                talk.delivery.sent_ns -= STALL_MS * NS_PER_MS
+        return self._chance.choice((message, b""))
+
+    def reader(self, message):
+        rig, twin = self._rig, self._twin
+        rig.clock.at_ns = twin.clock.at_ns  # what is wanted, is wanted at one time
+        line = self._chance.randrange(len(PICTURES))
+        pause = self._chance.random() < 0.3
+        for loop in (rig.loop, twin.loop):
+            loop.show(PICTURES[line], line)
+            loop.paused = pause
+        rig.clock.at_ns = None
+        return message
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(seed):
+    print(f"seed {seed}")
+    rig = Rig()
+    twin = Twin(rig)
+    wrong = Wrong(rig, twin, seed)
+    for loop in (rig.loop, twin.loop):
+        loop.show(PICTURES[0], 0)
+    compiled = left = 0
+    for tick in range(600):
+        rig.way_mm = 60.0 + 40.0 * np.sin(tick / 100)
+        chunk = wrong.next()
+        rig.put(chunk)
+        record = rig.tick()
+        compiled += rig.compiled
+        left += not rig.compiled
+        assert_same_tick(record, twin.tick(int(record["time_ns"]), list(rig.asked), chunk))
+        heard = rig.receive()
+        assert heard == twin.sent
+        assert known(rig.device) == known(twin.device)
+        rig.asked.clear()
+        events = rig.device.take_events()
+        twin.times.extend(rig.asked)
+        assert events == twin.device.take_events()
+        wrong.deaf = max(wrong.deaf - 1, 0)
+        if not wrong.deaf:
+            wrong.late += rig.controller.receive(heard, rig.us)
+    assert compiled > 100
+    assert left > 50
+    rig.close()
+
+
+def test_what_goes_out_is_what_is_recorded_and_what_a_replay_makes(rig):
+    """For a compiled tick and for one of Python's."""
+    rig.hear()
+    messages, sent = Decoder(), {}
+    pauses = 0
+    for tick in range(400):
+        rig.way_mm = 60.0 + 40.0 * np.sin(tick / 60)
+        if tick % 80 == 79:
+            rig.loop.show(PICTURES[tick // 80 % 4], tick // 80 % 4)
+        if tick in (200, 230):
+            rig.loop.paused = tick == 200
+        record = rig.step()
+        pauses += rig.compiled and bool(record["flags"] & Flag.PAUSED)
+        frames = levels_of(messages.feed(rig.sent))
+        if not record["flags"] & Flag.HELD:  # as a host is that was stopped
+            (sent[int(record["tick"])],) = frames
+    assert pauses > 20
+    records = np.concatenate(rig.records)
+    np.testing.assert_array_equal(records["tick"], np.arange(records.size))
+    display = rig.device.display
+    frames = Replay(dict(enumerate(PICTURES)).__getitem__, display).frames(records)
+    levels = np.rint(frames * TOP).reshape(records.size, -1)
+    assert levels.max() > 0.9 * TOP
+    assert len(sent) > 300
+    for tick, shown in sent.items():
+        np.testing.assert_array_equal(records["frame"][tick], frames[tick].astype(np.float32))
+        np.testing.assert_array_equal(shown, levels[tick])
+
+
+@pytest.mark.no_cover
+def test_beside_a_controller_of_its_own_pace_frames_are_those_of_the_records():
+    """Over a pseudo-terminal, where a STATE has each tick begin."""
+    rig = Rig(terminal(), rate_hz=1000.0)
+    rig.loop.show(PICTURES[0], 0)
+    rig.settle()
+    messages, ended = Decoder(), threading.Event()
+    messages.feed(rig.sent)
+    sent = []
+
+    def answer():
+        while not ended.is_set():
+            rig.way_mm = 60.0 + 40.0 * np.sin(rig.us / 60_000)
+            os.write(rig.theirs, rig.say())
+            if select.select([rig.theirs], [], [], 0.001)[0]:
+                chunk = rig.receive()
+                sent.extend(levels_of(messages.feed(chunk)))
+                os.write(rig.theirs, rig.controller.receive(chunk, rig.us))
+
+    controller = threading.Thread(target=answer)
+    controller.start()
+    began = rig.loop.tally.ticks
+    while rig.loop.tally.ticks < began + 400:
+        rig.asked.clear()
+        rig.loop.run()
+    ended.set()
+    controller.join()
+    sent.extend(levels_of(messages.feed(rig.receive())))
+    rig.drain()
+    records = np.concatenate(rig.records)
+    held = np.flatnonzero(records["flags"] & Flag.HELD)
+    count = records.size - max(held[-1] + 1, began)  # since the host was last stopped
+    frames = Replay(dict(enumerate(PICTURES)).__getitem__, rig.device.display).frames(records)
+    levels = np.rint(frames * TOP).reshape(records.size, -1)
+    assert rig.device.counts()["frames not sent"] == 0
+    assert count > 50
+    np.testing.assert_array_equal(np.array(sent)[-count:], levels[-count:])
+    assert np.ptp(records["x_mm"][-count:]) > 0
+    rig.close()
+
+
+def test_the_ticks_asked_for_are_done_and_no_more():
+    rig = Rig(rate_hz=1000.0)
+    rig.settle()
+    for _ in range(20):
+        before = rig.loop.tally.ticks
+        rig.put(rig.say())
+        rig.tick()
+        rig.hear()
+        if rig.compiled:
+            break
+    assert rig.compiled  # one in which the machine was not stopped
+    assert rig.loop.tally.ticks == before + 20
+    assert len(levels_of(Decoder().feed(rig.sent))) == 20
+    rig.close()
+
+
+def test_words_of_the_mailbox_are_looked_at_before_each_tick():
+    rig = Rig(rate_hz=1000.0)
+    rig.settle()
+    # A word that is the number of records published changes with the second tick.
+    word = rig.loop.ring.published
+    before = rig.loop.tally.ticks
+    rig.put(rig.say())
+    rig.tick(SimpleNamespace(orders=word, obeyed=word.copy()))
+    assert rig.compiled
+    assert rig.loop.tally.ticks == before + 2
+    rig.tick(SimpleNamespace(orders=word, obeyed=word - 1))
+    assert not rig.compiled
+    assert rig.loop.tally.ticks == before + 3
+    rig.close()
+
+
+@pytest.mark.parametrize(("rate_hz", "device_hz"), [(2.0, 1000.0), (50.0, 50.0)])
+def test_a_signal_ends_the_wait(rate_hz, device_hz):
+    """For a deadline; and for a STATE, where the device tells as many as there are ticks."""
+    rig = Rig(None, rate_hz, device_hz)
+    rig.settle()
+    if rate_hz == device_hz:
+        rig.loop.restart_clock()
+    heard = []
+    before = signal.signal(signal.SIGALRM, lambda number, _frame: heard.append(number))
+    signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
+    try:
+        rig.clock.slept.clear()
+        rig.loop.run()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert heard
+    assert len(rig.clock.slept) == 1  # the tick was left to Python
+    rig.close()
+
+
+def test_bytes_that_are_no_state_go_to_python_and_nothing_is_lost(rig):
+    rig.put(rig.say() + encode(Error(200, "warm")))
+    rig.way_mm = 30.0
+    rig.put(rig.say())
+    record = rig.tick()
+    assert not rig.compiled
+    assert Notice(200, "warm") in rig.device.take_events()
+    assert record["x_mm"] == pytest.approx(30.0 - 5.4)
+    rig.hear()
+    rig.step()
+    assert rig.compiled
+    assert rig.device.counts()["states missed"] == 0
+
+
+def test_a_part_of_a_state_is_kept_for_its_rest(rig):
+    rig.hear()
+    last = rig.step()
+    message = rig.say()
+    rig.put(message[:9])
+    assert rig.tick()["device_ns"] == last["device_ns"]
+    assert rig.compiled
+    rig.put(message[9:])
+    assert rig.tick()["device_ns"] == last["device_ns"] + NS_PER_MS
+    assert rig.compiled
+    assert rig.device.counts()["states missed"] == 0
+
+
+def test_a_frame_that_finds_no_room_is_counted(rig):
+    with suppress(BlockingIOError):
+        while True:
+            os.write(rig.ours, bytes(1000))
+    unsent = rig.device.counts()["frames not sent"]
+    sequence = rig.device.conversation.frames.sequence
+    for n in range(1, 6):
+        rig.put(rig.again())
+        rig.tick()
+        assert rig.compiled
+        assert rig.device.counts()["frames not sent"] == unsent + n
+    rig.receive()
+    rig.put(rig.again())
+    rig.tick()
+    (frame,) = Decoder().feed(rig.receive())
+    assert isinstance(frame, Frame)
+    assert frame.sequence == sequence + 1
+
+
+def test_the_rest_of_a_frame_of_which_a_part_went_out_goes_before_the_next():
+    rig = Rig(terminal())
+    rig.loop.show(PICTURES[0], 0)
+    rig.settle()
+    for _ in range(5000):
+        rig.put(rig.again())
+        rig.tick()
+        if rig.port.bare_descriptor is None:
+            break
+    assert rig.compiled
+    assert rig.port.bare_descriptor is None
+    wire = Decoder()
+    messages = wire.feed(rig.receive())
+    for _ in range(1000):
+        rig.put(rig.again())
+        rig.tick()
+        messages += wire.feed(rig.receive())
+        if rig.compiled:
+            break
+    assert rig.compiled
+    # A terminal carries over in its own time.
+    while messages[-1].sequence != rig.device.conversation.frames.sequence:
+        assert select.select([rig.theirs], [], [], 1.0)[0]
+        messages += wire.feed(rig.receive())
+    assert not any(wire.dropped.values())
+    assert {type(message) for message in messages} == {Frame}
+    np.testing.assert_array_equal(np.diff([message.sequence for message in messages]), 1)
+    rig.close()
+
+
+@pytest.mark.parametrize("ends", [sockets, terminal])
+def test_a_line_that_is_hung_up_is_gone(ends):
+    rig = Rig(ends())
+    rig.settle()
+    rig.hang_up()
+    before = rig.loop.tally.ticks
+    rig.tick()
+    assert rig.port.gone
+    assert rig.loop.tally.ticks == before + 1
+    assert Unplugged() in rig.device.take_events()
+    assert rig.device.lend() is None
+    rig.close()
+
+
+def test_a_line_that_takes_nothing_more_is_gone(rig):
+    """Nothing is wrong with it to whoever reads."""
+    with socket.socket(fileno=os.dup(rig.theirs)) as theirs:
+        theirs.shutdown(socket.SHUT_RD)
+    before = rig.loop.tally.ticks
+    rig.put(rig.say())
+    rig.tick()
+    assert rig.port.gone
+    assert rig.loop.tally.ticks == before + 1
+    assert rig.device.lend() is None
+
+
+@pytest.mark.parametrize("mm_per_count", [float("nan"), float("inf"), 1e6])
+def test_a_place_where_none_can_be_is_a_fault(rig, mm_per_count):
+    ticks = rig.loop.tally.ticks
+    rig.device.conversation.place.mm_per_count = mm_per_count
+    rig.put(rig.say())
+    with pytest.raises(DeviceError, match="where it cannot be"):
+        rig.tick()
+    assert rig.compiled
+    assert rig.loop.tally.ticks == ticks
+
+
+def test_silence_ends_it_where_nothing_comes_at_all(rig):
+    rig.device.conversation.states.heard_ns -= SILENCE_MS * NS_PER_MS
+    rig.tick()
+    assert not rig.compiled
+    assert [type(event) for event in rig.device.take_events()] == [Silent]

@@ -1,0 +1,123 @@
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of
+from vbraille.braille import geometry
+from vbraille.render import (
+    MAPPINGS,
+    MODELS,
+    STRESS2,
+    VBD,
+    Profile,
+    Tuning,
+    model_of,
+    single_row,
+)
+
+
+def test_models_by_name():
+    assert MODELS == {"vbd": VBD, "stress2": STRESS2}
+    assert (VBD.title, STRESS2.title) == ("VBD", "STReSS²")
+
+
+def test_the_vbd_as_the_source_has_it():
+    assert VBD.display is VBD_ARRAY
+    assert VBD.style.profile is Profile.HALF_SINE
+    assert VBD.style.mapping == single_row(1)
+    assert VBD.style.geometry is geometry.VBD
+    assert VBD.style.tuning == Tuning(texture=0.0, contrast=1.0)
+    assert VBD.display.rest_side == "left"
+
+
+def test_the_stress2_as_the_source_prefers_it():
+    assert STRESS2.display is STRESS2_ARRAY
+    assert STRESS2.style.profile is Profile.RAISED_COSINE
+    assert STRESS2.style.mapping is MAPPINGS["alternate"]
+    assert STRESS2.style.geometry is geometry.STRESS2
+    assert STRESS2.style.tuning == Tuning(texture=1.0, contrast=1.0, cycles=7)
+    assert STRESS2.display.rest_side == "right"
+
+
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_a_model_fits_its_array(model):
+    assert model.style.mapping.rows == model.display.rows
+
+
+def test_a_known_array_is_a_model_with_the_device_s_own_pitches():
+    device = replace(STRESS2.display, name="a device", column_pitch_mm=1.205, row_pitch_mm=1.79)
+    model = model_of(device)
+    assert (model.name, model.style) == ("stress2", STRESS2.style)
+    assert model.display is device
+    assert model_of(STRESS2.display) == STRESS2
+    assert model_of(replace(VBD.display, row_pitch_mm=9.0)).name == "vbd"  # one row has no pitch
+    for changes in ({"column_pitch_mm": 1.213}, {"row_pitch_mm": 1.78}, {"columns": 9}):
+        assert model_of(replace(STRESS2.display, **changes)).name == ""
+
+
+@pytest.mark.parametrize(
+    ("rows", "mapping", "shown"),
+    [
+        (16, "alternate", (5, 7, 9)),
+        (8, "alternate", (1, 3, 5)),
+        (7, "alternate", (0, 2, 4)),
+        (6, "alternate", (0, 2, 4)),
+        (5, "three-rows", (1, 2, 3)),
+        (4, "three-rows", (0, 1, 2)),
+        (3, "three-rows", (0, 1, 2)),
+        (2, "dot-row-1", (0,)),
+        (1, "dot-row-1", (0,)),
+    ],
+)
+def test_an_array_that_nobody_named_reads_braille_in_its_middle(rows, mapping, shown):
+    display = array_of(rows, 8, 1.2, 1.6125)
+    model = model_of(display)
+    assert (model.name, model.title, model.display) == ("", display.name, display)
+    assert model.style.mapping.name == mapping
+    assert model.style.first_row is None
+    # A line of full cells, over which the hand goes: only these rows move, each dot row has one.
+    line = model.style.render(np.full(3, 63, np.uint8), display)
+    frames = line.path(np.linspace(-12, 30, 200))
+    moved = np.flatnonzero(np.ptp(frames, axis=(0, 2)) > 0.9)
+    assert tuple(moved) == shown
+    np.testing.assert_array_equal(np.delete(frames, moved, axis=1), 0.0)
+
+
+@pytest.mark.parametrize("first_row", [0, 1, 2])
+def test_the_first_row_of_a_mapping_may_be_said(first_row):
+    style = replace(STRESS2.style, first_row=first_row)
+    frames = style.render(np.full(3, 63, np.uint8), LATERO).path(np.linspace(-12, 30, 200))
+    moved = np.flatnonzero(np.ptp(frames, axis=(0, 2)) > 0.9)
+    assert moved.tolist() == [first_row, first_row + 2, first_row + 4]
+
+
+@pytest.mark.parametrize("first_row", [-1, 3])
+def test_a_mapping_must_stand_on_the_array(first_row):
+    style = replace(STRESS2.style, first_row=first_row)
+    says = f"needs 6 actuator rows from row {first_row} on; the array has 8"
+    with pytest.raises(ValueError, match=says):
+        style.render(np.full(3, 63, np.uint8), LATERO)
+
+
+@pytest.mark.parametrize("cycles", [1, 7, 11])
+def test_the_texture_of_the_vbd_has_an_eighth_of_the_wavelength(cycles):
+    # The dot is half a wave of 2 W; k is the STReSS²'s alone.
+    assert Profile.HALF_SINE.texture_period_mm(2.0, cycles) == 2 * 2.0 / 8
+
+
+@pytest.mark.parametrize(("cycles", "period_mm"), [(1, 2.6), (5, 0.52), (7, 2 * 1.3 / 7)])
+def test_the_texture_of_the_stress2_has_k_waves_a_dot(cycles, period_mm):
+    assert Profile.RAISED_COSINE.texture_period_mm(2.6, cycles) == pytest.approx(period_mm)
+
+
+def test_models_can_be_asked_without_compiling_kernels():
+    loaded = subprocess.run(
+        [sys.executable, "-c", "import sys, vbraille.render; print('numba' in sys.modules)"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert loaded.stdout.strip() == "False"

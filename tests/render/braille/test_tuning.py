@@ -1,0 +1,45 @@
+from dataclasses import FrozenInstanceError, replace
+
+import pytest
+
+from vbraille.render import Tuning
+from vbraille.render.braille.tuning import MOST_TEXTURE_CYCLES
+
+
+def test_defaults():
+    assert Tuning() == Tuning(texture=0.0, contrast=1.0, cycles=7)
+
+
+@pytest.mark.parametrize("name", ["texture", "contrast"])
+@pytest.mark.parametrize("value", [0, 0.0, 0.5, 1, 1.0])
+def test_levels_from_0_to_1(name, value):
+    assert getattr(replace(Tuning(), **{name: value}), name) == value
+
+
+@pytest.mark.parametrize("name", ["texture", "contrast"])
+@pytest.mark.parametrize("value", [-0.001, 1.001, -1, 2, float("inf"), float("nan")])
+def test_levels_out_of_range(name, value):
+    with pytest.raises(ValueError, match=rf"^{name} is {value:g}; it must be 0 to 1$"):
+        Tuning(**{name: value})
+
+
+def test_texture_cycles_are_odd_and_go_to_the_bound():
+    assert MOST_TEXTURE_CYCLES == 11
+    for cycles in (1, 3, 5, 7, 9, 11):
+        assert Tuning(cycles=cycles).cycles == cycles
+
+
+@pytest.mark.parametrize("cycles", [-7, -1, 0, 2, 6, 8, 10, 12, 13])
+def test_texture_cycles_out_of_range(cycles):
+    says = rf"^texture cycles are {cycles}; they must be an odd number, 1 to 11$"
+    with pytest.raises(ValueError, match=says):
+        Tuning(cycles=cycles)
+
+
+def test_a_tuning_changes_only_by_making_another():
+    tuning = Tuning()
+    with pytest.raises(FrozenInstanceError):
+        tuning.texture = 0.5
+    assert replace(tuning, texture=0.5) == Tuning(texture=0.5)
+    with pytest.raises(ValueError, match=r"contrast is 1\.5"):
+        replace(tuning, contrast=1.5)

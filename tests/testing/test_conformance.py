@@ -1,0 +1,149 @@
+"""The conformance suite, run on the devices there are, and on broken ones it must catch."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.engine.test_loop import info
+from vbraille.devices import Device, open_device
+from vbraille.pose import Pose
+from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.testing.conformance import (
+    CHECKS,
+    check_bad_frames,
+    check_close,
+    check_frames,
+    check_members,
+    check_samples,
+)
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_the_simulated_device_conforms(check):
+    check(lambda: open_device("sim:", info()))
+
+
+class Unchecked(SimulatedDevice):
+    def write(self, frame):
+        self._send(frame)
+
+
+class Scribbling(SimulatedDevice):
+    def _send(self, frame):
+        super()._send(frame)
+        frame.fill(0)
+
+
+class OffTheRail(SimulatedDevice):
+    def read(self):
+        return Pose(0, 1e9)
+
+
+class Nowhere(SimulatedDevice):
+    def read(self):
+        return Pose(0, math.nan)
+
+
+class Backwards(SimulatedDevice):
+    time_ns = 100
+
+    def read(self):
+        self.time_ns -= 1
+        return Pose(self.time_ns, 0.0)
+
+
+class CountsInAProperty(SimulatedDevice):
+    counts = property(lambda self: {"frames": self.frames})
+
+
+class TakingByAMethod(SimulatedDevice):
+    def taking(self):
+        return False
+
+
+class ZeroAtAPlace(SimulatedDevice):
+    def set_zero(self, x_mm):
+        del x_mm
+
+
+class OneNote(SimulatedDevice):
+    def take_events(self):
+        return ["too hot"]
+
+
+class CountsInHalves(SimulatedDevice):
+    def counts(self):
+        return {"frames": 0.5}
+
+
+class PlacedByANumber(SimulatedDevice):
+    placing = 0
+
+
+class RestedOrNot(SimulatedDevice):
+    rested = False
+
+
+@pytest.mark.parametrize(
+    ("broken", "check"),
+    [
+        (CountsInAProperty, check_members),
+        (TakingByAMethod, check_members),
+        (ZeroAtAPlace, check_members),
+        (OneNote, check_members),
+        (CountsInHalves, check_members),
+        (PlacedByANumber, check_members),
+        (RestedOrNot, check_members),
+        (Unchecked, check_bad_frames),
+        (Unchecked, check_close),
+        (Scribbling, check_frames),
+        (OffTheRail, check_samples),
+        (Nowhere, check_samples),
+        (Backwards, check_samples),
+    ],
+)
+def test_broken_devices_are_caught(broken, check):
+    with pytest.raises(AssertionError):
+        check(lambda: broken(info()))
+
+
+class Logging(Device):
+    """A driver of a few lines; what it inherits does the rest."""
+
+    def __init__(self):
+        self.log = []
+
+    @property
+    def display(self):
+        return info()
+
+    def read(self):
+        return None
+
+    def _send(self, frame):
+        self.log.append(frame.max())
+
+    def _release(self):
+        self.log.append("released")
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_a_small_driver_conforms(check):
+    check(Logging)
+
+
+def test_close_rests_first_and_releases_even_if_resting_fails():
+    device = Logging()
+    with device:
+        device.write(np.full((6, 10), 0.5))
+    assert device.log == [0.5, 0.0, "released"]
+
+    class Gone(Logging):
+        def _send(self, frame):
+            raise OSError(f"gone, with {frame.max()}")
+
+    gone = Gone()
+    with pytest.raises(OSError, match="gone"):
+        gone.close()
+    assert gone.log == ["released"]

@@ -1,0 +1,247 @@
+"""All that is said of a study, and of a table of scores."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vbraille.analysis.figures import matrices, ofmeasures
+from vbraille.analysis.findings import findings
+from vbraille.analysis.input.scoretable import of_trials
+from vbraille.analysis.input.trials import Places
+from vbraille.analysis.measures import (
+    characters,
+    confusion,
+    doterrors,
+    legibility,
+    levels,
+    movement,
+    overtime,
+    preferences,
+    remarks,
+)
+from vbraille.analysis.results import Chapter, Results
+from vbraille.analysis.statistics.correction import METHODS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.analysis.input.scoretable import Scores
+    from vbraille.analysis.input.study import Study
+    from vbraille.analysis.input.trials import Comparisons, LeftOut, Trials
+    from vbraille.analysis.results import ReportFigure
+    from vbraille.analysis.schemas import ResultTable
+
+SEED = 20090618
+_MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that there is
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What may be chosen.
+
+    Parameters
+    ----------
+    factors
+        Columns by which trials are compared.
+    correction
+        Of the p-values of t-tests, of `METHODS`.
+    marks
+        Errors above these counts are marked in confusion matrices.
+    seed
+        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
+
+    Raises
+    ------
+    ValueError
+        If there is no such correction.
+    """
+
+    factors: tuple[str, ...] = ("condition",)
+    correction: str = "holm"
+    marks: tuple[int, ...] = confusion.MARKS
+    seed: int = SEED
+
+    def __post_init__(self) -> None:
+        if self.correction not in METHODS:
+            raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
+
+    def told(self) -> list[tuple[str, str]]:
+        """What was chosen, for the report's head."""
+        return [
+            ("Correction of t-tests", METHODS[self.correction]),
+            ("Compared by", ", ".join(self.factors)),
+            ("Intervals", f"95 %; random draws with seed {self.seed}"),
+        ]
+
+
+def analyse(study: Study, options: Options) -> Results:
+    """Analyse trials and comparisons.
+
+    Raises
+    ------
+    InputError
+        If the trials have no such factor.
+    """
+    sections: list[Chapter] = []
+    left_out = list(study.left_out)
+    if study.trials is not None:
+        sections += _of_trials(study, study.trials, options, left_out)
+    if study.comparisons is not None:
+        sections.append(_of_comparisons(study.comparisons, options))
+    if any(sitting.notes for sitting in study.sittings):
+        table = remarks.notes(study.sittings)
+        sections.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
+    about = (*study.about, *_excluded(left_out), *options.told())
+    return _told("Legibility sessions", about, study.warnings, sections)
+
+
+def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
+    """Compare the levels of a table of scores.
+
+    Parameters
+    ----------
+    about
+        Where it comes from.
+    """
+    left_out: list[LeftOut] = []
+    section = _compared([scores], options, left_out)
+    told = [pair for pair in options.told() if pair[0] != "Compared by"]
+    compared = ("Compared by", ", ".join(scores.factors))
+    head = (*about, *_excluded(left_out), compared, *told)
+    return _told("Scores", head, (), [section])
+
+
+def _told(
+    title: str,
+    about: Sequence[tuple[str, str]],
+    warnings: Sequence[str],
+    sections: Sequence[Chapter],
+) -> Results:
+    """Results with what was found in them, and the figure that shows it."""
+    told = findings(table for section in sections for table in section.tables)
+    names = [picture.name for section in sections for picture in section.pictures]
+    main = next(
+        (name for start in _MAIN for name in names if name.startswith(start)),
+        names[0] if names else "",
+    )
+    return Results(title, tuple(about), tuple(warnings), tuple(sections), told, main)
+
+
+def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
+    told = "; ".join(f"{left.what}: {left.reason}" for left in left_out)
+    return [("Excluded", told or "nothing")]
+
+
+def _of_trials(
+    study: Study, trials: Trials, options: Options, left_out: list[LeftOut]
+) -> list[Chapter]:
+    places = Places.of(trials)
+    scores = of_trials(trials, places, options.factors)
+    return [
+        _legibility(trials, places),
+        _characters(trials, places),
+        _confusions(trials, places, options),
+        _errors(trials, places),
+        _over_time(trials),
+        _motion(study, trials),
+        _compared(scores, options, left_out),
+    ]
+
+
+def _legibility(trials: Trials, places: Places) -> Chapter:
+    table = legibility.legibility(trials, places)
+    averages = legibility.averages(table)
+    return Chapter(
+        "Legibility",
+        "Who read how much of it right, and how long it took.",
+        (table, averages),
+        (ofmeasures.legibility(table, averages),),
+    )
+
+
+def _characters(trials: Trials, places: Places) -> Chapter:
+    by_dots = characters.dots(trials, places)
+    own = characters.dots_of_participants(trials, places)
+    tables = (characters.characters(trials, places), by_dots, own, characters.strings(trials))
+    pictures = (ofmeasures.dots(by_dots, own),) if by_dots.rows else ()
+    return Chapter(
+        "Characters and strings", "What is easy to read, and what is not.", tables, pictures
+    )
+
+
+def _confusions(trials: Trials, places: Places, options: Options) -> Chapter:
+    tables: list[ResultTable] = [confusion.transmitted(trials, places, seed=options.seed)]
+    pictures: list[ReportFigure] = []
+    for counts, schema, reason in (
+        (
+            confusion.of_characters(places),
+            confusion.CONFUSION_CHARACTERS,
+            "no answer has as many places as its string",
+        ),
+        (
+            confusion.of_pairs(trials),
+            confusion.CONFUSION_PAIRS,
+            "not every string has two places; a matrix is made of pairs alone",
+        ),
+    ):
+        if counts is None:
+            tables.append(schema.fill([], [reason]))
+        else:
+            tables.append(confusion.to_table(counts, places, options.marks))
+            pictures.append(matrices.confusion(tables[-1]))
+    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
+
+
+def _errors(trials: Trials, places: Places) -> Chapter:
+    table, own = doterrors.errors(places), doterrors.of_participants(trials, places)
+    pictures = (ofmeasures.errors(table, own),) if table.rows else ()
+    return Chapter("Errors", "What is wrong with wrong answers.", (table, own), pictures)
+
+
+def _over_time(trials: Trials) -> Chapter:
+    table, slopes = overtime.over_time(trials), overtime.slopes(trials)
+    return Chapter(
+        "Over time",
+        "Whether reading became harder or easier.",
+        (slopes, table),
+        tuple(ofmeasures.over_time(table, slopes)),
+    )
+
+
+def _motion(study: Study, trials: Trials) -> Chapter:
+    table = movement.trajectories(study.sittings, trials)
+    tables = [movement.patterns(table), movement.correlations(trials), table]
+    drawn = ofmeasures.examples(study.sittings)
+    if drawn is not None:
+        tables.append(drawn[0])
+    return Chapter(
+        "How strings were read",
+        "What the hand did, from the traces of sessions.",
+        tuple(tables),
+        () if drawn is None else (drawn[1],),
+    )
+
+
+def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut]) -> Chapter:
+    means = levels.level_means(scores)
+    own = levels.own_means(scores)
+    table, dropped = levels.analyses(scores)
+    left_out += dropped
+    return Chapter(
+        "Levels compared",
+        "Differences within participants.",
+        (means, own, levels.t_tests(scores, options.correction), table),
+        tuple(ofmeasures.level_means(means, own)) if means.rows else (),
+    )
+
+
+def _of_comparisons(comparisons: Comparisons, options: Options) -> Chapter:
+    table, preferred = preferences.tuning(comparisons, seed=options.seed)
+    own = preferences.choices_of_participants(comparisons)
+    return Chapter(
+        "Which of two was chosen",
+        "What participants took for closer to the reference.",
+        (table, own, preferred),
+        tuple(ofmeasures.choices(table, preferred, own)),
+    )

@@ -1,0 +1,1 @@
+"""Figures of results, each with what it shows in words."""

@@ -1,0 +1,231 @@
+"""Sessions' directories in; their rows, and how each string was read, out."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vbraille.analysis.input.strokes import PATTERNS, read
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.export import Traces, walk
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.notes import read_notes
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.input.strokes import Reading
+    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.record.notes import Note
+
+MOST_PICKED = 600
+EXAMPLE_RULE = (
+    "The example of a pattern is the trial of that pattern whose duration is the median of theirs, "
+    "the lower of two in the middle, and of equal ones the earlier trial."
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Example:
+    """A trial to draw, as in Lévesque 2009, fig. 3.15.
+
+    Parameters
+    ----------
+    trial, participant, condition, presented
+        What it is; ``presented`` is Unicode braille of the cells asked for.
+    pattern
+        Of its reading.
+    time_s : float64[n]
+        Since the first tick of the attempt; n is at most `MOST_PICKED`.
+    left_mm : float64[n]
+        Where the array's left column was at these ticks.
+    start_s, end_s
+        The time that counts for the duration; both are among ``time_s``.
+    span_mm
+        From the array's left column to its right one.
+    dots_mm
+        Centres of the dot columns that are shown.
+    """
+
+    trial: int
+    participant: str
+    condition: str
+    presented: str
+    pattern: str
+    time_s: NDArray[np.float64]
+    left_mm: NDArray[np.float64]
+    start_s: float
+    end_s: float
+    span_mm: float
+    dots_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionTrials:
+    """A session, read for the analysis.
+
+    Parameters
+    ----------
+    folder
+        Its directory.
+    name
+        What it is called: its directory's name, with more of the path if another has that too.
+    head
+        Of its ``session.json``.
+    protocol
+        What was done.
+    rows
+        A row a planned trial, as `vbraille.sessions.record.export.rows` makes them.
+    readings
+        Of each answered trial that shows a string on a device, by its number: how it was
+        read, or in a clause why that is not known.
+    examples
+        A trial of each pattern that occurs, in the order of `PATTERNS`, by `EXAMPLE_RULE`.
+    faults
+        What is damaged, a clause each.
+    state
+        How far it came.
+    versions
+        Of the programs it was run with, by name; several if its runs differ.
+    notes
+        What the experimenter wrote down, in order.
+    """
+
+    folder: Path
+    name: str
+    head: dict[str, Any]
+    protocol: Protocol
+    rows: list[dict[str, Any]]
+    readings: dict[int, Reading | str]
+    examples: tuple[Example, ...]
+    faults: list[str]
+    state: str
+    versions: dict[str, str]
+    notes: tuple[Note, ...] = ()
+
+
+def read_sitting(folder: Path) -> SessionTrials:
+    """Read a session's directory; of a damaged one, what is whole.
+
+    Raises
+    ------
+    InputError
+        If it is no session, or one of a newer format.
+    VbrailleError
+        If a file other than the journal and the traces is missing or not what it was.
+    """
+    record = load(folder)
+    progress = Progress(record.plan, record.told.events)
+    traces = Traces(record)
+    rows: list[dict[str, Any]] = []
+    readings: dict[int, Reading | str] = {}
+    pictures: list[tuple[float, Example]] = []
+    for trial, (row, seen) in zip(record.plan.trials, walk(record, traces), strict=True):
+        rows.append(row)
+        if isinstance(seen, Trajectory):
+            reading = read(seen)
+            readings[trial.number] = reading
+            picture = _picture(seen, trial, record.plan.participant, reading.pattern)
+            pictures.append((reading.duration_s, picture))
+        elif seen is not None:
+            readings[trial.number] = seen
+    faults = list(traces.faults)
+    if record.told.damage is not None:
+        faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
+    return SessionTrials(
+        folder,
+        folder.resolve().name,
+        record.head,
+        record.protocol,
+        rows,
+        readings,
+        _examples(pictures),
+        faults,
+        _state(progress),
+        _versions(record, progress),
+        tuple(read_notes(record.told.events)),
+    )
+
+
+def pick(x_mm: NDArray[np.float64], kept: Sequence[int]) -> NDArray[np.intp]:
+    """Choose ticks to draw a way by: evenly, of those whose place is known.
+
+    Parameters
+    ----------
+    x_mm : float64[n]
+        Places; NaN where not known.
+    kept
+        Ticks that are to be among them.
+
+    Returns
+    -------
+    intp[m]
+        Ticks, increasing; at most `MOST_PICKED`.
+    """
+    known = np.flatnonzero(np.isfinite(x_mm))
+    count = min(known.size, MOST_PICKED - len(kept))
+    picked = np.zeros(x_mm.size, np.bool_)
+    picked[known[np.linspace(0, known.size - 1, count).round().astype(np.intp)]] = True
+    picked[list(kept)] = True
+    return np.flatnonzero(picked)
+
+
+def _picture(trajectory: Trajectory, trial: Trial, participant: str, pattern: str) -> Example:
+    found, begun_ns = trajectory.duration, trajectory.time_ns[0]
+    ticks = pick(trajectory.left_mm, (found.start, found.end))
+    start_s, end_s = (trajectory.time_ns[[found.start, found.end]] - begun_ns) / 1e9
+    return Example(
+        trial.number,
+        participant,
+        trial.condition,
+        trial.presented,
+        pattern,
+        (trajectory.time_ns[ticks] - begun_ns) / 1e9,
+        trajectory.left_mm[ticks],
+        float(start_s),
+        float(end_s),
+        trajectory.span_mm,
+        tuple(edge_mm + trajectory.dot_mm / 2 for edge_mm in trajectory.edges_mm),
+    )
+
+
+def _examples(pictures: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
+    """One of each pattern, by `EXAMPLE_RULE`; given with their durations."""
+    of: dict[str, list[tuple[float, int, Example]]] = defaultdict(list)
+    for duration_s, example in pictures:
+        of[example.pattern].append((duration_s, example.trial, example))
+    return tuple(
+        sorted(of[pattern], key=lambda told: told[:2])[(len(of[pattern]) - 1) // 2][2]
+        for pattern in PATTERNS
+        if of[pattern]
+    )
+
+
+def _state(progress: Progress) -> str:
+    if progress.ended:
+        return "ended"
+    trial = progress.next_trial
+    # An answer that was undone is one of a trial that was read to its end.
+    if trial is not None and progress.correcting is None and progress.told(trial).attempts:
+        return f"broken off in {'practice ' if trial.practice else ''}trial {trial.number}"
+    answered = sum(told.answer is not None for told in progress.trials.values())
+    return f"not ended: {answered} of {len(progress.trials)} trials answered"
+
+
+def _versions(record: Record, progress: Progress) -> dict[str, str]:
+    told: dict[str, list[str]] = defaultdict(list)
+    for versions in (record.head.get("versions", {}), *(run["versions"] for run in progress.runs)):
+        for name, version in versions.items():
+            if version not in told[name]:
+                told[name].append(version)
+    return {name: ", ".join(versions) for name, versions in told.items()}

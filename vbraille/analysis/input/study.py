@@ -1,0 +1,314 @@
+"""What is analysed: sessions and tables, less what is left out by a stated rule."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille import __version__
+from vbraille.analysis.input.parsing import parse
+from vbraille.analysis.input.scoretable import of_sheet
+from vbraille.analysis.input.sheets import from_rows, read_csv
+from vbraille.analysis.input.sittings import read_sitting
+from vbraille.analysis.input.sources import check_copies, distinct_names, named, of_site, told_apart
+from vbraille.analysis.input.trials import LeftOut, count, natural
+from vbraille.errors import InputError
+from vbraille.sessions.record.export import encode, to_csv
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from vbraille.analysis.input.scoretable import Scores
+    from vbraille.analysis.input.sheets import Sheet
+    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.trials import Comparisons, Trials
+
+_TOLD_VERSIONS = ("numpy", "scipy", "statsmodels", "matplotlib")  # what numbers and bytes hang on
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """All that goes into an analysis.
+
+    Parameters
+    ----------
+    trials, comparisons
+        None if there are none.
+    sittings
+        Sessions that were read, in the order of participants.
+    left_out
+        What is no part of it.
+    about
+        Where it comes from, as pairs of a word and a sentence.
+    warnings
+        What to know before all numbers.
+    faults
+        What of the sessions is damaged, a clause each.
+    """
+
+    trials: Trials | None
+    comparisons: Comparisons | None
+    sittings: tuple[SessionTrials, ...]
+    left_out: tuple[LeftOut, ...]
+    about: tuple[tuple[str, str], ...]
+    warnings: tuple[str, ...]
+    faults: tuple[str, ...]
+
+
+def load_study(
+    paths: Sequence[Path],
+    *,
+    exclude: Mapping[str, str] | None = None,
+    protocol: str | None = None,
+    sites: bool = False,
+) -> Study:
+    """Read sessions' directories and CSV files.
+
+    Parameters
+    ----------
+    paths
+        Of either, in any order.
+    exclude
+        Participants who are left out, each with the reason.
+    protocol
+        Only its trials.
+    sites
+        Whether each folder that something stands in has participants of its own.
+
+    Raises
+    ------
+    InputError
+        If something is neither, cannot be read, or there is nothing to analyse.
+    VbrailleError
+        If a session has lost what it began with.
+    """
+    _check_paths(paths)
+    sittings, files = _read(paths, sites=sites)
+    sheets = list(files.values())
+    sources = [*(from_rows(sitting.name, sitting.rows) for sitting in sittings), *sheets]
+    apart = told_apart(sittings)
+    parsed = parse(sources)
+    left_out = [*parsed.left_out]
+    trials, comparisons = parsed.trials, parsed.comparisons
+    for rule in _rules(exclude or {}, protocol):
+        trials, comparisons, sittings = rule.apply(trials, comparisons, sittings)
+        left_out.append(rule.told)
+    if trials is None and comparisons is None:
+        what = "".join(f"; left out: {left.what}, {left.reason}" for left in left_out)
+        names = ", ".join(sheet.name for sheet in sources)
+        raise InputError(f"{names}: no answered trial, and so nothing to analyse{what}")
+    about = [("Data", _describe(trials, comparisons))]
+    about += [
+        (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
+        for path, sheet in files.items()
+    ]
+    about += [(f"Session {sitting.name}", _describe_sitting(sitting)) for sitting in sittings]
+    about += _versions(sittings)
+    faults = tuple(f"{sitting.name}: {what}" for sitting in sittings for what in sitting.faults)
+    warnings = (
+        *parsed.warnings,
+        *apart,
+        *_sources(sources),
+        *_warnings(trials, sittings),
+        *(f"Damaged, and analysed as far as it is whole: {fault}." for fault in faults),
+    )
+    return Study(
+        trials, comparisons, tuple(sittings), tuple(left_out), tuple(about), warnings, faults
+    )
+
+
+def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
+    """Read a table of scores, and say where it comes from.
+
+    Raises
+    ------
+    InputError
+        If it is no such table.
+    """
+    sheet = read_csv(path)
+    scores = of_sheet(sheet)
+    people = count(len(set(scores.participants)), "participant")
+    about = [
+        ("Data", f"{count(len(sheet), 'score')} of {people}"),
+        (f"File {path.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}"),
+    ]
+    return scores, about + _versions(())
+
+
+def trials_file(study: Study) -> dict[str, bytes]:
+    """The trials as they were analysed, with all columns that were given; by the file's name."""
+    if study.trials is None:
+        return {}
+    return {"trials.csv": encode(to_csv(study.trials.rows()))}
+
+
+@dataclass(frozen=True, slots=True)
+class _Rule:
+    """Who or what is left out."""
+
+    factor: str
+    level: str
+    keeps: bool
+    told: LeftOut
+
+    def apply(
+        self,
+        trials: Trials | None,
+        comparisons: Comparisons | None,
+        sittings: Sequence[SessionTrials],
+    ) -> tuple[Trials | None, Comparisons | None, list[SessionTrials]]:
+        """What is left.
+
+        Raises
+        ------
+        InputError
+            If there is no such participant or protocol: it was misspelled.
+        """
+        factors = [getattr(part, self.factor) for part in (trials, comparisons) if part is not None]
+        known = {level for factor in factors for level in factor.levels}
+        if self.level not in known:
+            raise InputError(
+                f"there is no {self.factor} {self.level!r} with answered trials; there are "
+                f"{', '.join(sorted(known, key=natural)) or 'none'}"
+            )
+        left = [
+            None if part is None else _some(part, self._kept(getattr(part, self.factor).names()))
+            for part in (trials, comparisons)
+        ]
+        kept = self._kept([sitting.head[self.factor] for sitting in sittings])
+        chosen = [sitting for sitting, keep in zip(sittings, kept, strict=True) if keep]
+        return left[0], left[1], chosen  # type: ignore[return-value]
+
+    def _kept(self, names: Sequence[str]) -> np.ndarray:
+        return np.array([(name == self.level) == self.keeps for name in names], bool)
+
+
+def _some(part: Trials | Comparisons, kept: np.ndarray) -> Trials | Comparisons | None:
+    return part[kept] if kept.any() else None
+
+
+def _rules(exclude: Mapping[str, str], protocol: str | None) -> list[_Rule]:
+    rules = [
+        _Rule("participant", who, False, LeftOut(f"participant {who}", reason))
+        for who, reason in exclude.items()
+    ]
+    if protocol is not None:
+        told = LeftOut(f"trials of protocols other than {protocol}", "as asked for")
+        rules.append(_Rule("protocol", protocol, True, told))
+    return rules
+
+
+def _check_paths(paths: Sequence[Path]) -> None:
+    """Raise InputError if there is nothing at a path, or a path is there twice."""
+    seen: set[Path] = set()
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"there is no {path}; give the directory of a session or a CSV file")
+        if path.resolve() in seen:
+            raise InputError(f"{path} is there twice; give it once")
+        seen.add(path.resolve())
+
+
+def _read(paths: Sequence[Path], *, sites: bool) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
+    """Sessions and tables, each under a name that no other has."""
+    resolved = [path.resolve() for path in paths]
+    names = dict(zip(paths, distinct_names(resolved), strict=True))
+    homes = list(dict.fromkeys(path.parent for path in resolved)) if sites else []
+    site_of = dict(zip(homes, distinct_names(homes), strict=True))
+    site = {path: site_of.get(at.parent, "") for path, at in zip(paths, resolved, strict=True)}
+    sittings = [
+        named(read_sitting(path), names[path], site[path]) for path in paths if path.is_dir()
+    ]
+    sittings.sort(key=lambda sitting: (natural(sitting.head["participant"]), natural(sitting.name)))
+    check_copies(sittings)
+    files: dict[Path, Sheet] = {}
+    for path in sorted(names, key=lambda path: names[path]):
+        if path.is_dir():
+            continue
+        sheet = replace(read_csv(path), name=names[path])
+        files[path] = of_site(sheet, site[path]) if sites else sheet
+    return sittings, files
+
+
+def _describe(trials: Trials | None, comparisons: Comparisons | None) -> str:
+    parts = []
+    if trials is not None:
+        parts.append(
+            f"{count(len(trials), 'trial')} of {count(len(trials.participant), 'participant')} in "
+            f"{count(len(trials.condition), 'condition')} ({', '.join(trials.condition.levels)})"
+        )
+    if comparisons is not None:
+        parts.append(
+            f"{count(len(comparisons), 'comparison')} of "
+            f"{count(len(comparisons.participant), 'participant')}"
+        )
+    return "; ".join(parts)
+
+
+def _describe_sitting(sitting: SessionTrials) -> str:
+    head = sitting.head
+    answered = sum(row["answered"] != "" for row in sitting.rows)
+    return (
+        f"participant {head['participant']}, protocol {head['protocol']}, seed {head['seed']}, "
+        f"model {head['model']}, device {head['device']}, answers {head['answers']}, "
+        f"{answered} of {len(sitting.rows)} trials answered, {sitting.state}"
+    )
+
+
+def _versions(sittings: Sequence[SessionTrials]) -> list[tuple[str, str]]:
+    """Versions of the analysis, and of what the sessions were run with."""
+    ours = {"vbraille": __version__, "python": platform.python_version()}
+    ours |= {name: version(name) for name in _TOLD_VERSIONS}
+    of: dict[str, list[str]] = {}
+    for sitting in sittings:
+        of.setdefault(_listed(sitting.versions), []).append(sitting.name)
+    run = [(f"Versions of {', '.join(names)}", versions) for versions, names in of.items()]
+    return [("Versions of this analysis", _listed(ours)), *run]
+
+
+def _listed(versions: Mapping[str, str]) -> str:
+    return ", ".join(f"{name} {told}" for name, told in versions.items())
+
+
+def _sources(sheets: Sequence[Sheet]) -> list[str]:
+    """What to know of answers that nobody typed."""
+    simulated, scripted = [], []
+    for sheet in sheets:
+        kinds = {source.partition(":")[0] for source in sheet.columns.get("answers_from", ())}
+        if "simulated" in kinds:
+            simulated.append(sheet.name)
+        if kinds - {"simulated", "typed", ""}:
+            scripted.append(sheet.name)
+    told = []
+    if simulated:
+        told.append(
+            f"A simulated reader answered in {', '.join(simulated)}: that is no data about people."
+        )
+    if scripted:
+        told.append(f"Answers came from a file in {', '.join(scripted)}.")
+    return told
+
+
+def _warnings(trials: Trials | None, sittings: Sequence[SessionTrials]) -> list[str]:
+    told = [
+        f"Session {sitting.name} is not whole: {sitting.state}."
+        for sitting in sittings
+        if sitting.state != "ended"
+    ]
+    protocols = trials.protocol.levels if trials is not None else ()
+    if len(protocols) > 1:
+        told.append(
+            f"Trials are of {len(protocols)} protocols, {', '.join(protocols)}; what is said of "
+            f"characters, strings and errors pools them (--protocol takes one)."
+        )
+    return told
+
+
+def _sum(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

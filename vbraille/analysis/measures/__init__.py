@@ -1,0 +1,1 @@
+"""What is measured of trials: one module for each group of tables."""

@@ -1,0 +1,216 @@
+"""How strings were read, as tables: durations, passes, speeds, patterns (Lévesque 2009, 3.4)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import stats
+
+from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
+from vbraille.analysis.input.trials import count, name_string, natural
+from vbraille.analysis.measures.averages import mean_or_none
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, to_print
+from vbraille.analysis.statistics.correlation import correlation_interval
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.input.sittings import SessionTrials
+    from vbraille.analysis.input.trials import Trials
+    from vbraille.analysis.schemas import ResultTable, Row
+
+_WHOSE = (
+    Column("participant", "participant", "pseudonym"),
+    Column("condition", "condition", "name, as in the protocol"),
+)
+_SPEEDS = (
+    Column("speed_right_mm_s", "speed to the right (mm/s)", "mean of the strokes", Kind.SPEED),
+    Column("speed_left_mm_s", "speed to the left (mm/s)", "mean of the strokes", Kind.SPEED),
+)
+TRAJECTORIES = Schema(
+    "trajectories",
+    "How each string was read",
+    f"{PATTERN_RULE} {SPEED_RULE}",
+    (
+        *_WHOSE,
+        Column("session", "session", "name of the session"),
+        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        Column("presented", "string", "names of its cells"),
+        Column("duration_s", "duration (s)", "by the thesis's rule", Kind.SECONDS),
+        Column("returned", "returned", "1 if the hand went back over the first dot", Kind.COUNT),
+        Column("passes", "passes", "strokes to the right over the whole string", Kind.COUNT),
+        Column("rescans", "re-scans", "strokes to the right over a part of it", Kind.COUNT),
+        *_SPEEDS,
+        Column("pattern", "pattern", ", ".join(PATTERNS)),
+        NOTE_COLUMN,
+    ),
+)
+READING_PATTERNS = Schema(
+    "patterns",
+    "Reading patterns, by participant and condition",
+    f"Trials of each pattern (Lévesque 2009, fig. 3.15), and means over trials. {PATTERN_RULE}",
+    (
+        *_WHOSE,
+        Column("trials", "trials", "whose trajectory is known", Kind.COUNT),
+        *(
+            Column(name.replace("-", "").replace(" ", "_"), name, "trials of it", Kind.COUNT)
+            for name in PATTERNS
+        ),
+        Column("passes", "mean passes", "of a trial", Kind.SECONDS),
+        *_SPEEDS,
+        NOTE_COLUMN,
+    ),
+)
+CORRELATIONS = Schema(
+    "duration_legibility",
+    "Correlation of duration with legibility",
+    "Pearson's r, with its interval on Fisher's scale, for values of any distribution. Of a "
+    "participant's trials in a condition: duration and whether the string was right. Of strings: "
+    "mean duration and share of right answers, all trials pooled. Of participants: their means.",
+    (
+        Column("of", "of", "trials, strings or participants"),
+        Column("participant", "participant", "whose trials; else all"),
+        Column("condition", "condition", "in which; else all"),
+        Column("n", "n", "pairs of values", Kind.COUNT),
+        Column("r", "r", "Pearson's", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % interval", Kind.NUMBER),
+        Column("high", "to", "upper end", Kind.NUMBER),
+        Column("p", "p", "that there is no correlation", Kind.P),
+        NOTE_COLUMN,
+    ),
+)
+
+
+def trajectories(sittings: Iterable[SessionTrials], trials: Trials | None = None) -> ResultTable:
+    """Row a trial of strings on a device, by participant, session and trial.
+
+    Parameters
+    ----------
+    sittings
+        Sessions.
+    trials
+        Whose conditions' names count, where several protocols have one of the same name.
+    """
+    named: dict[tuple[str, int], str] = {}
+    if trials is not None:
+        columns = (trials.session.names(), trials.trial.tolist(), trials.condition.names())
+        named = {(session, n): condition for session, n, condition in zip(*columns, strict=True)}
+    rows: list[Row] = []
+    for sitting in sittings:
+        of = {row["trial"]: row for row in sitting.rows}
+        for number, seen in sitting.readings.items():
+            told = of[number]
+            row: Row = {
+                "participant": told["participant"],
+                "condition": named.get((told["session"], number), told["condition"]),
+                "session": told["session"],
+                "trial": number,
+                "presented": name_string(told["presented"]),
+            }
+            if isinstance(seen, Reading) and told["paused_s"] > 0:
+                seen = f"it was paused for {to_print(told['paused_s'], Kind.SECONDS)} s"
+            elif isinstance(seen, Reading) and told["early"]:
+                seen = "it was answered before it was read to its end"
+            rows.append(row | (_described(seen) if isinstance(seen, Reading) else {"note": seen}))
+    return TRAJECTORIES.fill(rows, [] if rows else ["no trial has a trajectory"])
+
+
+def patterns(table: ResultTable) -> ResultTable:
+    """Counts and means of each participant and condition.
+
+    Parameters
+    ----------
+    table
+        Of `trajectories`.
+    """
+    of: dict[tuple[str, str], list[Row]] = {}
+    for record in table.records():
+        if record["pattern"] is not None:
+            whose = str(record["participant"]), str(record["condition"])
+            of.setdefault(whose, []).append(record)
+    rows: list[Row] = []
+    for whose in sorted(of, key=lambda key: tuple(map(natural, key))):
+        seen = of[whose]
+        row: Row = {
+            "participant": whose[0],
+            "condition": whose[1],
+            "trials": len(seen),
+            "passes": mean_or_none(_known(seen, "passes")),
+        }
+        for column, pattern in zip(READING_PATTERNS.columns[3:], PATTERNS, strict=False):
+            row[column.name] = sum(record["pattern"] == pattern for record in seen)
+        notes = []
+        for column, way in zip(_SPEEDS, ("right", "left"), strict=True):
+            row[column.name] = mean_or_none(_known(seen, column.name))
+            if row[column.name] is None:
+                notes.append(f"no stroke to the {way}")
+        rows.append(row | {"note": "; ".join(notes)})
+    return READING_PATTERNS.fill(rows, [] if rows else ["no trial has a trajectory"])
+
+
+def correlations(trials: Trials) -> ResultTable:
+    """Duration against legibility, of trials, strings and participants."""
+    timed = trials[~np.isnan(trials.duration_s)]
+    if not len(timed):
+        return CORRELATIONS.fill([], ["no duration is known"])
+    rows: list[Row] = []
+    for p, participant in enumerate(timed.participant.levels):
+        for c, condition in enumerate(timed.condition.levels):
+            chosen = (timed.participant.codes == p) & (timed.condition.codes == c)
+            if chosen.any():
+                found = correlation(timed.duration_s[chosen], timed.correct[chosen], "trials")
+                whose = {"of": "trials", "participant": participant, "condition": condition}
+                rows.append(whose | found)
+    for of, factor in (("strings", timed.string_set), ("participants", timed.participant)):
+        counts = np.bincount(factor.codes)
+        duration, correct = (
+            np.bincount(factor.codes, values) / counts
+            for values in (timed.duration_s, timed.correct)
+        )
+        whose = {"of": of, "participant": "all", "condition": "all"}
+        rows.append(whose | correlation(duration, correct, of))
+    return CORRELATIONS.fill(rows)
+
+
+def _described(reading: Reading) -> Row:
+    """Values of a reading; why one is missing."""
+    row: Row = {
+        "duration_s": reading.duration_s,
+        "returned": int(reading.returned),
+        "passes": reading.passes,
+        "rescans": reading.rescans,
+        "pattern": reading.pattern,
+        "speed_right_mm_s": reading.speed_right_mm_s,
+        "speed_left_mm_s": reading.speed_left_mm_s,
+    }
+    ways = {"right": reading.speed_right_mm_s, "left": reading.speed_left_mm_s}
+    return row | {"note": "; ".join(f"no stroke to the {w}" for w, v in ways.items() if v is None)}
+
+
+def _known(records: Sequence[Row], name: str) -> list[float]:
+    return [float(record[name]) for record in records if record[name] is not None]
+
+
+def correlation(duration: NDArray, correct: NDArray, what: str) -> Row:
+    """Pearson's r of durations with shares, or with right and wrong, of so many of something."""
+    row: Row = {"n": duration.size}
+    if duration.size < 3:
+        return row | {"note": f"{count(duration.size, what[:-1])}: a correlation needs three"}
+    correct = correct.astype(np.float64)
+    if np.ptp(correct) == 0:
+        return row | {"note": f"legibility is the same in all {what}"}
+    if np.ptp(duration) <= 1e-12 * np.abs(duration).max():
+        return row | {"note": f"duration is the same in all {what}"}
+    found: Any = stats.pearsonr(duration, correct)
+    row |= {"r": float(found.statistic), "p": float(found.pvalue)}
+    if what == "strings":
+        return row | {"note": "no interval: the same people read all strings"}
+    try:
+        ends = correlation_interval(duration, correct)
+    except Unanswerable:
+        return row | {"note": f"no interval of {duration.size} {what}"}
+    return row | {"low": ends.low, "high": ends.high}

@@ -1,0 +1,110 @@
+"""Legibility over time: Lévesque 2009, 3.4.2 and fig. 3.14."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import stats
+
+from vbraille.analysis.input.trials import count
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.statistics.intervals import LEVEL
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.input.trials import Trials
+    from vbraille.analysis.schemas import ResultTable, Row
+
+PAST = 10  # trials that the moving average is over
+_WHOSE = (
+    Column("participant", "participant", "pseudonym"),
+    Column("session", "session", "name of the session"),
+    Column("condition", "condition", "name, as in the protocol"),
+)
+OVER_TIME = Schema(
+    "over_time",
+    "Legibility over time",
+    f"The moving average is over the past {PAST} trials of the same session and condition, the "
+    f"trial itself among them.",
+    (
+        *_WHOSE,
+        Column("number", "number", "of the trial in its session and condition", Kind.COUNT),
+        Column("trial", "trial", "its number in the session", Kind.COUNT),
+        Column("correct", "correct", "1 if every place is right, else 0", Kind.COUNT),
+        Column("average", f"past {PAST} (%)", "moving average", Kind.PERCENT),
+        NOTE_COLUMN,
+    ),
+)
+SLOPES = Schema(
+    "slopes",
+    "Change of legibility over time",
+    "Slope of the straight line through the single trials (1 right, 0 wrong; least squares), for "
+    "10 trials; through the moving average's points, which share trials, p would be too small.",
+    (
+        *_WHOSE,
+        Column("trials", "trials", "how many", Kind.COUNT),
+        Column(
+            "slope", "slope (% in 10 trials)", "change of legibility in 10 trials", Kind.PERCENT
+        ),
+        Column("low", "from (%)", "lower end of its 95 % interval", Kind.PERCENT),
+        Column("high", "to (%)", "upper end", Kind.PERCENT),
+        Column("p", "p", "that there is no change, by t", Kind.P),
+        NOTE_COLUMN,
+    ),
+)
+
+
+def over_time(trials: Trials) -> ResultTable:
+    """Moving average of every trial, in the order of the sessions."""
+    rows: list[Row] = []
+    for whose, chosen in series(trials):
+        correct = trials.correct[chosen]
+        sums = np.cumsum(np.concatenate(([0], correct)))
+        averages = (sums[PAST:] - sums[:-PAST]) / PAST if correct.size >= PAST else np.zeros(0)
+        numbers = trials.trial[chosen].tolist()
+        for n, (number, right) in enumerate(zip(numbers, correct.tolist(), strict=True)):
+            row = whose | {"number": n + 1, "trial": number, "correct": int(right)}
+            if n + 1 < PAST:
+                row["note"] = f"fewer than {PAST} trials yet"
+            else:
+                row["average"] = float(averages[n + 1 - PAST])
+            rows.append(row)
+    return OVER_TIME.fill(rows)
+
+
+def slopes(trials: Trials) -> ResultTable:
+    """Slope of every session and condition."""
+    return SLOPES.fill([whose | slope(trials.correct[chosen]) for whose, chosen in series(trials)])
+
+
+def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
+    """Trials of each participant, session and condition, in their order."""
+    factors = (trials.participant, trials.session, trials.condition)
+    shape = tuple(len(factor) for factor in factors)
+    cell = np.ravel_multi_index(tuple(factor.codes for factor in factors), shape)
+    order = np.argsort(cell, kind="stable")
+    cells, starts = np.unique(cell[order], return_index=True)
+    parts = np.split(order, starts[1:])
+    for code, part in zip(cells.tolist(), parts, strict=True):
+        codes = np.unravel_index(code, shape)
+        names = [factor.levels[int(at)] for factor, at in zip(factors, codes, strict=True)]
+        yield dict(zip(("participant", "session", "condition"), names, strict=True)), part
+
+
+def slope(correct: NDArray[np.bool_]) -> Row:
+    """Least squares of right and wrong on the number of the trial, for 10 trials."""
+    row: Row = {"trials": correct.size}
+    if correct.size < 3:
+        return row | {"note": f"{count(correct.size, 'trial')}: a slope needs three"}
+    if correct.all() or not correct.any():
+        what = "right" if correct[0] else "wrong"
+        return row | {"slope": 0.0, "note": f"no interval and no p: every trial is {what}"}
+    fit: Any = stats.linregress(np.arange(correct.size), correct.astype(np.float64))
+    half = stats.t.ppf((1 + LEVEL) / 2, correct.size - 2) * fit.stderr
+    scaled = (10 * value for value in (fit.slope, fit.slope - half, fit.slope + half))
+    row |= dict(zip(("slope", "low", "high"), map(float, scaled), strict=True))
+    return row | {"p": float(fit.pvalue)}

@@ -1,0 +1,240 @@
+"""How cells are spelled in a protocol, typed as an answer, and said."""
+
+from __future__ import annotations
+
+import re
+import string
+
+from vbraille.braille.cells import UNICODE_BLANK, Cells
+
+# Letters of literary braille are one cell each, the same in English and French, and ASCII braille
+# writes those cells as the letters.
+LETTERS = dict(
+    zip(
+        string.ascii_lowercase,
+        Cells.from_brf(string.ascii_lowercase).masks.tolist(),
+        strict=True,
+    )
+)
+UNREAD = "?"
+
+_LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
+_DOT_NUMBERS = re.compile(r"[0-9-]+")
+_LONGEST_QUOTE = 20
+_UNREAD_MASK = 0x100  # one more than masks of eight dots
+
+
+def to_braille(masks: tuple[int, ...]) -> str:
+    """Unicode braille of some cells."""
+    return "".join(chr(UNICODE_BLANK + mask) for mask in masks)
+
+
+def name_dots(mask: int) -> str:
+    """Dots of a mask as in a sentence: "dot 1", "dots 1 and 4", "no dots"."""
+    dots = [str(bit + 1) for bit in range(8) if mask >> bit & 1]
+    if not dots:
+        return "no dots"
+    if len(dots) == 1:
+        return f"dot {dots[0]}"
+    return f"dots {', '.join(dots[:-1])} and {dots[-1]}"
+
+
+def spell(text: str, keys: dict[str, int]) -> tuple[int, ...]:
+    """Cells of a spelling, as protocols have it; empty for an empty one.
+
+    Parameters
+    ----------
+    text
+        Words with white space between. One of digits and hyphens is a cell by
+        its dot numbers ("1-4", "14", "0"). In another each character is a cell:
+        a key, a letter a to z or a Unicode braille character.
+    keys
+        Dot mask of each key of the protocol; they win over letters.
+
+    Returns
+    -------
+    tuple of int
+        Dot masks; bit 0 is dot 1.
+
+    Raises
+    ------
+    ValueError
+        If something in it is no cell.
+    """
+    return tuple(mask for _, mask in _cells(text, keys))
+
+
+def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
+    """Cells of a string of a protocol, one for each character; empty for an empty one.
+
+    Nothing in it is guessed: a blank may be meant as a cell or as a space between two, and
+    a number as dots or as a number.
+
+    Parameters
+    ----------
+    text
+        Keys, letters a to z and Unicode braille.
+    keys
+        Dot mask of each key of the protocol; they win over letters.
+
+    Raises
+    ------
+    ValueError
+        If a character is something else.
+    """
+    for character in text:
+        if character.isspace():
+            raise ValueError(
+                f"{_shorten(text)} has a blank, which may be meant as a cell or as nothing; write "
+                f"a blank cell as Unicode braille (U+2800) or by a key of [keys], or leave it out"
+            )
+        if _DOT_NUMBERS.fullmatch(character):
+            raise ValueError(
+                f"{_shorten(text)} has {character!r}, which may be meant as dots or as what it "
+                f"is; write each cell as a letter, a key of [keys] or Unicode braille"
+            )
+    return tuple(_by_character(character, text, keys) for character in text)
+
+
+def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: int) -> str:
+    """Answer as it is kept: a Unicode braille character a place, ``?`` for one not read.
+
+    Parameters
+    ----------
+    text
+        As typed: spelled as for `spell`, with letters in either case and ``?``
+        for a place. A lone ``?`` is all places not read.
+    places
+        Cells asked for.
+    keys
+        Dot mask of each key of the protocol.
+    shown_dots
+        Mask of the dots that the display shows.
+
+    Raises
+    ------
+    ValueError
+        If something is no cell, or no cell of the display, or places are
+        missing or too many.
+    """
+    if not text.strip():
+        raise ValueError(f"nothing was typed; type {_count(places)}, or ? if none was read")
+    if text.strip() == UNREAD:
+        return UNREAD * places
+    typed = _cells(text, {UNREAD: _UNREAD_MASK, **_either_case(keys)})
+    for spelling, mask in typed:
+        if mask != _UNREAD_MASK and mask & ~shown_dots:
+            raise ValueError(
+                f"{spelling!r} has {name_dots(mask)}, and the display shows "
+                f"{name_dots(shown_dots)} only; type a cell of those, or ? for one not read"
+            )
+    if len(typed) < places:
+        raise ValueError(
+            f"only {len(typed)} of {_count(places)} typed; type all, with ? for what was not read"
+        )
+    if len(typed) > places:
+        raise ValueError(f"{_count(len(typed))} typed, and {places} asked for; type no more")
+    return "".join(UNREAD if mask == _UNREAD_MASK else to_braille((mask,)) for _, mask in typed)
+
+
+def parse_choice(text: str) -> str:
+    """Answer to a comparison: "1" or "2".
+
+    Parameters
+    ----------
+    text
+        As typed: 1 or 2, first or second, f or s, in either case.
+
+    Raises
+    ------
+    ValueError
+        If it is something else.
+    """
+    word = text.strip().lower()
+    if word in ("1", "f", "first"):
+        return "1"
+    if word in ("2", "s", "second"):
+        return "2"
+    said = f"{_quote(text)} is neither" if word else "nothing was typed"
+    raise ValueError(f"{said}; type 1 for the first or 2 for the second")
+
+
+def say_cells(answer: str, keys: dict[str, int]) -> str:
+    """Words for speech: one a place, with a space between.
+
+    Parameters
+    ----------
+    answer
+        Unicode braille, ``?`` for a place not read.
+    keys
+        Dot mask of each key of the protocol. A cell that has one is said by it.
+    """
+    return " ".join(_say(place, keys) for place in answer)
+
+
+def _say(place: str, keys: dict[str, int]) -> str:
+    if place == UNREAD:
+        return UNREAD
+    mask = ord(place) - UNICODE_BLANK
+    for key, cell in keys.items():
+        if cell == mask:
+            return key
+    letter = _LETTER_OF.get(mask)
+    # A letter that is the key of another cell would be taken for that one.
+    if letter is not None and letter not in keys:
+        return letter
+    return Cells.from_unicode(place).to_dots() if mask else "blank"
+
+
+def _either_case(keys: dict[str, int]) -> dict[str, int]:
+    """What answers may be typed with: letters and keys in either case, as they win."""
+    cells = LETTERS | {letter.upper(): mask for letter, mask in LETTERS.items()}
+    cells |= {key.upper(): mask for key, mask in keys.items() if len(key.upper()) == 1}
+    return cells | keys
+
+
+def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
+    """Each cell as it is spelled, and its dot mask."""
+    cells: list[tuple[str, int]] = []
+    for word in text.split():
+        if _DOT_NUMBERS.fullmatch(word):
+            cells.append((word, _by_dots(word)))
+        else:
+            cells += [(character, _by_character(character, word, keys)) for character in word]
+    return cells
+
+
+def _by_dots(word: str) -> int:
+    dots = word.replace("-", "")
+    if len(set(dots)) < len(dots):  # two cells without the space between them
+        raise ValueError(
+            f"{_quote(word)} has a dot twice; put a space between the dot numbers of two cells"
+        )
+    return int(Cells.from_dots(word).masks[0])
+
+
+def _by_character(character: str, word: str, keys: dict[str, int]) -> int:
+    mask = keys.get(character, LETTERS.get(character))
+    if mask is not None:
+        return mask
+    if UNICODE_BLANK <= ord(character) <= UNICODE_BLANK + 0xFF:
+        return ord(character) - UNICODE_BLANK
+    if _DOT_NUMBERS.fullmatch(character):
+        raise ValueError(f"{_quote(word)} is no cell; put spaces around dot numbers")
+    raise ValueError(
+        f"{_quote(character)} is no cell; a cell is a letter a to z, a key of the protocol, "
+        f"a Unicode braille character or dot numbers such as 1-4"
+    )
+
+
+def _count(number: int) -> str:
+    return "1 place" if number == 1 else f"{number} places"
+
+
+def _quote(text: str) -> str:
+    """What was typed, as it can be said in a sentence."""
+    return _shorten(text.strip())
+
+
+def _shorten(text: str) -> str:
+    return repr(text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}…")

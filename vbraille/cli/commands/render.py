@@ -1,0 +1,257 @@
+"""``vbraille render``."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+import numpy as np
+
+from vbraille.cli.build import (
+    build_book,
+    build_lengths,
+    build_show,
+    lay_out,
+    note_unseen_dots,
+)
+from vbraille.cli.stopping import EAR
+from vbraille.cli.wanted import check_rate
+from vbraille.engine.advance import EndOfLine
+from vbraille.errors import InputError
+from vbraille.reading.reader import too_fast_note
+from vbraille.recording import Recorder, new_file
+from vbraille.render import MODELS
+from vbraille.simulation.motion import SLACK
+from vbraille.simulation.paging import Area
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.specs import parse_hand
+from vbraille.wording import count, duration
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+    from tqdm import tqdm
+
+    from vbraille.cli.build import Page
+    from vbraille.layout.pages import Line
+    from vbraille.simulation.hand import Hand
+
+_BLOCK_FRAMES = 16_384
+_MOST_HEIGHT_MM = 10_000.0
+# So many frames tell how well the rest can be compressed, and take less than half a second.
+_ESTIMATED_FROM = 100_000
+_LONG_FRAMES = 1_000_000
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the frames of every line asked for, and say how many."""
+    if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
+        raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
+    model = build_show(arguments, MODELS[arguments.model])
+    rate_hz = check_rate(arguments.rate)
+    hand = parse_hand(arguments.hand, arguments.seed)
+    model = build_lengths(arguments, model)
+    pages = _lines_per_page(arguments.height, model.style.geometry.line_pitch_mm)
+    page = lay_out(arguments, build_book(arguments), model)
+    style, display = model.style, model.display
+    note_unseen_dots(page)
+    with EAR.at_once():  # numba compiles
+        style.render(np.zeros(1, np.uint8), display).path(np.zeros(1))
+    lines = frames = 0
+    estimate = _Estimate(rate_hz)
+    too_fast: str | None = None
+    with (
+        EAR.deferred(),
+        new_file(arguments.out, replace=arguments.force) as file,
+        _Progress(plain=arguments.plain) as progress,
+    ):
+        recorder = Recorder(file, display, page.layout.width)
+        recorder.describe(
+            model=model,
+            rate_hz=rate_hz,
+            first_line=page.first,
+            source=page.document.name,
+            sha256=page.document.sha256(),
+        )
+        for stretch in _walk(page, hand, rate_hz, pages):
+            last = stretch.lines[-1]
+            estimate.before(page.share_before(stretch.lines[0]), frames, recorder)
+            row = min([recorder.add_line(line.masks) for line in stretch.lines])
+            masks = [line.masks for line in stretch.lines]
+            program = (
+                style.render_page(masks, display) if pages else style.render(masks[0], display)
+            )
+            for start in range(0, stretch.x_mm.size, _BLOCK_FRAMES):
+                x_mm = stretch.x_mm[start : start + _BLOCK_FRAMES]
+                t_s = (frames + np.arange(x_mm.size)) / rate_hz
+                if stretch.y_mm is None:
+                    made = program.path(x_mm)
+                    recorder.add_frames(t_s, x_mm, row, made, y_mm=program.own_y_mm)
+                else:
+                    y_mm = stretch.y_mm[start : start + _BLOCK_FRAMES]
+                    part, made = program.poses(x_mm, y_mm)
+                    at = row + np.clip(part, 0, len(masks) - 1)
+                    recorder.add_frames(t_s, x_mm, at, made, y_mm=y_mm, part=part)
+                frames += x_mm.size
+                EAR.heed()
+            lines += len(masks)
+            too_fast = too_fast or too_fast_note(_fastest(stretch.x_mm, rate_hz), style)
+            progress.at(page.progress(last))
+    if too_fast is not None:
+        print(too_fast, file=sys.stderr)
+    page.say_note()
+    page.say_unknown()
+    print(
+        f"rendered: {count(lines, 'line')}, {count(frames, 'frame')}, "
+        f"{frames / rate_hz:.1f} s of reading"
+    )
+    return 0
+
+
+class _Stretch(NamedTuple):
+    """Lines that are shown at once, and where the array's centre goes meanwhile.
+
+    Parameters
+    ----------
+    lines
+        One, or those of a page.
+    x_mm : float64[n]
+        Along them.
+    y_mm : float64[n] or None
+        Down the page; None of a carriage that goes along its line only.
+    """
+
+    lines: list[Line]
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64] | None = None
+
+
+def _lines_per_page(height_mm: float | None, pitch_mm: float) -> int:
+    """How many lines a carriage of so high a workspace comes to the middle of; 0 for one axis."""
+    if height_mm is None:
+        return 0
+    if not pitch_mm / 2 <= height_mm <= _MOST_HEIGHT_MM:
+        raise InputError(
+            f"--height is {height_mm:g} mm; it must be {pitch_mm / 2:g}, half a line pitch, to "
+            f"{_MOST_HEIGHT_MM:g} mm"
+        )
+    return math.floor(height_mm / pitch_mm + 0.5)
+
+
+def _walk(page: Page, hand: Hand | Recorded, rate_hz: float, pages: int) -> Iterator[_Stretch]:
+    """What is shown one after the other, with the way of the hand: lines, or pages of so many."""
+    if pages:
+        return _walk_pages(page, hand, rate_hz, pages)
+    return _walk_lines(page, hand, rate_hz)
+
+
+def _walk_pages(
+    page: Page, hand: Hand | Recorded, rate_hz: float, pages: int
+) -> Iterator[_Stretch]:
+    span_mm, geometry = page.model.display.span_mm, page.model.style.geometry
+    found = page.lines()
+    while lines := list(islice(found, pages)):
+        end_mm = max(geometry.extent_mm(len(line)) for line in lines)
+        if isinstance(hand, Recorded):
+            motion = hand.motion()
+        else:
+            area = Area(len(lines), geometry.line_pitch_mm, -span_mm, end_mm)
+            motion = hand.read_page(area)
+        at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
+        x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2
+        y_mm = np.zeros(at_s.size)
+        if motion.y_mm is not None:
+            y_mm = np.interp(at_s, motion.t_s, motion.y_mm)
+        yield _Stretch(lines, x_mm, y_mm)
+        if isinstance(hand, Recorded):
+            return  # it has recorded no more
+
+
+def _walk_lines(page: Page, hand: Hand | Recorded, rate_hz: float) -> Iterator[_Stretch]:
+    span_mm = page.model.display.span_mm
+    middle_mm = span_mm / 2  # hands move the left column
+    recorded = hand.motion().sample(rate_hz) + middle_mm if isinstance(hand, Recorded) else None
+    for line in page.lines():
+        end_mm = page.model.style.geometry.extent_mm(len(line))
+        if recorded is None:
+            assert not isinstance(hand, Recorded)
+            yield _Stretch([line], hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm)
+            continue
+        if not recorded.size:
+            return
+        done = EndOfLine(span_mm, end_mm).find(recorded)
+        stop = recorded.size if done is None else done + 1
+        yield _Stretch([line], recorded[:stop])
+        recorded = recorded[stop:]
+
+
+def _fastest(x_mm: NDArray[np.float64], rate_hz: float) -> float:
+    """Largest speed to the right, in mm/s, as a mean over a twentieth of a second."""
+    window = max(1, round(rate_hz / 20))
+    if x_mm.size <= window:
+        return 0.0
+    return float((x_mm[window:] - x_mm[:-window]).max()) * rate_hz / window
+
+
+class _Estimate:
+    """What a long recording will take: said once, when a small part of it is done."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._begun_s = time.monotonic()
+        self._share = 0.0
+        self._said = False
+
+    def before(self, share: float, frames: int, recorder: Recorder) -> None:
+        """Take note of what is done before a line: its share of all, its frames, its file.
+
+        Shares of a book grow from paragraph to paragraph, and are right where one begins.
+        """
+        begins, self._share = share > self._share, share
+        if self._said or not begins or frames < _ESTIMATED_FROM:
+            return
+        self._said = True
+        if frames / share < _LONG_FRAMES:
+            return
+        seconds = (time.monotonic() - self._begun_s) / share
+        print(
+            f"estimate: about {frames / share / 1e6:.2g} million frames, "
+            f"{duration(frames / share / self._rate_hz)} of reading, "
+            f"{recorder.stored_bytes / share / 1e6:.2g} MB, {duration(seconds)} of work",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
+class _Progress:
+    """How far it is: a bar at a terminal, or a line for every tenth."""
+
+    def __init__(self, *, plain: bool) -> None:
+        self._bar: tqdm | None = None
+        self._said = 0 if plain else 100
+        if sys.stderr.isatty() and not plain:
+            from tqdm import tqdm
+
+            self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def at(self, share: float) -> None:
+        """Tell that a share of the work is done, 0 to 1."""
+        percent = round(100 * share)
+        if self._bar is not None:
+            self._bar.update(percent - self._bar.n)
+        elif percent >= self._said + 10:
+            self._said = percent - percent % 10
+            print(f"{self._said} percent", file=sys.stderr, flush=True)

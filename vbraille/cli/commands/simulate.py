@@ -1,0 +1,95 @@
+"""``vbraille simulate``."""
+
+from __future__ import annotations
+
+import gc
+import os
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from vbraille.cli.stopping import EAR
+from vbraille.devices.wire.messages import Encoder
+from vbraille.errors import InputError
+from vbraille.render.braille.models import MODELS
+from vbraille.simulation.firmware import describe
+from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.simulator import Defect, Faults, Simulator
+from vbraille.simulation.specs import parse_hand
+from vbraille.wording import printable
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.devices.wire.messages import Info
+
+# Above the engine's 40: a real controller has a processor of its own.
+_PRIORITY = 41
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Be a device until a signal says to stop."""
+    info = _info(arguments)
+    hand = parse_hand(arguments.hand, arguments.seed)
+    if arguments.unplug_every and arguments.link is None:
+        raise InputError("--unplug-every needs --link, for the port has a new name each time")
+    try:
+        faults = Faults(
+            drop=arguments.drop,
+            corrupt=arguments.corrupt,
+            stall_s=arguments.stall,
+            unplug_every_s=arguments.unplug_every,
+            defect=None if arguments.defect is None else Defect(arguments.defect),
+            seed=arguments.seed,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    with EAR.deferred():
+        port = Port(Link(arguments.link) if arguments.link is not None else None)
+        try:
+            simulator = Simulator(info, hand, port, say=_say, faults=faults)
+            _say(f"port: {port.path}")
+            if arguments.link is not None:
+                _say(f"link: {arguments.link}")
+            go_real_time()
+            simulator.run(stopped=lambda: EAR.heard)
+        finally:
+            port.unplug()
+    _say(_summary(simulator))
+    return 0
+
+
+def _info(arguments: argparse.Namespace) -> Info:
+    model = MODELS[arguments.model]
+    geometry = model.style.geometry
+    if not (50 <= arguments.rate <= 10_000 and arguments.rate == int(arguments.rate)):
+        raise InputError(f"rate is {arguments.rate:g} Hz; it must be 50 to 10000 Hz, and whole")
+    try:
+        if arguments.travel is not None:
+            geometry = replace(geometry, travel_mm=arguments.travel)
+        device = model.on(geometry, arguments.rate)
+        return describe(device, Encoder[arguments.encoder.upper()])
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def go_real_time() -> None:
+    """Be scheduled before the host, if the system allows it."""
+    with suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+
+
+def _say(sentence: str) -> None:
+    print(printable(sentence), flush=True)
+
+
+def _summary(simulator: Simulator) -> str:
+    controller = simulator.controller
+    return (
+        f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {controller.frames}, "
+        f"dropped {controller.dropped}, trips {controller.trips}, "
+        f"states sent {simulator.states_sent}, states dropped {simulator.states_dropped}"
+    )

@@ -1,0 +1,121 @@
+"""The command ``vbraille``: parse, build, call, print.
+
+A command's module is imported only when the command is called.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from contextlib import suppress
+from importlib import import_module
+from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
+
+from vbraille.cli.stopping import EAR, EXIT_CODE, SAID, Stopped
+from vbraille.errors import VbrailleError
+from vbraille.wording import printable, spelled
+
+TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command; its exit code.
+
+    0 is done, 1 a fault at run time or a signal, 2 something that cannot be used.
+    Afterwards signals are ignored: the program is at its end.
+    """
+    try:
+        sentence, code = _listen(argv)
+    except (KeyboardInterrupt, Stopped):
+        sentence, code = SAID, EXIT_CODE
+    if sentence:
+        with suppress(OSError):
+            print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
+    try:
+        sys.stdout.flush()
+    except OSError:
+        code = code or EXIT_CODE
+        with suppress(OSError):  # Python must not try again at exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return code
+
+
+def _listen(argv: Sequence[str] | None) -> tuple[str, int]:
+    """Run a command until it ends or a signal stops it."""
+    try:
+        EAR.listen()
+        _set_streams()
+        sentence, code = _run(argv)
+    finally:
+        EAR.close()
+    return (SAID, EXIT_CODE) if EAR.heard and code else (sentence, code)
+
+
+def _set_streams() -> None:
+    """Have both streams, and have them take any text, lone surrogates and all."""
+    # None stands for a stream that was closed by whoever started us. There is nobody to be told
+    # of what goes to stderr, but whoever closed the output has lost what was asked for.
+    if sys.stdout is None:
+        sys.stdout = TextIOWrapper(BufferedWriter(_Closed()))
+    if sys.stderr is None:
+        sys.stderr = TextIOWrapper(FileIO(os.devnull, "w"))
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
+
+
+class _Closed(RawIOBase):
+    """An output that is closed: the first writing says so, and later ones go nowhere."""
+
+    def __init__(self) -> None:
+        self._said = False
+
+    def writable(self) -> bool:
+        """Say yes, so that the fault comes when something is written."""
+        return True
+
+    def write(self, content) -> int:
+        """Refuse the first time."""
+        if not self._said:
+            self._said = True
+            raise OSError(errno.EBADF, "the output is closed; give it a file, or /dev/null")
+        return len(content)
+
+
+def _run(argv: Sequence[str] | None) -> tuple[str, int]:
+    """Run a command; what to say of its failure, and its exit code."""
+    try:
+        code = _call(argv)
+        sys.stdout.flush()
+    except BrokenPipeError:  # whoever read our output has enough, and needs no sentence
+        return "", EXIT_CODE
+    except VbrailleError as error:
+        return spelled(str(error)), error.exit_code
+    except OSError as error:
+        return error.strerror or str(error), 1
+    except Exception as error:
+        if os.environ.get("VBRAILLE_TRACEBACK"):
+            raise
+        what = f"{type(error).__name__}: {error}"
+        return f"a fault of vbraille's own, which its authors want to hear of: {what}", 1
+    return "", code
+
+
+def _call(argv: Sequence[str] | None) -> int:
+    with EAR.at_once():
+        from vbraille.cli.parser import parse
+    try:
+        arguments = parse(argv)
+    except SystemExit:  # --help and --version have been printed
+        return 0
+    if arguments.log is not None:
+        from vbraille.logs import keep
+
+        keep(arguments.log)
+    with EAR.at_once():
+        command = import_module(f"vbraille.cli.commands.{arguments.command}")
+    return command.run(arguments)

@@ -1,0 +1,1 @@
+"""The commands' options, and the values that are read out of what was typed."""

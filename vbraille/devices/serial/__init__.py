@@ -1,0 +1,1 @@
+"""A device on a serial line: the port, the conversation with it, and what is compiled of that."""

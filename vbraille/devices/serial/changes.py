@@ -1,0 +1,65 @@
+"""What has become of a device that came back: the same, changed, or another one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Changed, Difference
+from vbraille.devices.wire.messages import Encoder
+
+if TYPE_CHECKING:
+    from vbraille.devices.wire.messages import Info
+    from vbraille.display import Display
+
+_OF_DISPLAY: Final = (
+    "rows",
+    "columns",
+    "column_pitch_mm",
+    "row_pitch_mm",
+    "levels",
+    "rest_side",
+    "travel_mm",
+    "rate_hz",
+)
+PLACING: Final = {
+    Encoder.ABSOLUTE: Placing.DONE,
+    Encoder.INDEX: Placing.MARK,
+    Encoder.INCREMENTAL: Placing.STOP,
+}
+
+
+def differences(was: Display, now: Display) -> tuple[Difference, ...]:
+    """What of a device is another than a page and a loop were made for; nothing of its name.
+
+    A count is no part of it: places are in millimetres.
+    """
+    both = ((name, getattr(was, name), getattr(now, name)) for name in _OF_DISPLAY)
+    return tuple(Difference(name, old, new) for name, old, new in both if old != new)
+
+
+def changes(was: Info, now: Info) -> Changed | None:
+    """What of a device that can be read on is otherwise than in the conversation before."""
+    what = [
+        Difference("name", was.name, now.name),
+        Difference("counts_per_m", was.counts_per_m, now.counts_per_m),
+        Difference("count_sign", was.count_sign.name.lower(), now.count_sign.name.lower()),
+        Difference("encoder", was.encoder.name.lower(), now.encoder.name.lower()),
+    ]
+    if now.encoder is not Encoder.INCREMENTAL:  # the reader shows where its left stop is
+        what.append(Difference("left_stop_count", was.left_stop_count, now.left_stop_count))
+    what.append(Difference("largest_slew_per_s", was.largest_slew_per_s, now.largest_slew_per_s))
+    changed = Changed(
+        tuple(each for each in what if each.was != each.now),
+        _others(was.gain, now.gain),
+        _others(was.inverted, now.inverted),
+        _others(was.enabled, now.enabled),
+        PLACING[now.encoder],
+    )
+    none = Changed(placing=changed.placing)
+    return None if changed == none else changed
+
+
+def _others(was: bytes, now: bytes) -> int:
+    """How many actuators have another value."""
+    return sum(old != new for old, new in zip(was, now, strict=True))

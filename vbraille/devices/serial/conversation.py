@@ -1,0 +1,201 @@
+"""The host's end of a serial conversation: no port, no clock, no thread.
+
+It is given the time, bytes that came and what is wanted; it gives places, events, and the
+messages that are due, one after the other. `transitions` says what leads where.
+
+    conversation = Conversation(now_ns)
+    while (message := conversation.due()) is not None:
+        if port.write(message):
+            conversation.sent()
+        else:
+            conversation.refused()
+    pose = conversation.hear(port.read(), now_ns)
+"""
+
+from __future__ import annotations
+
+from enum import Enum, auto
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.events import Unplugged
+from vbraille.devices.serial.greeting import HELLO
+from vbraille.devices.serial.listening import Listening
+from vbraille.devices.serial.transitions import TALKING, UNTOLD, Cause, Stage
+from vbraille.devices.wire.codec import DELIMITER, encode
+from vbraille.devices.wire.messages import HELLO_PERIOD_MS, Rest
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.devices.events import Event
+
+# Frames without anything to feel for so long, and there is nothing to show: no gap between words.
+IDLE_MS: Final = 5000
+_NS_PER_MS: Final = 1_000_000
+_REST: Final = encode(Rest())
+_U16: Final = 0xFFFF
+_GREETING: Final = frozenset({Stage.GREETING, Stage.ASKED})
+
+
+class _Wish(Enum):
+    """Kinds of messages that may be due."""
+
+    REST = auto()
+    HELLO = auto()
+    FRAME = auto()
+
+
+class Conversation(Listening):
+    """A conversation with whatever answers, from HELLO until the host takes leave.
+
+    Parameters
+    ----------
+    now_ns
+        Time of a clock that does not go back.
+    rate_hz
+        FRAMEs a second that are going to be wanted; None is as many as the device is made for.
+
+    What it knows, and may be looked at, is told by `Listening`.
+    """
+
+    def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
+        super().__init__(now_ns, rate_hz)
+        self._leaving = self._frame_due = False
+        self._offer: _Wish | None = None  # the message that was given last
+
+    @property
+    def steady(self) -> bool:
+        """Whether FRAMEs hold the actuators, nothing but them is due, and all is well."""
+        return self.stage is Stage.LIVE and not (self.delivery.rest_due or self.drop_unsent)
+
+    def take_events(self, now_ns: int) -> list[Event]:
+        """What happened since the last call, each kind once a second."""
+        return list(self._notices.take(now_ns))
+
+    def lose(self, now_ns: int) -> None:
+        """The port is gone."""
+        if self._go(Cause.UNPLUGGED):
+            self._tell_away(Unplugged(), now_ns)
+
+    def find(self, now_ns: int) -> None:
+        """The port is back; nothing of what was said before goes on."""
+        if self._go(Cause.PLUGGED_IN):
+            self.decoder.feed(DELIMITER)  # what was begun will not be ended
+            self._hello_ns = now_ns
+
+    def mind_stall(self, now_ns: int) -> bool:
+        """Whether the host was stopped for so long that the device may rest; it does then.
+
+        What waits to be read is old then, and must all be read at once.
+        """
+        if self.stage not in TALKING or not self.delivery.stalled(now_ns):
+            return False
+        if self.stage is Stage.LIVE:
+            self._fall(Cause.STALLED, now_ns)
+        elif self._go(Cause.STALLED):
+            self._stop(tell=False)
+        self.delivery.give_time(now_ns)
+        return True
+
+    def show(self, frame: NDArray[np.float64], now_ns: int) -> None:
+        """Have deflections shown, as far as the device is ready for them.
+
+        Parameters
+        ----------
+        frame : float64[rows, columns]
+            In [0, 1].
+        now_ns
+            When.
+        """
+        self._now_ns = now_ns
+        self.frames.acknowledged_ns = self.frames.sent_ns = None
+        if self.stage not in TALKING or self.stage is Stage.SILENT:
+            return
+        if not self.place.known:
+            if self._go(Cause.PLACE_LOST):
+                self._stop(tell=True)
+            return
+        self.mind_stall(now_ns)
+        if self.stage is Stage.LIVE:
+            if self.drive.fill(frame, now_ns):
+                self.frames.felt_ns = now_ns
+            elif now_ns - self.frames.felt_ns >= IDLE_MS * _NS_PER_MS:
+                self._go(Cause.NOTHING_TO_FEEL)
+                self.delivery.stop(tell=True)
+                return
+        else:
+            if frame.any():
+                self._go(Cause.FELT)
+            if self.stage is not Stage.AT_REST:
+                return
+            self.drive.rested(now_ns)
+            self.drive.fill(self._rest_frame, now_ns)
+            self.frames.felt_ns = now_ns
+        self._frame_due = True
+
+    def rest(self, now_ns: int) -> None:
+        """Have the device told to rest; it ramps there, where a FRAME of rest would be a jump."""
+        self._now_ns = now_ns
+        if self._go(Cause.REST_WANTED):
+            self.delivery.stop(tell=True)
+
+    def set_zero(self, now_ns: int) -> None:
+        """Take it that the carriage is at the left stop now: the reader says so."""
+        self.place.set_zero()
+        self._mind_placing(now_ns)
+
+    def close(self, now_ns: int) -> None:
+        """Take leave: the device is told to rest, if it is there to be told."""
+        self._now_ns = now_ns
+        there = self.stage not in UNTOLD
+        if self._go(Cause.CLOSED):
+            self._leaving, self._frame_due = there, False
+
+    # What goes out.
+
+    def due(self) -> bytes | None:
+        """The message that is to go out next, whole; None if none is due.
+
+        What became of it is told by `sent` or `refused` before the next call.
+        """
+        if self._frame_due:
+            self._offer = _Wish.FRAME
+            return self.drive.frame((self.frames.sequence + 1) & _U16)
+        if self._leaving or (self._rest_due and self.stage not in UNTOLD):
+            self._offer = _Wish.REST
+            return _REST
+        if self.stage in _GREETING and self._now_ns >= self._hello_ns:
+            self._offer = _Wish.HELLO
+            return HELLO
+        return None
+
+    @property
+    def _rest_due(self) -> bool:
+        return self.info is not None and self.delivery.rest_due
+
+    def sent(self) -> None:
+        """The message given last goes out."""
+        now_ns, frames = self._now_ns, self.frames
+        if self._offer is _Wish.FRAME:
+            self._frame_due = False
+            frames.sequence = (frames.sequence + 1) & _U16
+            frames.sent_ns = now_ns
+            self.drive.sent(now_ns)
+            holding = self.stage is Stage.LIVE
+            self.delivery.sent(frames.sequence, now_ns, holding=holding)
+        elif self._offer is _Wish.REST:
+            self._leaving = False
+            if self.info is not None:
+                self.delivery.told(now_ns)
+        else:
+            self._hello_ns = now_ns + HELLO_PERIOD_MS * _NS_PER_MS
+            self._go(Cause.ASKED)
+
+    def refused(self) -> bool:
+        """There was no room for the message given last; whether it was a FRAME, which is lost.
+
+        Any other is due again with the next time that something comes in.
+        """
+        self._frame_due = False
+        return self._offer is _Wish.FRAME

@@ -1,0 +1,151 @@
+"""The numbers of a serial conversation, lent to compiled code for as long as it is steady.
+
+What `vbraille.devices.serial.steady` works on is filled from a `Conversation` and given back
+to it, some ticks later, as if the conversation had heard and said all of that itself.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille.devices.base import Lent
+from vbraille.devices.serial.conversation import IDLE_MS
+from vbraille.devices.serial.steady import CONVERSATION, NEVER, WORK_BYTES, Actuators
+from vbraille.devices.wire.codec import CRC_BYTES, frame_head, line_bytes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.devices.serial.conversation import Conversation
+    from vbraille.devices.serial.drive import Drive
+    from vbraille.display import Display
+
+# What comes in some ticks is some hundred bytes; there is room for a stall.
+RECEIVED_BYTES: Final = 8192
+_NS_PER_MS: Final = 1_000_000
+
+
+class Lending:
+    """What is lent, in memory that stays the same from one time to the next.
+
+    Attributes
+    ----------
+    talk : `vbraille.devices.serial.steady.CONVERSATION`[1]
+        The conversation's numbers.
+    received : uint8[RECEIVED_BYTES]
+        What was received and not consumed, at its beginning.
+    work, out : uint8[bytes]
+        Room to work in, and for a FRAME as it goes over the line.
+    actuators : Actuators
+        What FRAMEs are made with; there once something was lent.
+    """
+
+    actuators: Actuators
+
+    def __init__(self) -> None:
+        self.talk = np.zeros(1, CONVERSATION)
+        self.received = np.zeros(RECEIVED_BYTES, np.uint8)
+        self.work = np.zeros(WORK_BYTES, np.uint8)
+        self.out = np.zeros(0, np.uint8)
+        self._drive: Drive | None = None
+        self._body = self._packed = self.out
+
+    def lend(self, conversation: Conversation) -> int | None:
+        """Take a conversation's numbers.
+
+        Returns
+        -------
+        int or None
+            Bytes that `received` begins with, for a frame of which a part has come; None if the
+            conversation is not one for compiled code now.
+        """
+        states, frames, place, time = (
+            conversation.states,
+            conversation.frames,
+            conversation.place,
+            conversation.time,
+        )
+        ready = conversation.steady and place.known and not conversation.trips.tripped
+        if not ready or states.sequence is None or time.us is None:
+            return None
+        if place.count is None or place.zero is None:
+            return None
+        begun = conversation.decoder.take_begun()
+        if begun is None or len(begun) > WORK_BYTES:
+            conversation.decoder.feed(begun or b"")
+            return None
+        drive = conversation.drive
+        if drive is not self._drive:
+            self._fit(drive)
+        self.actuators = Actuators(
+            drive.last, drive.wanted, drive.swing, drive.rest_level, self._body, self._packed
+        )
+        talk = self.talk[0]
+        talk["heard_ns"], talk["state_sequence"] = states.heard_ns, states.sequence
+        talk["missed"], talk["buttons"] = states.missed, states.buttons or 0
+        talk["count"], talk["count_bits"], talk["zero"] = place.count, place.bits, place.zero
+        talk["home_mm"], talk["mm_per_count"] = place.home_mm, place.mm_per_count
+        talk["must_be_placed"] = place.needs_mark
+        talk["device_us"], talk["offset_ns"] = time.us, time.offset_ns
+        talk["device_ns"] = time.last_ns
+        talk["sequence"], talk["felt_ns"] = frames.sequence, frames.felt_ns
+        talk["sent_ns"] = _or_never(frames.sent_ns)
+        talk["acknowledged_ns"] = _or_never(frames.acknowledged_ns)
+        talk["owed_ns"] = _or_never(conversation.delivery.sent_ns)
+        talk["idle_ns"] = IDLE_MS * _NS_PER_MS
+        talk["moved_ns"], talk["period_ns"] = drive.last_ns, drive.period_ns
+        talk["slew_per_ns"] = drive.slew_per_ns if drive.limited else math.inf
+        talk["top_level"], talk["bits"] = drive.top_level, drive.bits
+        self.received[: len(begun)] = np.frombuffer(begun, np.uint8)
+        return len(begun)
+
+    def give_back(self, conversation: Conversation) -> None:
+        """Have the conversation know what was heard and said meanwhile, but for bytes left over."""
+        talk, drive = self.talk[0], conversation.drive
+        states, frames, time = conversation.states, conversation.frames, conversation.time
+        states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])
+        states.missed = int(talk["missed"])
+        conversation.place.count = int(talk["count"])
+        time.us, time.last_ns = int(talk["device_us"]), int(talk["device_ns"])
+        time.host_ns = states.heard_ns
+        frames.sequence, frames.felt_ns = int(talk["sequence"]), int(talk["felt_ns"])
+        frames.sent_ns = _or_none(talk["sent_ns"])
+        frames.acknowledged_ns = _or_none(talk["acknowledged_ns"])
+        owed_ns = _or_none(talk["owed_ns"])
+        if owed_ns is not None:
+            conversation.delivery.sent(frames.sequence, owed_ns, holding=True)
+        drive.last_ns = int(talk["moved_ns"])
+
+    def _fit(self, drive: Drive) -> None:
+        """Have room for the FRAMEs of a conversation."""
+        head = np.frombuffer(frame_head(0), np.uint8)
+        body_bytes = head.size + drive.packed.size
+        self._body = np.zeros(body_bytes + CRC_BYTES, np.uint8)
+        self._body[: head.size] = head
+        self._packed = self._body[head.size : body_bytes]
+        self.out = np.zeros(line_bytes(body_bytes), np.uint8)
+        self._drive = drive
+
+
+def example(display: Display) -> Lent:
+    """What a device of no consequence would lend: for compiled code to be loaded before a real one.
+
+    Nothing may be done with it: its descriptor is none.
+    """
+    shape = display.shape
+    zeros = np.zeros(shape)
+    body = np.zeros(CRC_BYTES, np.uint8)
+    actuators = Actuators(zeros, zeros, zeros, np.zeros(shape, np.int64), body, body)
+    room = np.zeros(WORK_BYTES, np.uint8)
+    return Lent(-1, 0, room, room, room, np.zeros(1, CONVERSATION), actuators)
+
+
+def _or_never(time_ns: int | None) -> int:
+    return NEVER if time_ns is None else time_ns
+
+
+def _or_none(time_ns: NDArray[np.int64]) -> int | None:
+    return None if time_ns == NEVER else int(time_ns)

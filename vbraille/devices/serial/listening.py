@@ -1,0 +1,349 @@
+"""What a device says in a serial conversation, and where that leads.
+
+The half of `Conversation` that hears; the other half says what the host wants. It has no port,
+no clock and no thread. `transitions` is the table that it goes by.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille.devices.base import Placing
+from vbraille.devices.events import (
+    Back,
+    Button,
+    Fault,
+    Notice,
+    Placed,
+    Silent,
+    Stranger,
+    WatchdogTripped,
+)
+from vbraille.devices.serial.changes import changes, differences
+from vbraille.devices.serial.delivery import Delivery, Trips
+from vbraille.devices.serial.drive import Drive
+from vbraille.devices.serial.greeting import info_of, misfit, particulars_of
+from vbraille.devices.serial.notices import Notices
+from vbraille.devices.serial.place import DeviceTime, Place
+from vbraille.devices.serial.transitions import RESTING, TALKING, TRANSITIONS, Cause, Stage
+from vbraille.devices.wire.codec import Decoder, OtherVersion, unwrap
+from vbraille.devices.wire.messages import (
+    ANSWER_MS,
+    LOST_MS,
+    NOTICES,
+    SILENCE_MS,
+    Error,
+    Info,
+    State,
+    Watchdog,
+)
+from vbraille.pose import Pose
+
+if TYPE_CHECKING:
+    from vbraille.devices.base import Particulars
+    from vbraille.devices.events import Event
+    from vbraille.devices.wire.codec import Heard
+    from vbraille.display import Display
+
+_log = logging.getLogger(__name__)
+_NS_PER_MS: Final = 1_000_000
+_SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
+_LOST_NS: Final = LOST_MS * _NS_PER_MS
+_BUTTONS: Final = 8
+
+
+@dataclass(slots=True)
+class States:
+    """What is known of the STATEs that came.
+
+    Parameters
+    ----------
+    heard_ns
+        When the last one came.
+    sequence
+        Sequence of the last STATE; None before the first of a conversation.
+    missed
+        How many never came.
+    buttons
+        The buttons as the last one told them, a bit each; None before the first of all.
+    """
+
+    heard_ns: int
+    sequence: int | None = None
+    missed: int = 0
+    buttons: int | None = None
+
+
+@dataclass(slots=True)
+class Frames:
+    """What is known of the FRAMEs that were sent.
+
+    Parameters
+    ----------
+    felt_ns
+        When one last had anything to feel.
+    sequence
+        Sequence of the last FRAME.
+    sent_ns
+        When the last one was sent, if it is not acknowledged yet.
+    acknowledged_ns
+        How long after the last one was wanted the device said that it has it; None if it did not.
+    """
+
+    felt_ns: int
+    sequence: int = 0
+    sent_ns: int | None = None
+    acknowledged_ns: int | None = None
+
+
+class Listening:
+    """The half of a conversation that hears: a base of `Conversation`, and nothing by itself.
+
+    Parameters
+    ----------
+    now_ns
+        Time of a clock that does not go back.
+    rate_hz
+        FRAMEs a second that are going to be wanted; None is as many as the device is made for.
+
+    Attributes
+    ----------
+    stage : Stage
+        Where it is.
+    display, info, particulars : Display, Info, Particulars, or None
+        What the device said of itself first, and what it says in this conversation; None before.
+    failure : Fault, Stranger or None
+        Why the device cannot go on, or why none was found at the start.
+    heard, speaks : bool
+        Whether any bytes have come, and any message of a device's, since the start.
+    drop_unsent : bool
+        Whether what lies about unsent must be dropped now; whoever drops it sets this to False.
+    taking : bool
+        Whether FRAMEs hold the actuators, or would if there were anything to feel. A device that
+        is away is silent, which says enough.
+    rested : int
+        How often the actuators went to rest otherwise than by FRAMEs, so that all must fade in.
+    reconnections : int
+        How often the device was greeted again.
+    decoder, states, frames, trips, delivery, place, time, drive
+        What is known of the bytes that come, the STATEs, the FRAMEs, the watchdog, rest, the
+        carriage, the device's clock, and the actuators. `drive` is there once `info` is.
+    """
+
+    drive: Drive
+    place: Place
+    delivery: Delivery
+
+    def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
+        self.stage = Stage.GREETING
+        self.display: Display | None = None
+        self.info: Info | None = None
+        self.particulars: Particulars | None = None
+        self.failure: Fault | Stranger | None = None
+        self.heard = self.speaks = False
+        self.drop_unsent = False
+        self.taking = True
+        self.rested = self.reconnections = 0
+        self.decoder = Decoder()
+        self.states = States(now_ns)
+        self.frames = Frames(now_ns)
+        self.trips = Trips()
+        self.time = DeviceTime()
+        self._rate_hz = rate_hz
+        self._notices = Notices()
+        self._placing = Placing.DONE
+        self._away = False  # since an event said so, until another says that it is back
+        self._begun_ns = self._now_ns = self._hello_ns = now_ns
+
+    def hear(self, chunk: bytes, now_ns: int) -> Pose | None:
+        """Take what has come by now, perhaps nothing; the newest place that it tells."""
+        self._now_ns = now_ns
+        pose = None
+        if chunk:
+            self.heard = True
+            for message in self.decoder.feed(chunk):
+                if isinstance(message, State):
+                    self.speaks = True
+                    if self.stage in TALKING:
+                        pose = self._take_state(message, now_ns)
+                else:
+                    self._take(message, now_ns)
+            if self.decoder.bad_info:
+                self._turn_away(Stranger(self._name, fault=self.decoder.bad_info), now_ns)
+                self.decoder.bad_info = ""
+        self._pass(now_ns)
+        return pose
+
+    def _go(self, cause: Cause) -> bool:
+        """Go where a cause leads; whether it leads anywhere from here."""
+        stage = TRANSITIONS[self.stage].get(cause)
+        if stage is None:
+            return False
+        if stage is not self.stage:
+            _log.debug("%s to %s: %s", self.stage.name, stage.name, cause.value)
+            self.stage = stage
+            self.taking = stage not in RESTING
+        return True
+
+    @property
+    def _name(self) -> str:
+        """The name of the device that reading began on; empty before."""
+        return self.display.name if self.display is not None else ""
+
+    def _take(self, message: Heard, now_ns: int) -> None:
+        """Take what is no STATE."""
+        self.speaks = self.speaks or isinstance(message, Watchdog | Error)
+        if isinstance(message, Info):
+            if self.stage is Stage.ASKED:
+                self._take_info(message, now_ns)
+        elif isinstance(message, OtherVersion):
+            self._turn_away(Stranger(self._name, version=message.version), now_ns)
+        elif self.stage not in TALKING:
+            pass  # of an earlier conversation
+        elif isinstance(message, Watchdog):
+            if self.trips.take_report(message, now_ns) and self.stage is Stage.LIVE:
+                self._fall(Cause.FELL, now_ns)
+        elif isinstance(message, Error):
+            if message.code < NOTICES:
+                self._fail(Fault(self._name, message.code, message.text), now_ns)
+            else:
+                self._tell(Notice(message.code, message.text), now_ns)
+
+    def _take_state(self, state: State, now_ns: int) -> Pose | None:
+        states = self.states
+        states.heard_ns = now_ns
+        if self.stage is Stage.SILENT:
+            self._go(Cause.HEARD)
+            self.rested += 1
+        if self._away:
+            self._away = False
+            self._tell(Back(), now_ns)
+        if state.faulty:  # its ERROR, which says why, was lost
+            self._fail(Fault(self._name), now_ns)
+            return None
+        if states.sequence is not None:
+            gap = unwrap(state.sequence, states.sequence, 16) - states.sequence - 1
+            states.missed += max(gap, 0)
+        states.sequence = state.sequence
+        if state.buttons != states.buttons:
+            self._mind_buttons(state.buttons, now_ns)
+        self.trips.take_state(tripped=state.tripped)
+        if self.stage is not Stage.LIVE:
+            cause = self.delivery.judge(state, now_ns)
+            if cause is Cause.FAULT:
+                self._fail(Fault(self._name, stuck=True), now_ns)
+                return None
+            self._go(cause)
+        elif state.resting:
+            self._fall(Cause.FELL, now_ns)
+        frames = self.frames
+        if frames.sent_ns is not None and state.frame_sequence == frames.sequence:
+            frames.acknowledged_ns = now_ns - frames.sent_ns
+            frames.sent_ns = None
+        x_mm = self.place.x_mm(state)
+        if self.place.placing is not self._placing:
+            self._mind_placing(now_ns)
+        time_ns = self.time.ns(state.time_us, now_ns)
+        return None if x_mm is None else Pose(time_ns, x_mm)
+
+    def _mind_buttons(self, buttons: int, now_ns: int) -> None:
+        """Tell which buttons are otherwise than before; none by the first STATE of all."""
+        before, self.states.buttons = self.states.buttons, buttons
+        changed = 0 if before is None else before ^ buttons
+        for bit in range(_BUTTONS):
+            if changed >> bit & 1:
+                self._tell(Button(bit + 1, bool(buttons >> bit & 1)), now_ns)
+
+    def _mind_placing(self, now_ns: int) -> None:
+        if self.place.placing is not self._placing:
+            self._placing = self.place.placing
+            self._tell(Placed(self._placing), now_ns)
+
+    def _take_info(self, info: Info, now_ns: int) -> None:
+        display, fault = info_of(info), misfit(info)
+        others = () if self.display is None else differences(self.display, display)
+        if others:
+            stranger = Stranger(self._name, name=display.name, differences=others)
+            self._turn_away(stranger, now_ns)
+        elif fault:
+            self._turn_away(Stranger(self._name, fault=fault), now_ns)
+        elif self._go(Cause.ANSWERED):
+            self._begin(info, display, now_ns)
+
+    def _begin(self, info: Info, display: Display, now_ns: int) -> None:
+        """Begin to talk with a device, which is at rest."""
+        before, self.info = self.info, info
+        if before is not None:
+            changed = changes(before, info)
+            if changed is not None:
+                self._tell(changed, now_ns)
+            self.reconnections += 1
+            self.rested += 1
+        self.display = self.display or display
+        self.particulars = particulars_of(info)
+        self.states.heard_ns, self.states.sequence = now_ns, None
+        self.frames.felt_ns = now_ns
+        self.trips.restart()
+        self.time.restart()
+        self.delivery = Delivery(info.rate_hz)
+        self.place = Place(info)
+        if before is None:
+            self._placing = self.place.placing
+        self._mind_placing(now_ns)
+        self.drive = Drive(info, now_ns, self._rate_hz or float(self.display.rate_hz))
+        self._rest_frame = np.zeros((info.rows, info.columns))
+
+    def _turn_away(self, stranger: Stranger, now_ns: int) -> None:
+        """Say nothing more to what is there now, which is not what reading began on."""
+        if not self._go(Cause.TURNED_AWAY):
+            return
+        self._away = True
+        self.failure = stranger
+        if self.display is not None:
+            self._tell(stranger, now_ns)
+
+    def _fail(self, fault: Fault, now_ns: int) -> None:
+        if self._go(Cause.FAULT):
+            self.failure = fault
+            self.delivery.stop(tell=False)
+            self._tell(fault, now_ns)
+
+    def _pass(self, now_ns: int) -> None:
+        """Mind how long nothing has come."""
+        if self.display is None:
+            if now_ns - self._begun_ns >= ANSWER_MS * _NS_PER_MS:
+                self._go(Cause.NO_ANSWER)
+            return
+        silent_ns = now_ns - self.states.heard_ns
+        if silent_ns < _SILENCE_NS:
+            return
+        if self._go(Cause.SILENCE):
+            self._stop(tell=True)
+            self._tell_away(Silent(silent_ns / _NS_PER_MS), now_ns)
+        if silent_ns >= _LOST_NS and self._go(Cause.LOST):
+            self._hello_ns = now_ns
+
+    def _fall(self, cause: Cause, now_ns: int) -> None:
+        """The device went to rest, or may have."""
+        self._go(cause)
+        self._stop(tell=False)
+        self.frames.felt_ns = now_ns
+        self.rested += 1
+        self._tell(WatchdogTripped(self.trips.count), now_ns)
+
+    def _stop(self, *, tell: bool) -> None:
+        """Have no FRAME sent until the device is at rest, and nothing that lies about unsent."""
+        self.delivery.stop(tell=tell)
+        self.drop_unsent = True
+
+    def _tell(self, event: Event, now_ns: int) -> None:
+        self._notices.add(event, now_ns)
+
+    def _tell_away(self, event: Event, now_ns: int) -> None:
+        if not self._away:
+            self._tell(event, now_ns)
+        self._away = True

@@ -1,0 +1,213 @@
+"""Serial ports: which there are, how one is opened, and how it is found again.
+
+PATH[?baud=N]          /dev/ttyACM0, or a link to it
+SCHEME://…[?baud=N]    pyserial's: socket://, spy://, loop://, hwgrep://, …
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import termios
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import serial
+from serial.tools import list_ports
+
+from vbraille.devices.serial.urls import check_url, explain_url
+from vbraille.errors import DeviceError, InputError, VbrailleError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from serial.tools.list_ports_common import ListPortInfo
+
+    ListPorts = Callable[[], Iterable[ListPortInfo]]
+
+BAUD: Final = 921_600
+_LOWEST_BAUD, _HIGHEST_BAUD = 300, 12_000_000
+# What a port that may be opened by its group only usually belongs to.
+_GROUP = "dialout"
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """Where a port is.
+
+    Parameters
+    ----------
+    url
+        A path, or a URL of pyserial's.
+    baud
+        Symbols a second; None if it was not given.
+    """
+
+    url: str
+    baud: int | None = None
+
+    @property
+    def is_path(self) -> bool:
+        """Whether it is a path, and no URL."""
+        return "://" not in self.url
+
+    @property
+    def limits(self) -> bool:
+        """Whether the baud rate says how much the line carries.
+
+        It does on a UART. It has no meaning with USB CDC, sockets and
+        pseudo-terminals, unless somebody gives one.
+        """
+        if self.baud is not None:
+            return True
+        name = os.path.realpath(self.url)
+        return self.is_path and not name.startswith(("/dev/pts/", "/dev/ttyACM"))
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """By what a device on USB is known, wherever it is plugged in.
+
+    Parameters
+    ----------
+    vendor, product
+        Numbers of its make (VID and PID).
+    serial_number
+        Its own.
+    interface
+        Which of several ports of one device; empty if it has one.
+    """
+
+    vendor: int
+    product: int
+    serial_number: str
+    interface: str
+
+
+def parse_address(text: str) -> Address:
+    """Take our own options off an address.
+
+    Raises
+    ------
+    InputError
+        If there is no port in it, or an option is unknown or out of range.
+    """
+    url, _, query = text.partition("?")
+    if not url:
+        raise InputError(f"serial: needs a port, as in serial:/dev/ttyACM0; {_there_is()}")
+    baud, others = None, []
+    for option in filter(None, query.split("&")):
+        name, _, value = option.partition("=")
+        if name == "baud":
+            baud = _parse_baud(value)
+        elif "://" in url:
+            others.append(option)  # pyserial's
+        else:
+            raise InputError(f"there is no option {name!r} of a serial port; there is baud")
+    return Address(url + ("?" + "&".join(others) if others else ""), baud)
+
+
+def _parse_baud(text: str) -> int:
+    if text.isdecimal() and _LOWEST_BAUD <= int(text) <= _HIGHEST_BAUD:
+        return int(text)
+    raise InputError(
+        f"baud rate is {text!r}; it must be a whole number from {_LOWEST_BAUD} to {_HIGHEST_BAUD}"
+    )
+
+
+def open_serial_port(address: Address, url: str | None = None) -> serial.SerialBase:
+    """Open a port, for one process alone where the system can see to that.
+
+    Parameters
+    ----------
+    address
+        How.
+    url
+        Where it is now, if elsewhere.
+
+    Raises
+    ------
+    InputError
+        If there is no port.
+    DeviceError
+        If it cannot be opened.
+    """
+    url = url or address.url
+    if not address.is_path:
+        check_url(url)
+    try:
+        if address.is_path and not stat.S_ISCHR(Path(url).stat().st_mode):
+            raise _no_port(url)
+        # An inter-byte timeout of 0 makes pyserial set VMIN to 1: without it a read gives nothing
+        # when there is nothing as well as when the line was hung up.
+        port = serial.serial_for_url(
+            url, address.baud or BAUD, timeout=0, inter_byte_timeout=0.0, exclusive=True
+        )
+    except (OSError, termios.error, ValueError, KeyError) as fault:
+        raise explain(fault, url) from fault
+    try:
+        if isinstance(port, serial.Serial):
+            port.set_low_latency_mode(True)
+    except (OSError, ValueError, NotImplementedError):
+        pass  # a driver without it, or a pseudo-terminal
+    except BaseException:
+        port.close()
+        raise
+    return port
+
+
+def explain(fault: Exception, url: str) -> VbrailleError:
+    """Say in a sentence why a port could not be opened, and what to do."""
+    number = getattr(fault, "errno", None)
+    if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV, errno.ENOTDIR):
+        return InputError(f"there is no port {url}; {_there_is()}")
+    if number in (errno.EACCES, errno.EPERM):
+        return DeviceError(
+            f"you may not open {url}; add yourself to the group {_GROUP} "
+            f"(sudo usermod -aG {_GROUP} $USER) and log in again"
+        )
+    if number in (errno.EBUSY, errno.EAGAIN):
+        return DeviceError(f"{url} is busy; end the other program that uses it")
+    return explain_url(fault, url) if "://" in url else _no_port(url)
+
+
+def _no_port(url: str) -> InputError:
+    return InputError(f"{url} is no serial port; {_there_is()}")
+
+
+def _there_is() -> str:
+    names = sorted(port.device for port in list_ports.comports())
+    if not names:
+        return "plug the device in, for this computer has no serial port now"
+    return f"there is {', '.join(names)}"
+
+
+def identify(address: Address, list_ports: ListPorts = list_ports.comports) -> Identity | None:
+    """Identity of what is at an address; None for all but paths to USB devices with a number."""
+    if not address.is_path:
+        return None
+    path = os.path.realpath(address.url)
+    return next((_identity(port) for port in list_ports() if port.device == path), None)
+
+
+def find_again(
+    address: Address, identity: Identity | None, list_ports: ListPorts = list_ports.comports
+) -> str | None:
+    """Where to open a device that went away; None while it is away.
+
+    A device with an identity is looked for by it alone: another may be at its
+    old path. One without is expected where it was, or where the link points now.
+    """
+    if identity is None:
+        return address.url
+    return next((port.device for port in list_ports() if _identity(port) == identity), None)
+
+
+def _identity(port: ListPortInfo) -> Identity | None:
+    if port.vid is None or port.pid is None or not port.serial_number:
+        return None
+    # A device with several ports has one number; "1-4.2:1.3" is its port 1.3, wherever plugged in.
+    interface = (port.location or "").partition(":")[2]
+    return Identity(port.vid, port.pid, port.serial_number, interface)

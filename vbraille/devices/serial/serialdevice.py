@@ -1,0 +1,199 @@
+"""A device on a serial line, by docs/wire-protocol.md: a port, a clock, and a `Conversation`."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.base import Device, Lent
+from vbraille.devices.events import Fault
+from vbraille.devices.saying import say
+from vbraille.devices.serial.lending import Lending
+from vbraille.devices.serial.serialport import DRAIN_MS
+from vbraille.devices.serial.transitions import Stage
+from vbraille.devices.wire.codec import DELIMITER
+from vbraille.errors import DeviceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.devices.events import Event
+    from vbraille.devices.serial.conversation import Conversation
+    from vbraille.devices.serial.serialport import SerialPort
+    from vbraille.display import Display
+    from vbraille.pose import Pose
+
+# Reads that empty a line: what a stopped host has not read is some kB at most.
+_MOST_READS: Final = 64
+
+
+def send_due(port: SerialPort, conversation: Conversation) -> int:
+    """Send what is due, as far as there is room; how many FRAMEs had none."""
+    if conversation.drop_unsent:
+        port.drop_unsent()
+        conversation.drop_unsent = False
+    while (message := conversation.due()) is not None:
+        if not port.write(message):
+            return int(conversation.refused() and not port.gone)
+        conversation.sent()
+    return 0
+
+
+class SerialDevice(Device):
+    """A device that has answered HELLO; `openserial` begins the conversation.
+
+    Parameters
+    ----------
+    port
+        Its line.
+    conversation
+        With the device, which has answered.
+    now_ns, pause
+        The host's clock, and how to wait for so many seconds.
+    """
+
+    acknowledges = True
+
+    def __init__(
+        self,
+        port: SerialPort,
+        conversation: Conversation,
+        now_ns: Callable[[], int] = time.monotonic_ns,
+        pause: Callable[[float], None] = time.sleep,
+    ) -> None:
+        assert conversation.display is not None
+        self.port = port
+        self.conversation = conversation
+        self._display = conversation.display
+        self._now_ns = now_ns
+        self._pause = pause
+        self._losses = port.losses
+        self._unsent = 0
+        self._lending = Lending()
+        self._left_over = b""  # came while the conversation was lent
+        self._copy()
+
+    @property
+    def display(self) -> Display:
+        """What the device said of itself first."""
+        return self._display
+
+    def rest(self) -> None:
+        """Tell the device to rest; it ramps there, where a FRAME of rest would be a jump."""
+        self.conversation.rest(self._now_ns())
+        self._send_due()
+
+    def set_zero(self) -> None:
+        """Take it that the carriage is at the left stop now: the reader says so."""
+        self.conversation.set_zero(self._now_ns())
+        self._copy()
+
+    def take_events(self) -> Sequence[Event]:
+        """What there is to tell since the last call, each kind once a second."""
+        return self.conversation.take_events(self._now_ns())
+
+    def counts(self) -> Mapping[str, int]:
+        """What went wrong so far."""
+        conversation = self.conversation
+        return {
+            "frames not sent": self._unsent + self.port.lost,
+            "states missed": conversation.states.missed,
+            "watchdog trips": conversation.trips.count,
+            "watchdog reports not believed": conversation.trips.disbelieved,
+            "reconnections": conversation.reconnections,
+            **{str(kind): number for kind, number in conversation.decoder.dropped.items()},
+        }
+
+    def read(self) -> Pose | None:
+        """Newest sample since the last call, or None; never waits.
+
+        Raises
+        ------
+        DeviceError
+            If the device says that it cannot go on.
+        """
+        now_ns = self._now_ns()
+        port, conversation = self.port, self.conversation
+        stalled = conversation.mind_stall(now_ns)
+        chunk, self._left_over = self._left_over + port.read(), b""
+        for _ in range(_MOST_READS * stalled):
+            chunk += (more := port.read())
+            if not more:
+                break
+        if port.losses != self._losses:
+            self._losses = port.losses
+            conversation.lose(now_ns)
+        if port.gone:
+            self._copy()
+            return None
+        if conversation.stage is Stage.GONE:
+            conversation.find(now_ns)
+        pose = conversation.hear(chunk, now_ns)
+        self._send_due()
+        if conversation.stage is Stage.FAILED and isinstance(conversation.failure, Fault):
+            raise DeviceError(say(conversation.failure))
+        return pose
+
+    def lend(self) -> Lent | None:
+        """What the engine needs to do steady ticks by itself; None if the line is none for that."""
+        descriptor = self.port.bare_descriptor
+        if descriptor is None or self._left_over:
+            return None
+        begun = self._lending.lend(self.conversation)
+        if begun is None:
+            return None
+        lending = self._lending
+        return Lent(
+            descriptor,
+            begun,
+            lending.received,
+            lending.work,
+            lending.out,
+            lending.talk,
+            lending.actuators,
+        )
+
+    def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
+        """Go on with what was lent: `read` takes first what has come and was not taken."""
+        self._lending.give_back(self.conversation)
+        left_over = lent.received[:received].tobytes()
+        if DELIMITER in left_over:
+            self._left_over = left_over
+        else:
+            self.conversation.decoder.feed(left_over)
+        self._unsent += unsent
+        if torn:
+            self.port.keep(torn)
+        self._copy()
+
+    def _send(self, frame: NDArray[np.float64]) -> None:
+        self.conversation.show(frame, self._now_ns())
+        self._send_due()
+
+    def _send_due(self) -> None:
+        self._unsent += send_due(self.port, self.conversation)
+        self._copy()
+
+    def _copy(self) -> None:
+        """Have the values that `Device` promises be those of the conversation."""
+        conversation = self.conversation
+        self.rested = conversation.rested
+        self.taking = conversation.taking
+        self.placing = conversation.place.placing
+        self.particulars = conversation.particulars
+        self.watchdog_trips = conversation.trips.count
+        self.acknowledged_ns = conversation.frames.acknowledged_ns
+
+    def _release(self) -> None:
+        try:
+            self.conversation.close(self._now_ns())
+            for _ in range(DRAIN_MS):
+                self._send_due()
+                if self.conversation.due() is None or self.port.gone:
+                    break
+                self._pause(0.001)
+        finally:
+            self.port.close(self._pause)

@@ -1,0 +1,191 @@
+"""A serial port that is found again after it was gone."""
+
+from __future__ import annotations
+
+import logging
+import os
+import termios
+import threading
+import time
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final
+
+from serial.tools import list_ports
+
+from vbraille.devices.serial.ports import find_again, identify
+from vbraille.devices.serial.seriallines import open_line
+from vbraille.errors import VbrailleError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.devices.serial.ports import Address, ListPorts
+    from vbraille.devices.serial.seriallines import SerialLine
+
+# How often a port that is gone is looked for.
+LOOK_S: Final = 0.1
+# How long what was written last may take to go out before the port is closed.
+DRAIN_MS: Final = 50
+_JOIN_S = 1.0
+_NICENESS = 10
+_log = logging.getLogger(__name__)
+
+
+class SerialPort:
+    """A port that is looked for when it is gone, and goes on when it is back.
+
+    Parameters
+    ----------
+    address
+        Where it is.
+    list_ports
+        What is plugged in.
+    look_s
+        How often a port that is gone is looked for.
+
+    Attributes
+    ----------
+    gone : bool
+        Whether it is; seen by `read` and `write`, ended by `read`.
+    losses : int
+        How often it went.
+    """
+
+    def __init__(
+        self,
+        address: Address,
+        list_ports: ListPorts = list_ports.comports,
+        look_s: float = LOOK_S,
+    ) -> None:
+        self.address = address
+        self.gone = False
+        self.losses = 0
+        self._list_ports = list_ports
+        self._look_s = look_s
+        self._lost_before = 0
+        self._finder: _Finder | None = None
+        self._identity = identify(address, list_ports)
+        self._line = open_line(address)
+
+    @property
+    def lost(self) -> int:
+        """Frames that were taken, and then did not go out."""
+        return self._lost_before + self._line.lost
+
+    def read(self) -> bytes:
+        """What has come; nothing while the port is gone. Never waits."""
+        if self._finder is not None:
+            line = self._finder.found
+            if line is None:
+                return b""
+            self._lost_before += self._line.lost
+            _log.info("%s is back", self.address.url)
+            self._line = line
+            self._finder = None
+            self.gone = False
+        try:
+            return self._line.read()
+        except OSError:
+            self._lose()
+            return b""
+
+    def write(self, frame: bytes) -> bool:
+        """Send a frame whole, or not at all; whether it was taken. Never waits."""
+        if self.gone:
+            return False
+        try:
+            return self._line.write(frame)
+        except OSError:
+            self._lose()
+            return False
+
+    @property
+    def bare_descriptor(self) -> int | None:
+        """Descriptor to read and write by, with nothing left of an earlier frame; else None."""
+        return None if self._finder is not None else self._line.bare_descriptor
+
+    def keep(self, rest: bytes) -> None:
+        """Send the rest of a frame, of which a part went out by the descriptor, before the next."""
+        if not self.gone:
+            self._line.keep(rest)
+
+    def drop_unsent(self) -> None:
+        """Take back what has not gone out yet, as far as the system lets us."""
+        if not self.gone:
+            self._line.drop_unsent()
+
+    def close(self, pause: Callable[[float], None] = time.sleep) -> None:
+        """Let the port go once all is out, or time is up; whoever looks for it stops."""
+        if self._finder is not None:
+            self._finder.stop()
+            return
+        try:
+            for _ in range(DRAIN_MS):
+                if self._line.drained():
+                    break
+                pause(0.001)
+        except (OSError, termios.error):
+            pass  # gone
+        finally:
+            self._line.close()
+
+    def _lose(self) -> None:
+        self.gone = True
+        self.losses += 1
+        _log.info("%s is gone, and looked for", self.address.url)
+        self._finder = _Finder(self._line, self._find, self._look_s)
+        self._finder.start()
+
+    def _find(self) -> SerialLine | None:
+        url = find_again(self.address, self._identity, self._list_ports)
+        return None if url is None else open_line(self.address, url)
+
+
+class _Finder(threading.Thread):
+    """Close a line that is gone, and look for it till it is back; what is slow is done here."""
+
+    def __init__(
+        self, gone: SerialLine, find: Callable[[], SerialLine | None], look_s: float
+    ) -> None:
+        super().__init__(name="vbraille port finder", daemon=True)
+        self.found: SerialLine | None = None
+        self._gone = gone
+        self._find = find
+        self._look_s = look_s
+        self._stopped = threading.Event()
+        self._handing = threading.Lock()
+
+    def run(self) -> None:
+        """Look until it is found or not wanted any more."""
+        _step_back()
+        self._gone.close()
+        while not self._stopped.wait(self._look_s):
+            with suppress(VbrailleError, OSError):
+                line = self._find()
+                if line is not None:
+                    self._hand_over(line)
+                    return
+
+    def stop(self) -> None:
+        """Look no more; what was found is closed."""
+        with self._handing:
+            self._stopped.set()
+            if self.found is not None:
+                self.found.close()
+        # It may be busy with connecting, for seconds; it then closes what it gets.
+        self.join(_JOIN_S)
+
+    def _hand_over(self, line: SerialLine) -> None:
+        with self._handing:
+            if self._stopped.is_set():
+                line.close()
+            else:
+                self.found = line
+
+
+def _step_back() -> None:
+    """Let this thread run only when nobody else wants to; a thread begins as its parent is."""
+    with suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    with suppress(OSError, AttributeError):
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

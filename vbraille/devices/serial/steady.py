@@ -1,0 +1,283 @@
+"""A serial conversation as long as nothing happens in it, compiled: STATEs in, FRAMEs out.
+
+It is for a conversation that is live and whose FRAMEs are taken; `CONVERSATION` has its numbers.
+Whatever is anything but the next STATE or the next FRAME of such a conversation - bytes that
+were damaged, another message, silence, a rest, a fault, a stall, a deflection that is none - is
+answered with `SOMETHING_ELSE`. Then nothing of the conversation was changed, and
+`vbraille.devices.serial.serialdevice` does with the same bytes, or the same frame, what there
+is to do.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from vbraille.caching import keep_compiled
+from vbraille.devices.wire import packing
+from vbraille.devices.wire.fields import fields_of, places_of
+from vbraille.devices.wire.messages import (
+    FAULTY,
+    MESSAGES,
+    PLACED,
+    RESTING,
+    SILENCE_MS,
+    STALL_MS,
+    TRIPPED,
+    Frame,
+    State,
+)
+from vbraille.devices.wire.wirekernels import delimiter, enframe, number, put_number, unframe
+
+SOMETHING_ELSE = -1
+# Stands for a time that is not there.
+NEVER = -1
+# Room for the longest frame that is looked at here: a STATE to which a later version has appended.
+WORK_BYTES = 256
+
+CONVERSATION = np.dtype(
+    [
+        # Of the STATEs.
+        ("heard_ns", "<i8"),  # when the last came, by the host's clock
+        ("state_sequence", "<i8"),  # of the last
+        ("missed", "<i8"),  # how many are missing so far
+        ("count", "<i8"),  # of the encoder, without its wraps
+        ("count_bits", "<i8"),
+        ("zero", "<i8"),  # count at the left stop
+        ("home_mm", "<f8"),  # where the array's centre is then
+        ("mm_per_count", "<f8"),
+        ("buttons", "<i8"),  # that are pressed, a bit each
+        ("must_be_placed", "<i8"),  # 1 if the encoder may lose its place and say so
+        ("device_us", "<i8"),  # the device's clock, without its wraps
+        ("offset_ns", "<i8"),  # what is added to it, for it goes on over a restart
+        ("device_ns", "<i8"),  # when the last sample was taken, by that clock
+        ("x_mm", "<f8"),  # where the array's centre was then
+        # Of the FRAMEs.
+        ("sequence", "<i8"),  # of the last
+        ("sent_ns", "<i8"),  # when it went out; NEVER if none has since or it is acknowledged
+        ("acknowledged_ns", "<i8"),  # how long it took until it was; NEVER as long as it is not
+        ("owed_ns", "<i8"),  # when the last went out, for the watchdog; NEVER if none has
+        ("felt_ns", "<i8"),  # when there was last anything to feel
+        ("idle_ns", "<i8"),  # how long without that until FRAMEs are no use
+        ("moved_ns", "<i8"),  # since when the actuators are on their way to the last
+        ("slew_per_ns", "<f8"),  # fastest of an actuator, in swings; infinite for no limit
+        ("period_ns", "<f8"),  # of the host's FRAMEs
+        ("top_level", "<i8"),
+        ("bits", "<i8"),  # of a level
+    ],
+    align=True,
+)
+
+
+class Actuators(NamedTuple):
+    """What FRAMEs are made with, and the last of them.
+
+    Parameters
+    ----------
+    last, wanted : float64[rows, columns]
+        Deflections of the FRAME that went out last, and of the one that was made last.
+    swing : float64[rows, columns]
+        Levels of a full swing, before it is inverted.
+    rest : int64[rows, columns]
+        Level at rest: 0, or the highest.
+    body : uint8[bytes]
+        A FRAME's type, sequence and levels, and room for its CRC.
+    packed : uint8[bytes]
+        The levels, in it.
+    """
+
+    last: NDArray[np.float64]
+    wanted: NDArray[np.float64]
+    swing: NDArray[np.float64]
+    rest: NDArray[np.int64]
+    body: NDArray[np.uint8]
+    packed: NDArray[np.uint8]
+
+
+_CODES = {message: code for code, message in MESSAGES.items()}
+_STATE = _CODES[State]
+_NAMES = [name for name, _ in fields_of(State)]
+_PLACES = places_of(State)
+# Place of each field, as `number` takes it, and how far the last goes.
+_SEQUENCE, _TIME_US, _COUNT, _FRAME_SEQUENCE, _FLAGS, _BUTTONS = (
+    _PLACES[_NAMES.index(name)]
+    for name in ("sequence", "time_us", "count", "frame_sequence", "flags", "buttons")
+)
+_STATE_BYTES = _PLACES[-1][0] + _PLACES[-1][1]
+_UNSTEADY = RESTING | FAULTY | TRIPPED
+_SEQUENCE_BITS, _TIME_BITS = 8 * _SEQUENCE[1], 8 * _TIME_US[1]
+_FRAME_AT, _FRAME_WIDTH, _ = places_of(Frame)[0]
+_FRAME_MASK = (1 << (8 * _FRAME_WIDTH)) - 1
+_CRC_BYTES = 4
+_NS_PER_MS = 1_000_000
+_STALL_NS = STALL_MS * _NS_PER_MS
+_SILENCE_NS = SILENCE_MS * _NS_PER_MS
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def _unwrap(count, last, bits):
+    """The continuous count of a counter that wraps: `unwrap` of the codec, compiled."""
+    half = 1 << (bits - 1)
+    return last + ((count - last + half) & (2 * half - 1)) - half
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def stalled(talk, now_ns):
+    """Whether the last FRAME is so old that the device may have gone to rest."""
+    return talk.owed_ns != NEVER and now_ns - talk.owed_ns >= _STALL_NS
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def silent(talk, now_ns):
+    """Whether the last STATE is so old that the device must be told to rest."""
+    return now_ns - talk.heard_ns >= _SILENCE_NS
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def take(received, size, now_ns, talk, work):
+    """Take STATEs.
+
+    Parameters
+    ----------
+    received : uint8[bytes]
+        What was received and not consumed so far, at its beginning.
+    size : int64
+        Bytes of it.
+    now_ns : int64
+        When, by the host's clock.
+    talk : record of CONVERSATION
+        The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
+    work : uint8[WORK_BYTES]
+        Room to work in.
+
+    Returns
+    -------
+    consumed : int64
+        Bytes that were consumed: all to the last delimiter. The rest is kept and given again, with
+        what comes after it. SOMETHING_ELSE if these bytes, or their absence, are not for here.
+    states : int64
+        How many STATEs were in them. Unless it is 0, ``device_ns`` and ``x_mm`` are a new pose.
+    """
+    if stalled(talk, now_ns):
+        return SOMETHING_ELSE, 0
+    state_sequence, missed = talk.state_sequence, talk.missed
+    count, device_us = talk.count, talk.device_us
+    device_ns = talk.device_ns
+    acknowledged = False
+    states = 0
+    begun = 0
+    while True:
+        end = delimiter(received, begun, size)
+        if end == size:
+            break
+        if end == begun:  # an empty frame, which means nothing
+            begun += 1
+            continue
+        body_bytes = unframe(received, begun, end, work)
+        if body_bytes < _STATE_BYTES or work[0] != _STATE:
+            return SOMETHING_ELSE, 0
+        flags = number(work, *_FLAGS)
+        if flags & _UNSTEADY != 0 or (talk.must_be_placed != 0 and flags & PLACED == 0):
+            return SOMETHING_ELSE, 0
+        if number(work, *_BUTTONS) != talk.buttons:
+            return SOMETHING_ELSE, 0
+        sequence = _unwrap(number(work, *_SEQUENCE), state_sequence, _SEQUENCE_BITS)
+        missed += max(sequence - state_sequence - 1, 0)
+        state_sequence = number(work, *_SEQUENCE)
+        if number(work, *_FRAME_SEQUENCE) == talk.sequence:
+            acknowledged = True
+        count = _unwrap(number(work, *_COUNT), count, talk.count_bits)
+        device_us = _unwrap(number(work, *_TIME_US), device_us, _TIME_BITS)
+        device_ns = max(device_us * 1000 + talk.offset_ns, device_ns)
+        states += 1
+        begun = end + 1
+    if size - begun > WORK_BYTES:
+        return SOMETHING_ELSE, 0
+    if states == 0:
+        if silent(talk, now_ns):
+            return SOMETHING_ELSE, 0
+        return begun, 0
+    talk.heard_ns = now_ns
+    talk.state_sequence, talk.missed = state_sequence, missed
+    talk.count, talk.device_us, talk.device_ns = count, device_us, device_ns
+    talk.x_mm = talk.home_mm + talk.mm_per_count * (count - talk.zero)
+    if acknowledged and talk.sent_ns != NEVER:
+        talk.acknowledged_ns = now_ns - talk.sent_ns
+        talk.sent_ns = NEVER
+    return begun, states
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def make(deflections, now_ns, talk, actuators, out):
+    """Make the next FRAME; `sent` tells that it has gone out.
+
+    Parameters
+    ----------
+    deflections : float64[rows, columns]
+        Where the actuators are to be, in [0, 1].
+    now_ns : int64
+        When, by the host's clock.
+    talk : record of CONVERSATION
+        The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
+    actuators : Actuators
+        Whose ``wanted`` and ``body`` are changed.
+    out : uint8[bytes]
+        Room for the frame, as it goes over the line.
+
+    Returns
+    -------
+    int64
+        Bytes of the frame; SOMETHING_ELSE if none is to be sent.
+    """
+    if stalled(talk, now_ns):
+        return SOMETHING_ELSE
+    rows, columns = deflections.shape
+    for row in range(rows):
+        for column in range(columns):
+            # A number that is none is refused, too.
+            if not 0.0 <= deflections[row, column] <= 1.0:
+                return SOMETHING_ELSE
+    step = math.inf
+    if talk.slew_per_ns < math.inf:
+        step = talk.slew_per_ns * min(now_ns - talk.moved_ns, talk.period_ns)
+    felt = packing.fill(
+        deflections,
+        actuators.last,
+        actuators.wanted,
+        step,
+        actuators.swing,
+        actuators.rest,
+        talk.top_level,
+        talk.bits,
+        actuators.packed,
+    )
+    if not felt and now_ns - talk.felt_ns >= talk.idle_ns:
+        return SOMETHING_ELSE
+    put_number(actuators.body, _FRAME_AT, _FRAME_WIDTH, talk.sequence + 1)
+    size = enframe(actuators.body, actuators.body.size - _CRC_BYTES, out, 0)
+    if size < 0:
+        return SOMETHING_ELSE
+    if felt:
+        talk.felt_ns = now_ns
+    talk.sent_ns = talk.acknowledged_ns = NEVER
+    return size
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def sent(now_ns, talk, actuators):
+    """Take it that the FRAME made last has gone out, or a part of it has that its rest will follow.
+
+    Parameters
+    ----------
+    now_ns : int64
+        When it was made, by the host's clock.
+    talk : record of CONVERSATION
+        The conversation's numbers.
+    actuators : Actuators
+        They go where that FRAME says.
+    """
+    talk.sequence = (talk.sequence + 1) & _FRAME_MASK
+    talk.sent_ns = talk.owed_ns = talk.moved_ns = now_ns
+    actuators.last[:] = actuators.wanted

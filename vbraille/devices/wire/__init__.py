@@ -1,0 +1,1 @@
+"""The serial protocol: a table of messages, and their bytes, without a port and without time."""

@@ -1,0 +1,371 @@
+"""The serial protocol without I/O: messages into bytes, bytes into messages and counted faults.
+
+A body is a message's type and fields; a frame on the line is body and CRC-32,
+byte-stuffed by COBS, and a zero byte. `docs/wire-protocol.md` has it all.
+
+    decoder = Decoder()
+    for message in decoder.feed(port.read()):
+        ...
+    port.write(encode(Hello()))
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Final
+from zlib import crc32
+
+import numpy as np
+from cobs import cobs
+
+from vbraille.devices.wire.fields import Fixed, Message, WrongLengthError, fields_of
+from vbraille.devices.wire.messages import MESSAGES, VERSION, Frame, Info
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+DELIMITER: Final = b"\0"
+# On the line, without the delimiter. The largest INFO, of 16 × 64 actuators, fits.
+MOST_FRAME_BYTES: Final = 4096
+CRC_BYTES: Final = 4
+# What the CRC-32 of anything followed by its own CRC-32, least significant byte first, always is.
+CRC_RESIDUE: Final = 0x2144DF1C
+
+
+class Drop(StrEnum):
+    """Why bytes came to nothing."""
+
+    BAD_COBS = "bad COBS"
+    BAD_CRC = "bad CRC"
+    TOO_LONG = "too long"
+    UNKNOWN_TYPE = "unknown type"
+    WRONG_LENGTH = "wrong length"
+    OUT_OF_RANGE = "out of range"
+
+
+@dataclass(frozen=True, slots=True)
+class OtherVersion:
+    """A device has answered that speaks another version; the rest of its INFO cannot be read."""
+
+    version: int
+
+
+Heard = Message | OtherVersion
+
+
+class LevelPacking:
+    """Encoder and decoder of one message, both made from its fields."""
+
+    def __init__(self, code: int, message: type[Message]) -> None:
+        fields = fields_of(message)
+        self.code = code
+        self.message = message
+        self._names = tuple(name for name, _ in fields)
+        # The fixed fields up to the first other one are packed in one call.
+        head: list[Fixed] = []
+        for _, field in fields:
+            if not isinstance(field, Fixed):
+                break
+            head.append(field)
+        self._struct = struct.Struct("<B" + "".join(field.code for field in head))
+        self._converting = [(i, field) for i, field in enumerate(head) if field.converts]
+        self._head = self._names[: len(head)]
+        self._fixed = fields[: len(head)]
+        self._rest = fields[len(head) :]
+        # A message of numbers that may be all that their bytes can say needs no look at their
+        # ranges, and is made without: STATE comes a thousand times a second.
+        self._any = not self._rest and all(field.any for field in head)
+        self._setters = [getattr(message, name).__set__ for name in self._head]
+
+    def encode(self, message: Message) -> bytes:
+        """Body of a message: its type and its fields.
+
+        Raises
+        ------
+        ValueError
+            If a number is not an integer; its range it has checked itself.
+        """
+        values = [getattr(message, name) for name in self._head]
+        for i, field in self._converting:
+            values[i] = field.raw(values[i])
+        try:
+            body = self.pack_head(*values)
+        except struct.error as fault:
+            raise ValueError(f"{message} cannot be encoded: {fault}") from fault
+        for name, field in self._rest:
+            body += field.pack(getattr(message, name))
+        return body
+
+    def pack_head(self, *values: int) -> bytes:
+        """Type and fixed fields, as they are on the wire."""
+        return self._struct.pack(self.code, *values)
+
+    def decode(self, body: bytes) -> Message:
+        """Message of a body; bytes that a later version appended are left alone.
+
+        Raises
+        ------
+        WrongLengthError
+            If the body ends too soon.
+        ValueError
+            If a field is out of range.
+        """
+        at = self._struct.size
+        if len(body) < at:
+            raise WrongLengthError
+        _, *values = self._struct.unpack_from(body)
+        for i, field in self._converting:
+            values[i] = field.value(values[i])
+        if self._any:
+            message = object.__new__(self.message)
+            for set_field, value in zip(self._setters, values, strict=True):
+                set_field(message, value)
+            return message
+        if self._rest:
+            earlier = dict(zip(self._names, values, strict=False))
+            for name, field in self._fixed:  # by which the others are as long as they are
+                field.check(name, earlier[name], None)
+            for name, field in self._rest:
+                earlier[name], at = field.unpack(body, at, earlier)
+            values = earlier.values()
+        return self.message(*values)
+
+
+_LAYOUTS = {code: LevelPacking(code, message) for code, message in MESSAGES.items()}
+_LAYOUT_OF = {layout.message: layout for layout in _LAYOUTS.values()}
+_INFO = _LAYOUT_OF[Info].code
+_FRAME = _LAYOUT_OF[Frame]
+
+
+def encode(message: Message) -> bytes:
+    """Frame of a message, as it goes over the line, with its delimiter."""
+    return enframe(_LAYOUT_OF[type(message)].encode(message))
+
+
+def frame_head(sequence: int) -> bytes:
+    """Body of a FRAME but for its levels: for those who send a thousand a second."""
+    return _FRAME.pack_head(sequence)
+
+
+def enframe(body: bytes) -> bytes:
+    """Frame of a body: COBS of body and CRC-32, and the delimiter."""
+    return cobs.encode(body + crc32(body).to_bytes(CRC_BYTES, "little")) + DELIMITER
+
+
+def line_bytes(body_bytes: int) -> int:
+    """Most bytes on the line of a body of so many bytes."""
+    stuffed = cobs.max_encoded_length(body_bytes + CRC_BYTES)
+    return stuffed + len(DELIMITER)
+
+
+class Decoder:
+    """Messages out of a stream of bytes in chunks of any size.
+
+    No bytes make it raise or wait; it holds at most `MOST_FRAME_BYTES`
+    between calls, and is in step again with the first whole frame after a
+    delimiter. Both ends use it.
+
+    Parameters
+    ----------
+    levels
+        What a device expects in a FRAME. A FRAME with other levels is dropped;
+        without this, FRAMEs of any length are taken.
+
+    Attributes
+    ----------
+    dropped : dict[Drop, int]
+        Frames that came to nothing, by kind.
+    bad_info : str
+        Why the last INFO that was whole was dropped, with its field and value; empty if none was.
+    """
+
+    def __init__(self, levels: Levels | None = None) -> None:
+        self.dropped = dict.fromkeys(Drop, 0)
+        self.bad_info = ""
+        self._levels = levels
+        self._held = bytearray()
+        self._skipping = False
+
+    def feed(self, chunk: bytes | bytearray | memoryview) -> list[Heard]:
+        """Messages that this chunk completes, oldest first."""
+        *ended, begun = bytes(chunk).split(DELIMITER)
+        events = []
+        for piece in ended:
+            whole = not (self._held or self._skipping) and len(piece) <= MOST_FRAME_BYTES
+            frame = piece if whole else self._end(piece)
+            if not frame:
+                continue
+            event = self._read(frame)
+            if isinstance(event, Drop):
+                self.dropped[event] += 1
+            else:
+                events.append(event)
+        if begun:
+            self._hold(begun)
+        return events
+
+    def take_begun(self) -> bytes | None:
+        """The part of a frame that has come, which is forgotten; None while one is skipped.
+
+        Whoever takes it feeds it again, or what has become of it.
+        """
+        if self._skipping:
+            return None
+        begun = bytes(self._held)
+        self._held.clear()
+        return begun
+
+    def _end(self, piece: bytes) -> bytes:
+        """Whole frame that ends with a piece; nothing if it was too long."""
+        self._hold(piece)
+        frame = b"" if self._skipping else bytes(self._held)
+        self._held.clear()
+        self._skipping = False
+        return frame
+
+    def _hold(self, piece: bytes) -> None:
+        if self._skipping:
+            return
+        if len(self._held) + len(piece) > MOST_FRAME_BYTES:
+            self.dropped[Drop.TOO_LONG] += 1
+            self._skipping = True
+        else:
+            self._held += piece
+
+    def _read(self, frame: bytes) -> Heard | Drop:
+        try:
+            body = cobs.decode(frame)
+        except cobs.DecodeError:
+            return Drop.BAD_COBS
+        if len(body) <= CRC_BYTES or crc32(body) != CRC_RESIDUE:
+            return Drop.BAD_CRC
+        layout = _LAYOUTS.get(body[0])
+        if layout is None:
+            return Drop.UNKNOWN_TYPE
+        body = body[:-CRC_BYTES]
+        if layout.code == _INFO and len(body) > 1 and body[1] != VERSION:
+            return OtherVersion(body[1])
+        try:
+            message = layout.decode(body)
+            if self._levels is not None and isinstance(message, Frame):
+                self._levels.check(message.packed)
+        except WrongLengthError:
+            self._mind_info(layout, "it ends before its last field")
+            return Drop.WRONG_LENGTH
+        except ValueError as fault:
+            self._mind_info(layout, str(fault))
+            return Drop.OUT_OF_RANGE
+        return message
+
+    def _mind_info(self, layout: LevelPacking, fault: str) -> None:
+        if layout.code == _INFO:
+            self.bad_info = fault
+
+
+class Levels:
+    """Levels of a device's actuators, in as few bits as they need, most significant bit first.
+
+    Parameters
+    ----------
+    actuators
+        Rows · columns.
+    top_level
+        Highest level, 1 to 65535: 1023 for 10 bits.
+
+    Attributes
+    ----------
+    bits : int
+        Of one level.
+    packed_bytes : int
+        Of all levels; bits left over in the last byte are 0.
+    """
+
+    def __init__(self, actuators: int, top_level: int) -> None:
+        if actuators < 1:
+            raise ValueError(f"{actuators} actuators are not possible; there must be 1 or more")
+        if not 1 <= top_level <= 0xFFFF:
+            raise ValueError(f"top level is {top_level}; it must be 1 to 65535")
+        self.actuators = actuators
+        self.top_level = top_level
+        self.bits = top_level.bit_length()
+        self.packed_bytes = -(-actuators * self.bits // 8)
+
+    def pack(self, levels: NDArray[np.integer]) -> bytes:
+        """Pack levels for `Frame.packed`.
+
+        Parameters
+        ----------
+        levels : integer[actuators] or integer[rows, columns]
+            Row 0 (far from the reader) first, column 0 (the left one) first in it.
+
+        Raises
+        ------
+        ValueError
+            If they are too many or too few, no integers, or not 0 to `top_level`.
+        """
+        if levels.size != self.actuators or levels.dtype.kind not in "iu":
+            raise ValueError(
+                f"levels are {levels.size} of {levels.dtype}; "
+                f"they must be {self.actuators} integers"
+            )
+        if _highest(levels) > self.top_level or (levels.dtype.kind == "i" and levels.min() < 0):
+            raise ValueError(
+                f"levels are {levels.min()} to {levels.max()}; they must be 0 to {self.top_level}"
+            )
+        words = levels.astype(">u2").reshape(-1).view(np.uint8)
+        bits = np.unpackbits(words).reshape(-1, 16)[:, 16 - self.bits :]
+        # packbits takes twice as long over an array with gaps as a copy and packbits without.
+        return np.packbits(bits.reshape(-1)).tobytes()
+
+    def unpack(self, packed: bytes) -> NDArray[np.uint16]:
+        """Levels as they were packed; uint16[actuators].
+
+        Raises
+        ------
+        WrongLengthError
+            If they are too many or too few.
+        ValueError
+            If a level is above `top_level`.
+        """
+        if len(packed) != self.packed_bytes:
+            raise WrongLengthError(f"levels are {len(packed)} bytes, not {self.packed_bytes}")
+        bits = np.unpackbits(np.frombuffer(packed, np.uint8), count=self.actuators * self.bits)
+        words = np.zeros((self.actuators, 16), np.uint8)
+        words[:, 16 - self.bits :] = bits.reshape(self.actuators, self.bits)
+        levels = np.packbits(words.reshape(-1)).view(">u2").astype(np.uint16)
+        if _highest(levels) > self.top_level:
+            raise ValueError(f"a level is {levels.max()}; it must be 0 to {self.top_level}")
+        return levels
+
+    def check(self, packed: bytes) -> None:
+        """Raise what `unpack` raises, without unpacking where every level is a possible one."""
+        if len(packed) != self.packed_bytes or self.top_level != (1 << self.bits) - 1:
+            self.unpack(packed)
+
+
+def _highest(levels: NDArray[np.integer]) -> int:
+    # As levels.max(), in half its time.
+    return np.maximum.reduce(levels, axis=None)
+
+
+def unwrap(count: int, last: int, bits: int) -> int:
+    """Continuous count of a counter that wraps.
+
+    Of all numbers that the counter would show as `count`, the one nearest to
+    `last`; of two as near, the lower. It serves encoder counts, the device's
+    time (32 bits) and sequences (16 bits) alike.
+
+    Parameters
+    ----------
+    count
+        What the counter shows; bits above its width are ignored.
+    last
+        Continuous count at the reading before, any integer. The counter must have
+        moved by less than half its range since.
+    bits
+        Width of the counter, at least 1.
+    """
+    half = 1 << (bits - 1)
+    return last + ((count - last + half) & (2 * half - 1)) - half

@@ -1,0 +1,56 @@
+"""The compiled inner loop of what goes to the actuators, and nothing else.
+
+It fills what it is given and allocates nothing. `vbraille.devices.wire.codec.Levels`
+packs the same in numpy.
+"""
+
+import numpy as np
+from numba import njit
+
+from vbraille.caching import keep_compiled
+
+
+@njit(cache=keep_compiled(), error_model="numpy")
+def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
+    """Fill a FRAME's packed levels; whether there is anything to feel in it.
+
+    Parameters
+    ----------
+    deflections, last, wanted : float64[rows, columns]
+        Where the actuators are to be; where the FRAME before left them; where this
+        one leaves them, to fill.
+    step : float64
+        The furthest that one may move from ``last``; infinite for no limit.
+    swing : float64[rows, columns]
+        Levels of a full swing, before it is inverted.
+    rest : int64[rows, columns]
+        0, or ``top`` where the actuator is inverted.
+    top, bits : int64
+        Highest level, and the bits that it takes.
+    out : uint8[bytes]
+        Levels, most significant bit first.
+    """
+    rows, columns = deflections.shape
+    held = 0  # bits that do not make a byte yet
+    count = 0
+    at = 0
+    felt = False
+    for row in range(rows):
+        for column in range(columns):
+            place = deflections[row, column]
+            place = min(max(place, last[row, column] - step), last[row, column] + step)
+            wanted[row, column] = place
+            felt = felt or place > 0.0
+            level = int(np.rint(place * swing[row, column]))
+            if rest[row, column] > 0:
+                level = top - level
+            held = (held << bits) | level
+            count += bits
+            while count >= 8:
+                count -= 8
+                out[at] = (held >> count) & 0xFF
+                at += 1
+            held &= (1 << count) - 1
+    if count > 0:
+        out[at] = (held << (8 - count)) & 0xFF
+    return felt

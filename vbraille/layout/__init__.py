@@ -1,0 +1,1 @@
+"""Braille on pages: paragraphs of cells wrapped into lines."""

@@ -1,0 +1,106 @@
+"""Where the lines of a paragraph of cells begin and end."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.translate.documents.paragraphs import NO_BREAK_SPACE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.braille.cells import Cells
+    from vbraille.translate.documents.paragraphs import Paragraph
+
+_SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
+
+
+def breaks_of(paragraph: Paragraph, cells: Cells) -> bytes:
+    """Cells as bytes: zero where a line may break, which is at blanks but for no-break spaces."""
+    if NO_BREAK_SPACE not in paragraph.alphabet:
+        return cells.masks.tobytes()
+    no_break = paragraph.source[paragraph.codes == NO_BREAK_SPACE]
+    solid = np.isin(cells.starts, no_break) & (cells.masks == 0)
+    return np.where(solid, _SOLID, cells.masks).astype(np.uint8).tobytes()
+
+
+def wrap(
+    breaks: bytes,
+    width: int,
+    indent: int = 0,
+    runover: int = 0,
+    starts: Sequence[int] | memoryview | None = None,
+) -> list[tuple[int, int, int]]:
+    """Break a paragraph into lines, each as full as it can be.
+
+    The cells of one source character stay together, if need be at the cost of the indent. Only
+    where they are more than a line's width are they cut, where the line is full.
+
+    Parameters
+    ----------
+    breaks
+        A byte a cell, zero where a line may break; what stands at a break is dropped.
+    width
+        Cells a line.
+    indent, runover
+        Blank cells before the first line and before the others; less than the width.
+    starts
+        The source character of each cell, never decreasing; by default each has its own.
+
+    Returns
+    -------
+    list of (start, stop, indent)
+        Cells of each line, as [start, stop), and the blank cells before them.
+    """
+    end = len(breaks)
+    leading = end - len(breaks.lstrip(b"\0"))
+    if leading == end:
+        return [(0, 0, 0)]
+    if starts is None:
+        starts = range(end)
+    # Deep indents of the source's own must leave room for words: half a line, and the first whole.
+    word = len(breaks[leading:].split(b"\0", 1)[0])
+    start = leading - min(leading, width // 2, max(0, width - indent - word))
+    bounds = []
+    while end - start > width - indent:
+        full = start + width - indent
+        if indent and starts[start] == starts[full]:
+            own = bisect_right(starts, starts[start], start) - start
+            if own <= width:  # without so much of an indent, its cells stay together
+                indent = width - own
+                continue
+        stop, following = _cut(breaks, start, full, starts)
+        bounds.append((start, stop, indent))
+        start = following
+        indent = runover
+    if start < end:
+        bounds.append((start, end, indent))
+    return bounds
+
+
+def _cut(
+    breaks: bytes, start: int, full: int, starts: Sequence[int] | memoryview
+) -> tuple[int, int]:
+    """Where a line ends that is full at a cell, and where the next begins."""
+    at = breaks.rfind(0, start, full + 1)
+    while at > start:
+        stop, following = _around(breaks, start, at)
+        if stop == start:
+            break
+        if following == len(breaks) or starts[stop - 1] != starts[following]:
+            return stop, following
+        at = breaks.rfind(0, start, stop)  # that blank was one within a character's cells
+    at = full
+    while at > start and starts[at - 1] == starts[at]:
+        at -= 1
+    stop, following = _around(breaks, start, at)
+    return (stop, following) if stop > start else _around(breaks, start, full)
+
+
+def _around(breaks: bytes, start: int, at: int) -> tuple[int, int]:
+    """One past the last cell before a place that is not blank, and the first after it."""
+    stop = start + len(breaks[start:at].rstrip(b"\0"))
+    return stop, len(breaks) - len(breaks[at:].lstrip(b"\0"))

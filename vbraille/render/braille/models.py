@@ -1,0 +1,122 @@
+"""The displays of the source with the style of each, and how any other display is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from vbraille.braille import geometry
+from vbraille.display import Display
+from vbraille.render.braille.mappings import MAPPINGS, single_row
+from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.style import BrailleStyle
+from vbraille.render.braille.tuning import Tuning
+
+if TYPE_CHECKING:
+    from vbraille.braille.geometry import Geometry
+
+# By how much the pitch of an array may differ from that of a display that it counts as.
+PITCH_TOLERANCE = 0.01
+# What a simulated device has: 10 bits, and 5 µm a count, at full texture 4 % of the swing.
+_LEVELS, _COUNTS_PER_MM, _RATE_HZ = 1024, 200.0, 1000.0
+# Rows of a mapping that shows all the dot rows of a cell one actuator row apart.
+_LEAST_ROWS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A display, and the style in which it is read unless told otherwise.
+
+    Parameters
+    ----------
+    name
+        What options call it; empty for a display that nobody has named.
+    title
+        What people call it.
+    display
+        The hardware.
+    style
+        How braille is shown on it.
+    """
+
+    name: str
+    title: str
+    display: Display
+    style: BrailleStyle
+
+    def on(self, geometry: Geometry, rate_hz: float = _RATE_HZ) -> Display:
+        """The display, with the travel that a geometry gives it, at a rate."""
+        return replace(self.display, travel_mm=geometry.travel_mm, rate_hz=rate_hz)
+
+
+# Lévesque 2009, ch. 3: one row, pitch ε = 0.7 mm; the row pitch has no meaning.
+VBD = Model(
+    "vbd",
+    "VBD",
+    Display(
+        name="simulated VBD",
+        rows=1,
+        columns=12,
+        column_pitch_mm=0.7,
+        row_pitch_mm=0.7,
+        levels=_LEVELS,
+        rest_side="left",
+        travel_mm=geometry.VBD.travel_mm,
+        counts_per_mm=_COUNTS_PER_MM,
+        rate_hz=_RATE_HZ,
+    ),
+    BrailleStyle(Profile.HALF_SINE, single_row(1), geometry.VBD, Tuning(texture=0.0)),
+)
+# Lévesque 2009, 4.2 and 5.2: an active area of 12.0 × 10.8 mm.
+STRESS2 = Model(
+    "stress2",
+    "STReSS²",
+    Display(
+        name="simulated STReSS²",
+        rows=6,
+        columns=10,
+        column_pitch_mm=1.2,
+        row_pitch_mm=1.8,
+        levels=_LEVELS,
+        rest_side="right",
+        travel_mm=geometry.STRESS2.travel_mm,
+        counts_per_mm=_COUNTS_PER_MM,
+        rate_hz=_RATE_HZ,
+    ),
+    BrailleStyle(
+        Profile.RAISED_COSINE, MAPPINGS["alternate"], geometry.STRESS2, Tuning(texture=1.0)
+    ),
+)
+MODELS = {model.name: model for model in (STRESS2, VBD)}
+
+
+def same_array(one: Display, other: Display) -> bool:
+    """Whether two displays have as many actuators, as far apart; one line has no pitch."""
+    if one.shape != other.shape:
+        return False
+    return all(
+        lines == 1 or abs(pitch_mm - other_mm) <= PITCH_TOLERANCE * other_mm
+        for lines, pitch_mm, other_mm in (
+            (one.columns, one.column_pitch_mm, other.column_pitch_mm),
+            (one.rows, one.row_pitch_mm, other.row_pitch_mm),
+        )
+    )
+
+
+def model_of(display: Display) -> Model:
+    """How a display is read that a device offers: as the display of the source that is like it.
+
+    One that has the array of a known model is that model. Any other of six rows or more is read as
+    the STReSS² is, its mapping in the middle; with three to five rows each dot row has one of
+    them; with one or two, one row of dots is shown as on the VBD.
+    """
+    for model in MODELS.values():
+        if same_array(display, model.display):
+            return replace(model, display=display)
+    if display.rows >= STRESS2.style.mapping.rows:
+        style = STRESS2.style
+    elif display.rows >= _LEAST_ROWS:
+        style = replace(STRESS2.style, mapping=MAPPINGS["three-rows"])
+    else:
+        style = VBD.style
+    return Model("", display.name, display, style)

@@ -1,0 +1,160 @@
+"""How braille is shown: everything of it in one value, and what it makes of a line or a page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.render import work
+from vbraille.render.braille.profiles import coefficients
+from vbraille.render.work import ProgramKind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.braille.geometry import Geometry
+    from vbraille.display import Display
+    from vbraille.render.braille.mappings import Mapping
+    from vbraille.render.braille.profiles import Profile
+    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.program import Program
+
+# Of a page: how far apart going to the next line and coming back are, in line pitches.
+HYSTERESIS = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class BrailleStyle:
+    """How braille is shown on a display.
+
+    Parameters
+    ----------
+    profile
+        How a dot swings the actuators.
+    mapping
+        Which dots each actuator row shows.
+    geometry
+        Where the dots are.
+    tuning
+        Texture and contrast.
+    first_row
+        Actuator row of the display that the mapping's first one is; None has it stand in the
+        middle. Rows that the mapping does not name rest.
+    """
+
+    profile: Profile
+    mapping: Mapping
+    geometry: Geometry
+    tuning: Tuning
+    first_row: int | None = None
+
+    def rows_on(self, display: Display) -> slice:
+        """Actuator rows of a display that the mapping has.
+
+        Raises
+        ------
+        ValueError
+            If the display has not so many.
+        """
+        first = self.first_row
+        if first is None:
+            first = max(display.rows - self.mapping.rows, 0) // 2
+        if not 0 <= first <= display.rows - self.mapping.rows:
+            raise ValueError(
+                f"mapping {self.mapping.name} needs {self.mapping.rows} actuator rows from row "
+                f"{first} on; the array has {display.rows}"
+            )
+        return slice(first, first + self.mapping.rows)
+
+    def render(self, masks: NDArray[np.uint8], display: Display) -> Program:
+        """A line of braille, for the array's centre along it.
+
+        Parameters
+        ----------
+        masks : uint8[cells]
+            Dot masks; bit 0 is dot 1.
+        display
+            What it is shown on.
+
+        Raises
+        ------
+        ValueError
+            If the mapping needs more rows than the display has.
+        """
+        return self._compile([masks], display, ProgramKind.LINE)
+
+    def render_page(
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        display: Display,
+        *,
+        hysteresis: float = HYSTERESIS,
+    ) -> Program:
+        """A page of lines one below the other, for the array's centre anywhere on it.
+
+        Parameters
+        ----------
+        lines : sequence of uint8[cells]
+            Dot masks of each line; they need not be of one length.
+        display
+            What it is shown on.
+        hysteresis
+            How far apart in y going to the next line and coming back are, in line pitches, 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If the mapping needs more rows than the display has, there is no line, or the
+            hysteresis is out of range.
+        """
+        if not lines:
+            raise ValueError("a page of no lines cannot be shown")
+        if not 0 <= hysteresis <= 1:
+            raise ValueError(f"the hysteresis is {hysteresis:g}; it must be 0 to 1 line pitches")
+        program = self._compile(lines, display, ProgramKind.PAGE)
+        program.numbers[work.LINES] = len(lines)
+        program.numbers[work.HYSTERESIS] = hysteresis
+        return program
+
+    def room(self, display: Display, cells: int, lines: int = 1) -> int:
+        """Bytes of the largest program of so many lines of so many cells; at least 1 each."""
+        numbers = work.IDLE + 2 * display.rows
+        return numbers * 8 + (lines + 2) * 2 * (cells + 2) * 2
+
+    def _compile(
+        self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: ProgramKind
+    ) -> Program:
+        # The kernels are compiled when this is first imported: not for a command that needs none.
+        from vbraille.render.program import Program, head
+
+        geometry, tuning = self.geometry, self.tuning
+        own = self.rows_on(display)
+        slots = 2 * (max(len(masks) for masks in lines) + 2)
+        numbers = head(display, kind, work.IDLE + 2 * display.rows, geometry.line_pitch_mm / 2)
+        numbers[work.ANCHOR] = display.span_mm / 2
+        numbers[work.COLUMN_PITCH] = display.column_pitch_mm
+        numbers[work.ROW_PITCH] = display.row_pitch_mm
+        numbers[work.LINE_PITCH] = geometry.line_pitch_mm
+        numbers[work.SLOTS] = slots
+        numbers[work.CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
+        numbers[work.CELL_PITCH] = geometry.cell_pitch_mm
+        numbers[work.DOTS_PER_MM] = 1 / geometry.dot_width_mm
+        numbers[work.DOT_SPACING] = geometry.dot_spacing_mm
+        numbers[work.PROFILE] = self.profile
+        numbers[work.OVERLAP] = geometry.dot_width_mm > min(
+            geometry.dot_spacing_mm, geometry.cell_gap_mm
+        )
+        numbers[work.SHAPE : work.SHAPE + 6] = coefficients(self.profile, tuning)
+        idle = self.mapping.idle()
+        numbers[work.IDLE : work.IDLE + display.rows][own] = idle
+        numbers[work.IDLE + display.rows :][own] = tuning.contrast * (1 - 2 * idle)
+        bits = self.mapping.row_bits() << own.start
+        page = kind is ProgramKind.PAGE
+        table = np.zeros((len(lines) + 2 * page, slots), np.uint16)
+        for row, masks in zip(table[page:], lines, strict=False):
+            row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()
+        return Program(numbers, table.ravel())

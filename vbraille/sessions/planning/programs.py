@@ -1,0 +1,26 @@
+"""Stimuli, compiled for the kernels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vbraille.render.braille.tuning import Tuning
+    from vbraille.render.program import Program
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Stimulus
+
+
+def render(
+    protocol: Protocol, stimulus: Stimulus, tuning: Tuning, *, anchor_mm: float | None = None
+) -> Program:
+    """Picture of a stimulus, for places of the array's centre, or of the anchor that is given."""
+    style = replace(
+        protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry, tuning=tuning
+    )
+    masks = np.array(protocol.line(stimulus.masks), np.uint8)
+    program = style.render(masks, protocol.model.display)
+    return program if anchor_mm is None else program.with_anchor(anchor_mm)

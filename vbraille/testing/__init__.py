@@ -1,0 +1,1 @@
+"""What the tests of a driver or of a program on vbraille need: checks, devices, hands."""

@@ -1,0 +1,387 @@
+"""A file as paragraphs, each knowing its place in the source.
+
+The file is read a block at a time and only as far as somebody asks; a paragraph
+already passed is found again by seeking, so that a book need not fit in memory.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+from bisect import bisect_right
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.documents.codepoints import Stretch, shorten_blanks, to_codes
+from vbraille.translate.documents.encodings import (
+    SAMPLE_BYTES,
+    Encoding,
+    TextDecoder,
+    binary_kind,
+    find_encoding,
+    first_not_utf8,
+    named_encoding,
+)
+from vbraille.translate.documents.paragraphs import Paragraph, split_paragraphs
+from vbraille.wording import setting
+
+BLOCK_BYTES = 65_536
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """Where reading can go on: before a paragraph's first character.
+
+    Parameters
+    ----------
+    paragraph
+        Number of the next paragraph, from 0.
+    character
+        Its place in the document.
+    offset, state
+        A place in the file at or before it, and the decoder's state there.
+    skip
+        Characters between that place and the paragraph.
+    continues
+        Whether the paragraph is a further piece of the one before.
+    item
+        Number of the list item that it is a piece of; 0 for none.
+    """
+
+    paragraph: int
+    character: int
+    offset: int
+    state: tuple[bytes, int]
+    skip: int
+    continues: bool
+    item: int = 0
+
+    @property
+    def bytes(self) -> int:
+        """About how many bytes stand before it: a character is one at least."""
+        return self.offset + self.skip
+
+
+class Document:
+    """A text as paragraphs, read lazily.
+
+    Parameters
+    ----------
+    stream
+        The bytes; must be able to seek.
+    name
+        What to call it in messages.
+    encoding
+        Overrides what the bytes say: a name, or how the caller knows them to be written.
+    keep_lines
+        Keep the line breaks of the source (verse, code): each line is a
+        paragraph, its blanks kept; a run of empty lines is an empty paragraph.
+
+    Attributes
+    ----------
+    encoding : Encoding
+        How the bytes are read.
+    size : int
+        Bytes in all.
+
+    Raises
+    ------
+    InputError
+        If the text is empty, binary, or of an unknown encoding.
+    """
+
+    def __init__(
+        self,
+        stream: BinaryIO,
+        name: str = "text",
+        encoding: str | Encoding | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> None:
+        self.name = name
+        self.keep_lines = keep_lines
+        self._stream = stream
+        sample = self._read(0, SAMPLE_BYTES)
+        self.size = self._end()
+        if not sample:
+            raise InputError(f"{name} is empty; give a text file")
+        if isinstance(encoding, Encoding):
+            self.encoding = encoding
+        elif encoding is not None:
+            self.encoding = _named_encoding(encoding, sample)
+        else:
+            kind = binary_kind(sample)
+            if kind:
+                raise InputError(
+                    f"{name} is {kind}, not text; give a text file, or {setting('encoding')}"
+                )
+            self.encoding = find_encoding(sample)
+            if len(sample) == self.encoding.skip:
+                raise InputError(f"{name} is empty; give a text file")
+        self._decoder = TextDecoder(self.encoding.name)
+        self._found = encoding is None
+        self._noted = self._grown = False
+        start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
+        self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
+        self._complete = False
+        self._recent: dict[int, list[Paragraph]] = {}
+
+    @classmethod
+    def open(
+        cls, path: Path | str, encoding: str | None = None, *, keep_lines: bool = False
+    ) -> Document:
+        """Open a text file.
+
+        Raises
+        ------
+        InputError
+            If it is missing, unreadable, a directory, empty, binary, or of an unknown encoding.
+        """
+        path = Path(path)
+        try:
+            stream = path.open("rb")
+            # A pipe cannot be read twice, and a file of /proc does not say how long it is.
+            if not stream.seekable() or (path.is_file() and not path.stat().st_size):
+                with stream:
+                    stream = _kept(stream)
+        except FileNotFoundError:
+            raise InputError(f"there is no file {path}; check the name") from None
+        except IsADirectoryError:
+            raise InputError(f"{path} is a directory; give a text file in it") from None
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise InputError(f"{path} cannot be read: {reason}") from None
+        try:
+            return cls(stream, str(path), encoding, keep_lines=keep_lines)
+        except InputError:
+            stream.close()
+            raise
+
+    @classmethod
+    def take(
+        cls,
+        stream: BinaryIO,
+        name: str,
+        encoding: str | None = None,
+        *,
+        keep_lines: bool = False,
+    ) -> Document:
+        """Take all that a stream gives, such as standard input, which may be longer than memory.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read or kept, or is empty, binary, or of an unknown encoding.
+        """
+        try:
+            kept = _kept(stream)
+        except OSError as error:
+            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        try:
+            return cls(kept, name, encoding, keep_lines=keep_lines)
+        except InputError:
+            kept.close()
+            raise
+
+    @classmethod
+    def from_text(cls, text: str, *, keep_lines: bool = False) -> Document:
+        """Make a document of a string."""
+        stream = io.BytesIO(text.encode("utf-32-le", "surrogatepass"))
+        return cls(stream, "text", Encoding("utf-32-le"), keep_lines=keep_lines)
+
+    def note(self) -> str | None:
+        """What must be said of the file, each thing once after it is found; None if nothing is.
+
+        That the text is not UTF-8, and where; that the file has grown since it was opened.
+        """
+        if self._grown:
+            self._grown = False
+            return (
+                f"{self.name} has grown since it was opened; open it again to read what was added"
+            )
+        if self._noted:
+            return None
+        if self._found and self.encoding.name != "utf-8":
+            self._noted = True
+            bad = first_not_utf8(self._read(0, SAMPLE_BYTES))
+            return (
+                f"{self.name} is not UTF-8 (byte {bad}); it is read as {self.encoding.name}, "
+                f"{setting('encoding')} NAME says otherwise"
+            )
+        if self._decoder.first_bad is not None:
+            self._noted = True
+            return (
+                f"{self.name} is not {self.encoding.name} at byte {self._decoder.first_bad}; such "
+                f"bytes are read as windows-1252, {setting('encoding')} NAME says otherwise"
+            )
+        return None
+
+    def paragraph(self, number: int) -> Paragraph | None:
+        """Paragraph of a number, from 0, or None past the end.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        VbrailleError
+            If it is no longer what it was.
+        """
+        while number >= self._marks[-1].paragraph and not self._complete:
+            self._read_block(len(self._marks) - 1)
+        if number >= self._marks[-1].paragraph or number < 0:
+            return None
+        block = bisect_right(self._marks, number, key=lambda mark: mark.paragraph) - 1
+        paragraphs = self._recent.get(block)
+        if paragraphs is None:
+            paragraphs = self._read_block(block)
+        index = number - self._marks[block].paragraph
+        if index >= len(paragraphs):
+            raise VbrailleError(f"{self.name} has changed since it was opened; open it again")
+        return paragraphs[index]
+
+    def paragraph_at(self, character: int) -> int | None:
+        """Number of the paragraph that holds a character of the source, or None past the end."""
+        while character >= self._marks[-1].character and not self._complete:
+            self._read_block(len(self._marks) - 1)
+        block = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
+        block = min(max(block, 0), len(self._marks) - 2)
+        number = self._marks[block].paragraph
+        while (paragraph := self.paragraph(number)) is not None:
+            if character < paragraph.end:
+                return number
+            number += 1
+        return None
+
+    def progress(self, paragraph: int) -> float:
+        """About how much of the file stands before a paragraph that was read, 0 to 1."""
+        block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
+        here, after = self._marks[block], self._marks[min(block + 1, len(self._marks) - 1)]
+        share = (paragraph - here.paragraph) / max(after.paragraph - here.paragraph, 1)
+        return min(1.0, (here.bytes + share * (after.bytes - here.bytes)) / self.size)
+
+    def sha256(self) -> str:
+        """SHA-256 of the bytes, in hexadecimal."""
+        digest = hashlib.sha256()
+        self._stream.seek(0)
+        while block := self._stream.read(BLOCK_BYTES):
+            digest.update(block)
+        return digest.hexdigest()
+
+    def close(self) -> None:
+        """Close the file; it is closed anyhow once the document is forgotten."""
+        self._stream.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+    def _read(self, offset: int, size: int) -> bytes:
+        try:
+            self._stream.seek(offset)
+            return self._stream.read(size)
+        except OSError as error:
+            raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
+
+    def _end(self) -> int:
+        """Bytes that the file has now."""
+        try:
+            return self._stream.seek(0, io.SEEK_END)
+        except OSError as error:
+            raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
+
+    def _read_block(self, block: int) -> list[Paragraph]:
+        """Read the paragraphs of a block; mark where the next begins if that is not known yet."""
+        mark = self._marks[block]
+        paragraphs, after = self._parse(mark)
+        if block == len(self._marks) - 1:
+            if after is None:
+                self._complete = True
+                self._grown = self._end() > self.size
+                after = _Mark(
+                    mark.paragraph + len(paragraphs),
+                    paragraphs[-1].end if paragraphs else mark.character,
+                    self.size,
+                    (b"", 0),
+                    0,
+                    continues=False,
+                )
+            self._marks.append(after)
+        if len(self._recent) >= 3:
+            self._recent.pop(next(iter(self._recent)))
+        self._recent[block] = paragraphs
+        return paragraphs
+
+    def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
+        """Paragraphs from a mark on, none only if a stretch is blank; and the mark after them."""
+        self._decoder.restore(mark.state)
+        parts: list[Stretch] = []
+        pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
+        offset, place = mark.offset, mark.character - mark.skip
+        kept = wanted = blanks = 0
+        final = False
+        while True:
+            while not final and (kept < wanted or not parts):
+                pieces.append((place, offset, self._decoder.state()))
+                read = self._read(offset, min(BLOCK_BYTES, self.size - offset))
+                if not read and offset < self.size:
+                    raise VbrailleError(
+                        f"{self.name} has become shorter since it was opened; open it again"
+                    )
+                final = offset + len(read) >= self.size
+                codes = to_codes(self._decoder.decode(read, offset, final=final))
+                offset += len(read)
+                skipped = min(max(0, mark.character - place), codes.size)
+                part, blanks = shorten_blanks(codes[skipped:], place + skipped, blanks)
+                place += codes.size
+                parts.append(part)
+                kept += len(part)
+            parts = [Stretch.joined(parts)]
+            split = split_paragraphs(
+                parts[0],
+                continues=mark.continues,
+                item=mark.item,
+                final=final,
+                keep_lines=self.keep_lines,
+            )
+            if final:
+                return split.paragraphs, None
+            if split.paragraphs or split.used:
+                break
+            # Twice as much every time: what is not done with is gone over again.
+            wanted = 2 * kept + 1
+        used = int(parts[0].place(split.used)) if split.used < kept else place
+        before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
+        after = _Mark(
+            mark.paragraph + len(split.paragraphs),
+            used,
+            offset,
+            state,
+            used - before,
+            split.continues,
+            split.item,
+        )
+        return split.paragraphs, after
+
+
+def _kept(stream: BinaryIO) -> BinaryIO:
+    """A temporary file of all that a stream gives, since a text is gone through more than once."""
+    from tempfile import TemporaryFile
+
+    with ExitStack() as opened:
+        kept = opened.enter_context(TemporaryFile())
+        # Past Python's buffer, which asks a terminal for more after its end was typed.
+        while block := os.read(stream.fileno(), BLOCK_BYTES):
+            kept.write(block)
+        kept.flush()
+        opened.pop_all()  # it is the caller's now
+    return kept
+
+
+def _named_encoding(name: str, sample: bytes) -> Encoding:
+    encoding = named_encoding(name, sample)
+    if encoding is None:
+        raise InputError(f"there is no text encoding {name!r}; try windows-1252, latin-1 or utf-16")
+    return encoding

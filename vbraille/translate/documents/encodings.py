@@ -1,0 +1,241 @@
+"""Bytes of a text file in any encoding, piece by piece, to code points.
+
+A byte-order mark decides; else strict UTF-8; else what a detector makes of the
+first 64 kB. No byte is ever dropped: one that the encoding cannot read is
+taken as windows-1252.
+"""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass
+
+SAMPLE_BYTES = 65_536
+
+_WIDE = ("utf-16", "utf-32")
+
+_MARKS = (  # UTF-32 before UTF-16: its little-endian mark begins with the other's
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+# The beginnings of files that people mistake for text; none is one that a text may have.
+_MAGIC = {
+    b"\x89PNG": "a PNG image",
+    b"\xff\xd8\xff": "a JPEG image",
+    b"GIF87a": "a GIF image",
+    b"GIF89a": "a GIF image",
+    b"PK\x03\x04": "a zip archive (a .docx, .odt or .epub is one too)",
+    b"PK\x05\x06": "a zip archive",
+    b"%PDF-": "a PDF document",
+    b"\x1f\x8b": "a gzip archive",
+    **{b"BZh%d1AY&SY" % level: "a bzip2 archive" for level in range(1, 10)},
+    b"\xfd7zXZ": "an xz archive",
+    b"7z\xbc\xaf": "a 7-zip archive",
+    b"\x7fELF": "a program",
+    b"\xd0\xcf\x11\xe0": "an old Office document",
+    b"OggS\0": "an Ogg media file",
+    b"ID3\2": "an MP3 file",
+    b"ID3\3": "an MP3 file",
+    b"ID3\4": "an MP3 file",
+    b"\x89HDF": "an HDF5 file",
+    b"SQLite format 3\0": "a database",
+}
+_TEXT_CONTROLS = frozenset(b"\b\t\n\v\f\r\x1a\x1b")
+# Text encodings to Python, and yet not what a text file is written in.
+_NO_FILE_ENCODINGS = {"idna", "punycode", "unicode-escape", "raw-unicode-escape"}
+# A shorter text says too little to tell DOS and Mac code pages from windows-1252.
+_TELLING_BYTES = 512
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """How a file is read.
+
+    Parameters
+    ----------
+    name
+        Python's name of the codec.
+    skip
+        Bytes of byte-order mark at the start.
+    """
+
+    name: str
+    skip: int = 0
+
+
+def binary_kind(sample: bytes) -> str | None:
+    """What a file is, if its beginning shows that it is no text; None if it may be text."""
+    for magic, kind in _MAGIC.items():
+        if sample.startswith(magic):
+            return kind
+    if sample.startswith(tuple(mark for mark, _ in _MARKS)) or not sample:
+        return None
+    controls = sum(sample.count(c) for c in range(32) if c not in _TEXT_CONTROLS)
+    zeros = sample.count(0)
+    few = 1 + len(sample) / 20  # stray ones are no reason to refuse a text
+    if controls - zeros > few or (zeros > few and _wide(sample) is None):
+        return "binary data"
+    return None
+
+
+def find_encoding(sample: bytes) -> Encoding:
+    """The encoding of a file that begins with these bytes.
+
+    Parameters
+    ----------
+    sample
+        The file's first `SAMPLE_BYTES`, or all of it.
+    """
+    for mark, name in _MARKS:
+        if sample.startswith(mark):
+            return Encoding(name, skip=len(mark))
+    wide = _wide(sample)
+    if wide is not None:
+        return Encoding(wide)
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        decoder.decode(sample, final=len(sample) < SAMPLE_BYTES)
+    except UnicodeDecodeError:
+        return Encoding("utf-8" if _mostly_utf8(sample) else _detect(sample))
+    return Encoding("utf-8")
+
+
+def _wide(sample: bytes) -> str | None:
+    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; None otherwise.
+
+    chardet takes such a text for another, or in the wrong order, if it is short.
+    """
+    if sample.count(0) < 2:  # one may be a stray
+        return None
+    zeros = [
+        quarter.count(0) / max(len(quarter), 1) for quarter in (sample[n::4] for n in range(4))
+    ]
+    if zeros[0] < 0.1 and min(zeros[2:]) > 0.9:
+        return "utf-32-le"
+    if zeros[3] < 0.1 and min(zeros[:2]) > 0.9:
+        return "utf-32-be"
+    even, odd = (half.count(0) / max(len(half), 1) for half in (sample[0::2], sample[1::2]))
+    if odd > 0.4 and even < odd / 4:
+        return "utf-16-le"
+    if even > 0.4 and odd < even / 4:
+        return "utf-16-be"
+    return None
+
+
+def _mostly_utf8(sample: bytes) -> bool:
+    """Whether a few damaged bytes stand in what is otherwise UTF-8 beyond ASCII."""
+    text = sample.decode("utf-8", "surrogateescape")
+    damaged = sum("\udc80" <= c <= "\udcff" for c in text)
+    whole = sum(c > "\x7f" for c in text) - damaged
+    return whole > 4 * damaged
+
+
+def _detect(sample: bytes) -> str:
+    import chardet
+
+    eras = chardet.EncodingEra
+    short = len(sample) < _TELLING_BYTES
+    likely = eras.MODERN_WEB | eras.LEGACY_ISO if short else eras.ALL
+    found = chardet.detect(sample, encoding_era=likely)["encoding"] or "windows-1252"
+    try:
+        name = codecs.lookup(found).name
+    except LookupError:
+        return "cp1252"
+    # A detector that says ASCII or UTF-8 of what is not is no help.
+    return "cp1252" if name in {"ascii", "utf-8", "iso8859-1"} else name
+
+
+def named_encoding(name: str, sample: bytes) -> Encoding | None:
+    """Find the encoding that a user names, for a file that begins with these bytes.
+
+    None if there is no such text encoding.
+    """
+    try:
+        codec = codecs.lookup(name)
+        nothing = codecs.getincrementaldecoder(codec.name)("strict").decode(b"", False)
+    except (LookupError, ValueError, TypeError, AssertionError):
+        return None
+    if not isinstance(nothing, str) or codec.name in _NO_FILE_ENCODINGS:  # base64, zlib and such
+        return None
+    for mark, marked in _MARKS:
+        if sample.startswith(mark) and marked.startswith(codec.name.removesuffix("-sig")):
+            return Encoding(marked, skip=len(mark))
+    name = codec.name
+    return Encoding(f"{name}-le" if name in {"utf-16", "utf-32"} else name)
+
+
+def first_not_utf8(sample: bytes) -> int:
+    """Offset of the first byte that no UTF-8 text would have: an invalid one, or a zero."""
+    try:
+        sample.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return error.start
+    return max(sample.find(0), 0)
+
+
+class TextDecoder:
+    """An incremental decoder that loses no byte and remembers where the first bad one was.
+
+    Parameters
+    ----------
+    encoding
+        Python's name of a codec.
+
+    Attributes
+    ----------
+    first_bad : int or None
+        Offset in the file of the first byte that the encoding cannot read. A lone
+        surrogate of UTF-16 or UTF-32 is none: it stays what it is.
+    """
+
+    def __init__(self, encoding: str) -> None:
+        self.first_bad: int | None = None
+        self._strict = "surrogatepass" if encoding.startswith(_WIDE) else "strict"
+        self._decoder = codecs.getincrementaldecoder(encoding)(self._strict)
+
+    def decode(self, piece: bytes, offset: int, *, final: bool) -> str:
+        """Text of the next bytes, which stand at this offset of the file."""
+        state = self.state()
+        # The third is for ISO 2022, which cannot keep an escape that never ends for the next piece.
+        for errors, last in (
+            (self._strict, final),
+            ("vbraille-keep", final),
+            ("vbraille-keep", True),
+        ):
+            self._decoder.errors = errors
+            try:
+                return self._decoder.decode(piece, last)
+            except UnicodeError as error:
+                if isinstance(error, UnicodeDecodeError) and self.first_bad is None:
+                    self.first_bad = offset - len(state[0]) + error.start
+            self.restore(state)
+        raise AssertionError("what keeps every byte fails at none")
+
+    def state(self) -> tuple[bytes, int]:
+        """What `restore` takes to go on from here."""
+        return self._decoder.getstate()
+
+    def restore(self, state: tuple[bytes, int]) -> None:
+        """Go on from an earlier `state`."""
+        self._decoder.reset()
+        self._decoder.setstate(state)
+
+
+def _keep(error: UnicodeError) -> tuple[str, int]:
+    """Take undecodable bytes as windows-1252, lone surrogates as themselves."""
+    if not isinstance(error, UnicodeDecodeError):
+        raise error
+    bad = error.object[error.start : error.end]
+    if error.encoding.startswith(_WIDE):
+        try:
+            return bad.decode(error.encoding, "surrogatepass"), error.end
+        except UnicodeDecodeError:
+            pass
+    # The five bytes that windows-1252 leaves open stay the control characters of their number.
+    return "".join(bytes([b]).decode("cp1252", "ignore") or chr(b) for b in bad), error.end
+
+
+codecs.register_error("vbraille-keep", _keep)

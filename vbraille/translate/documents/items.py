@@ -1,0 +1,75 @@
+"""Items of lists in plain text: which lines begin one."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.translate.documents.codepoints import to_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# What a line of a list begins with: a bullet, a dash, a number or a letter, and then a blank.
+_MARKER = re.compile(
+    r"(?:(?P<bullet>[•‣◦⁃●○■▪*-])|(?P<dash>[–—+])|\(?(?P<number>\d{1,3})[.)]|\(?(?P<letter>[a-z])\))"
+    r"[ \t\u00a0\u2000-\u200a\u3000]"
+)
+LONGEST_MARKER = 6
+_LEADS = np.array([ord(lead) for lead in "•‣◦⁃●○■▪*-–—+(0123456789"], np.uint32)
+BULLET, DASH = -1, -2
+
+
+def end_before_items(
+    ends: NDArray[np.bool_],
+    codes: NDArray[np.uint32],
+    text: NDArray[np.intp],
+    newlines: NDArray[np.intp],
+    item: int | None,
+) -> int:
+    """Mark that paragraphs end where the next line begins an item of a list.
+
+    A bullet always begins one. A dash does in a list of dashes, and a number in its turn; the
+    first of either stands at a paragraph's start or after a colon, and so may a number 1
+    anywhere: a line of prose, too, can begin with a dash or with a number that ends a sentence.
+
+    Parameters
+    ----------
+    ends : bool[n]
+        Whether a paragraph ends after each character of ``text`` but the last; changed here.
+    item
+        Number of the list item that the first paragraph is in; None if it begins here.
+
+    Returns
+    -------
+    int
+        Number of the list item that the last paragraph is, or -2 in a list of dashes; else 0.
+    """
+    starts = np.concatenate(([-1], np.flatnonzero((newlines > 0) | ends)))
+    at = text[starts + 1]
+    following = codes[np.minimum(at + 1, codes.size - 1)]
+    leads = np.isin(codes[at], _LEADS) | (following == ord(")"))
+    blank_lines = np.flatnonzero(ends)
+    block, item_now = 0, item or 0
+    for start in starts[leads].tolist():
+        begins = bool(ends[start]) if start >= 0 else item is None
+        here = int(np.searchsorted(blank_lines, start, "right"))
+        if here != block:
+            block, item_now = here, 0
+        found = _MARKER.match(to_text(codes[text[start + 1] : text[start + 1] + LONGEST_MARKER]))
+        if found is None or (start < 0 and item is not None):
+            continue
+        if found["number"]:
+            number = int(found["number"])
+        elif found["letter"]:
+            number = ord(found["letter"]) - ord("a") + 1
+        else:
+            number = BULLET if found["bullet"] else DASH
+        expected = number in (BULLET, 1, item_now + 1 if item_now >= 0 else item_now)
+        if begins or expected or codes[text[start]] == ord(":"):
+            item_now = number
+            if start >= 0:
+                ends[start] = True
+    return item_now if block == blank_lines.size else 0

@@ -1,0 +1,313 @@
+"""Characters into paragraphs: lines joined, white space folded, every place remembered."""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.translate.documents.codepoints import (
+    BLANK,
+    BREAK,
+    DROPPED,
+    NEWLINE,
+    TEXT,
+    kinds_of,
+    to_codes,
+    to_text,
+)
+from vbraille.translate.documents.items import LONGEST_MARKER, end_before_items
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.translate.documents.codepoints import Stretch
+
+# A longer paragraph is handed on in pieces: no text may grow with the file.
+PIECE_CHARACTERS = 8_192
+
+SPACE = 0x20
+NO_BREAK_SPACE = 0xA0
+
+_NO_BREAK_SPACES = (0x2007, 0x202F)
+_BYTE_ORDER_MARK = 0xFEFF
+_BACKSPACE, _UNDERLINE = 0x08, 0x5F
+# Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
+_COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A))
+# Words before which a hyphen stands for the rest of the word before it.
+_SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
+# Characters after a line break that say whether a space belongs there: such a word and one more.
+_WORD = 5
+# Characters that must follow a place before it is known what belongs there.
+_LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Paragraph:
+    """A paragraph of text, or a piece of a very long one.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Its characters as code points: hard-wrapped lines joined, white space folded.
+    source : int64[n]
+        Where each stands in the document, counted in characters from its first.
+    end : int
+        One past the document's last character that belongs to it.
+    continues : bool
+        Whether this piece goes on where the one before it broke off.
+    alphabet : frozenset of int
+        Code points among which all of its own are. They are gathered once for
+        many paragraphs: array scans between calls of liblouis slow it by a
+        fifth on processors that lower their clock for wide vectors.
+    """
+
+    codes: NDArray[np.uint32]
+    source: NDArray[np.int64]
+    end: int
+    continues: bool
+    alphabet: frozenset[int]
+
+    @property
+    def text(self) -> str:
+        """The paragraph as a string."""
+        return to_text(self.codes)
+
+    def __add__(self, piece: Paragraph) -> Paragraph:
+        return Paragraph(
+            np.concatenate((self.codes, piece.codes)),
+            np.concatenate((self.source, piece.source)),
+            piece.end,
+            self.continues,
+            self.alphabet | piece.alphabet,
+        )
+
+    def since(self, character: int) -> Paragraph:
+        """The part from a source character on; keeps nothing of the rest in memory."""
+        at = int(np.searchsorted(self.source, character))
+        codes, source = self.codes[at:].copy(), self.source[at:].copy()
+        return Paragraph(codes, source, self.end, True, self.alphabet)
+
+
+@dataclass(frozen=True, slots=True)
+class Split:
+    """What `split_paragraphs` made of a stretch of characters.
+
+    Parameters
+    ----------
+    paragraphs
+        The paragraphs that are complete.
+    used
+        Characters up to the first that belongs to none of them, or may begin another.
+    continues
+        Whether that one goes on with the last paragraph.
+    item
+        Number of the list item that it is a part of then; 0 for none.
+    """
+
+    paragraphs: list[Paragraph]
+    used: int
+    continues: bool
+    item: int = 0
+
+
+def split_paragraphs(
+    stretch: Stretch,
+    *,
+    continues: bool = False,
+    item: int = 0,
+    final: bool = True,
+    keep_lines: bool = False,
+) -> Split:
+    """Cut a stretch of characters into paragraphs.
+
+    Parameters
+    ----------
+    stretch
+        The characters.
+    continues
+        Whether it goes on with an earlier piece of a paragraph.
+    item
+        Number of the list item that this paragraph is; 0 for none.
+    final
+        Whether the text ends here; else the last paragraph is left for later.
+    keep_lines
+        Make a paragraph of every line instead.
+    """
+    codes = stretch.codes
+    kinds = kinds_of(codes)
+    kinds[codes == _BYTE_ORDER_MARK] = DROPPED
+    kinds[_overstruck(codes, kinds)] = DROPPED
+    text = np.flatnonzero(kinds == TEXT)
+    newline = (kinds == NEWLINE) | (kinds == BREAK)
+    newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
+    if text.size == 0:
+        line_ends = np.flatnonzero(newline)[-1:] + 1
+        return Split([], int(line_ends.sum()) if keep_lines else codes.size, continues, item)
+    newlines = _between(newline, text)
+    ended = final
+    codes = codes.copy()
+    for space in _NO_BREAK_SPACES:
+        codes[codes == space] = NO_BREAK_SPACE
+    if keep_lines:
+        keep = _keep_blanks(kinds)
+        codes[keep & (kinds == BLANK)] = SPACE
+        ends = newlines > 0
+        line_starts = np.maximum.accumulate(
+            np.where(newline | (codes == 0x0A), np.arange(codes.size), -1)
+        )
+        starts = line_starts[text] + 1
+        empty = newlines > 1
+    else:
+        ends = (newlines > 1) | (_between(kinds == BREAK, text) > 0)
+        item = end_before_items(ends, codes, text, newlines, None if not continues else item)
+        after = slice(text[-1], None)
+        ended = final or newline[after].sum() > 1 or (kinds[after] == BREAK).any()
+        gaps = np.flatnonzero((_between((kinds != TEXT) & (kinds != DROPPED), text) > 0) & ~ends)
+        spaces = text[gaps] + 1
+        spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
+        codes[spaces] = SPACE
+        keep = kinds == TEXT
+        keep[spaces] = True
+        starts = text
+        empty = np.zeros(text.size - 1, bool)
+    kept = np.flatnonzero(keep)
+    own, source = codes[kept], stretch.place(kept)
+    seen = np.zeros(int(own.max()) + 1, np.bool_)
+    seen[own] = True
+    alphabet = frozenset(np.flatnonzero(seen).tolist())
+    accents = not alphabet.isdisjoint(_COMBINING)
+
+    def paragraph(start: int, end: int, continues: bool) -> Paragraph:
+        part = slice(start, end)
+        piece = Paragraph(own[part], source[part], int(source[end - 1]) + 1, continues, alphabet)
+        return _compose(piece) if accents else piece
+
+    last = np.flatnonzero(ends)
+    begin = np.concatenate((starts[:1], starts[last + 1]))
+    stop = np.concatenate((text[last] + 1, text[-1:] + 1))
+    bounds = np.searchsorted(kept, [begin, stop]).T.tolist()
+    is_empty = [*empty[last].tolist(), False]
+    paragraphs: list[Paragraph] = []
+    for n, (start, end) in enumerate(bounds):
+        complete = ended or n < len(bounds) - 1
+        rest = start
+        for cut in _cuts(codes, kept, start, end if complete else end - _LOOK_AHEAD):
+            paragraphs.append(paragraph(rest, cut, continues))
+            rest, continues = cut, True
+        if not complete:
+            used = int(begin[-1]) if rest == start else int(kept[rest])
+            return Split(paragraphs, used, continues, item if continues else 0)
+        paragraphs.append(paragraph(rest, end, continues))
+        continues = False
+        if is_empty[n]:
+            nothing = np.empty(0, np.int64)
+            at = int(stretch.place(stop[n] - 1)) + 1
+            paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
+    return Split(paragraphs, codes.size, continues=False)
+
+
+def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """Where printers of old were told to underline or to strike twice, which is no text.
+
+    An underline stands before or after a backspace and a character; one that is struck twice
+    stands on both sides of it.
+    """
+    backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
+    if not backspaces.size:
+        return backspaces
+    struck = (kinds[backspaces - 1] == TEXT) & (kinds[backspaces + 1] == TEXT)
+    backspaces = backspaces[struck & (codes[backspaces - 1] != _BACKSPACE)]
+    before, after = codes[backspaces - 1], codes[backspaces + 1]
+    first = (before == _UNDERLINE) | (before == after)
+    second = ~first & (after == _UNDERLINE)
+    return np.concatenate(
+        (backspaces[first | second], backspaces[first] - 1, backspaces[second] + 1)
+    )
+
+
+def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
+    """How many marked characters stand between each two neighbouring text characters."""
+    return np.diff(np.cumsum(marked)[text])
+
+
+def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Text, and the blanks that have text after them on their line."""
+    places = np.arange(kinds.size)
+    text = np.where(kinds == TEXT, places, kinds.size)
+    newline = np.where((kinds == NEWLINE) | (kinds == BREAK), places, kinds.size)
+    next_text = np.minimum.accumulate(text[::-1])[::-1]
+    next_newline = np.minimum.accumulate(newline[::-1])[::-1]
+    return (kinds == TEXT) | ((kinds == BLANK) & (next_text < next_newline))
+
+
+def _joins_words(
+    codes: NDArray[np.uint32],
+    text: NDArray[np.intp],
+    gaps: NDArray[np.intp],
+    newlines: NDArray[np.intp],
+) -> NDArray[np.bool_]:
+    """Whether a line break stands within a word, after its hyphen, so that no space belongs there.
+
+    After a soft hyphen always; after a hyphen between letters, but for a
+    hyphen that stands for the rest of a word ("pre- and post-war").
+    """
+    joins = (codes[text[gaps] + 1] == 0xAD) & (newlines[gaps] == 1)
+    hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
+    for n in np.flatnonzero(hyphens):
+        at, after = text[gaps[n]], text[gaps[n] + 1]
+        word = to_text(codes[after : after + _WORD])
+        within = at > 0 and chr(codes[at - 1]).isalnum() and word[0].isalnum()
+        joins[n] |= within and word.split(maxsplit=1)[0] not in _SUSPENDED
+    return joins
+
+
+def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: int) -> Iterator[int]:
+    """Where to cut a paragraph that is too long: after a sentence, else a space, else anywhere."""
+    while end - start > PIECE_CHARACTERS:
+        window = to_text(codes[kept[start : start + PIECE_CHARACTERS + 1]])
+        sentence = max(window.rfind(mark) for mark in (". ", "! ", "? ", "\u2026 "))
+        if sentence > PIECE_CHARACTERS // 2:
+            start += sentence + 2
+        elif (space := window.rfind(" ")) > 0:
+            start += space + 1
+        else:
+            length = PIECE_CHARACTERS
+            while length > PIECE_CHARACTERS // 2 and unicodedata.combining(window[length]):
+                length -= 1  # an accent stays with its letter
+            start += length
+        if start >= end:
+            return
+        yield start
+
+
+def _compose(paragraph: Paragraph) -> Paragraph:
+    """Make letters with combining accents one character where Unicode has one.
+
+    Many tables know é and not e followed by U+0301.
+    """
+    if _COMBINING.isdisjoint(paragraph.codes.tolist()):
+        return paragraph
+    composed: list[str] = []
+    places: list[int] = []
+    for character, place in zip(paragraph.text, paragraph.source.tolist(), strict=True):
+        together = ""
+        if composed and ord(character) in _COMBINING:
+            together = unicodedata.normalize("NFC", composed[-1] + character)
+        if len(together) == 1:
+            composed[-1] = together
+        else:
+            composed.append(character)
+            places.append(place)
+    codes = to_codes("".join(composed))
+    return Paragraph(
+        codes,
+        np.array(places, np.int64),
+        paragraph.end,
+        paragraph.continues,
+        frozenset(codes.tolist()),
+    )
