@@ -15,8 +15,8 @@ DOCUMENT = Path("docs/analysis.md").read_text(encoding="utf-8")
 def schemas():
     """All there are, by name."""
     found = {}
-    for module in pkgutil.iter_modules(vbraille.analysis.__path__):
-        for value in vars(importlib.import_module(f"vbraille.analysis.{module.name}")).values():
+    for module in pkgutil.walk_packages(vbraille.analysis.__path__, "vbraille.analysis."):
+        for value in vars(importlib.import_module(module.name)).values():
             if isinstance(value, Schema):
                 found[value.name] = value
     return found
