@@ -1,7 +1,9 @@
 """The README and the pages of docs/: their commands can be given, and what they name is there."""
 
+import ast
 import re
 import shlex
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -108,3 +110,21 @@ def test_a_picture_has_words():
     for page in PAGES:
         for words in re.findall(r"!\[([^\]]*)\]", page.read_text(encoding="utf-8")):
             assert len(words.split()) > 10, (page.name, words)
+
+
+def test_a_class_s_name_stands_for_one_thing():
+    named = Counter(
+        node.name
+        for path in (ROOT / "vbraille").rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    )
+    assert [name for name, count in named.items() if count > 1] == []
+    told = {words for words in code(ROOT / "docs/glossary.md") if words[0].isupper()}
+    assert told <= set(named)
+
+
+def test_the_glossary_has_each_word_once():
+    page = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    words = re.findall(r"\*\*([^*]+)\*\*:", page)
+    assert sorted(set(words)) == sorted(words)

@@ -41,11 +41,11 @@ class Recorder:
     Parameters
     ----------
     file
-        Of `new_file`.
+        An open file, as `new_file` gives it.
     display
-        The hardware.
+        The actuators and the carriage.
     width
-        Cells a line.
+        How many cells a line has.
     """
 
     def __init__(self, file: NewFile, display: Display, width: int) -> None:
@@ -101,12 +101,12 @@ class Recorder:
 
     @property
     def stored_bytes(self) -> int:
-        """What the frames and their places take on the disk so far, compressed."""
+        """Tell how many bytes the frames and their places take on the disk so far, compressed."""
         kept = (self._time, *self._pose, self._line, self._part, self._frames)
         return sum(dataset.id.get_storage_size() for dataset in kept)
 
     def add_line(self, masks: NDArray[np.uint8]) -> int:
-        """Append a line of the page; its row in ``page/cells``."""
+        """Append a line of the page, and return its row in ``page/cells``."""
         row = self._length.shape[0]
         self._cells.resize(row + 1, 0)
         self._cells[row, : masks.size] = masks
@@ -125,14 +125,14 @@ class Recorder:
         theta_rad: NDArray[np.float64] | float = 0.0,
         part: NDArray[np.int64] | int = 0,
     ) -> None:
-        """Append the frames of a stretch of one line, or of a page of lines.
+        """Append frames of one line, or of a page of lines.
 
         Parameters
         ----------
         t_s, x_mm : float64[n]
-            When, and where the array's centre was.
+            Times, and places of the array's centre.
         line : int64[n] or int
-            Row of ``page/cells`` that was under the array.
+            Number of the row of ``page/cells`` that was under the array.
         frames : float32[n, rows, columns]
             Deflections, 0 … 1.
         y_mm, theta_rad : float64[n]
@@ -160,9 +160,9 @@ class Poses(NamedTuple):
     Parameters
     ----------
     t_s : float64[n]
-        When, from 0.
+        Time of each frame, from 0.
     x_mm, y_mm, theta_rad : float64[n]
-        Its pose, see `vbraille.pose`.
+        Pose of the array then; see `vbraille.pose`.
     """
 
     t_s: NDArray[np.float64]
@@ -172,9 +172,10 @@ class Poses(NamedTuple):
 
 
 def poses_of(file: h5py.File) -> Poses:
-    """Poses of a recording of any format.
+    """Read the poses of a recording of any format.
 
-    One of format 1, without the attribute ``format``, has the place of the array's left column.
+    A recording of format 1, which has no attribute ``format``, holds places of the array's left
+    column; its poses are made of them.
 
     Raises
     ------
@@ -189,10 +190,10 @@ def poses_of(file: h5py.File) -> Poses:
 
 
 def anchor_mm(file: h5py.File) -> float:
-    """How far right of the left column the point of the array is whose ``x_mm`` a recording has.
+    """Tell how far right of the array's left column the places in a recording were taken.
 
-    A `vbraille.render.program.Program` of the line, by its `with_anchor` with this, makes of
-    ``x_mm`` as it stands in the file the same frames, bit for bit.
+    `vbraille.render.program.Program.with_anchor` with this distance makes a program of the line
+    that gives the same frames for ``x_mm`` as it stands in the file, bit for bit.
 
     Raises
     ------
@@ -209,7 +210,7 @@ def _numbers(file: h5py.File, name: str) -> NDArray[np.float64]:
 
 
 def _half_mm(file: h5py.File) -> float:
-    """From the array's left column to its centre."""
+    """Tell the distance from the array's left column to its centre."""
     return float(np.asarray(file.attrs["column_offset_mm"])[-1]) / 2
 
 
@@ -225,9 +226,9 @@ def _format_of(file: h5py.File) -> int:
 
 @contextmanager
 def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
-    """Write an HDF5 file under another name, which gets its own once it is whole.
+    """Open an HDF5 file for writing, which gets its name only once it is whole.
 
-    Whatever ends the writing early leaves nothing behind.
+    If anything ends the writing early, nothing is left behind.
 
     Parameters
     ----------
@@ -276,7 +277,7 @@ def _refuse_existing(path: Path) -> None:
 
 
 class NewFile(h5py.File):
-    """A file in the making."""
+    """A file that is being written."""
 
     def __init__(self, target: _Target) -> None:
         super().__init__(target, "w")
@@ -284,11 +285,11 @@ class NewFile(h5py.File):
 
 
 class _DiskError(Exception):
-    """The system did not write; says why."""
+    """The system refused to write; the message says why."""
 
 
 class _Target(io.FileIO):
-    """A file for HDF5, which crashes the process some time after a write has failed.
+    """A file for HDF5, which would crash the process some time after a failed write.
 
     The first failure is kept for `check`, and what comes later goes nowhere.
     """

@@ -1,4 +1,4 @@
-"""What the source draws, as numbers and as pictures.
+"""The figures of Lévesque 2009, as numbers and as pictures.
 
 `series` and `surface` compute a `FigureTable` of numbers for each picture, `draw`
 makes a figure of it. `charts` says what charts of results hold, and

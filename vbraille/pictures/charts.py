@@ -1,4 +1,4 @@
-"""What charts of results hold: plain numbers and words, without a drawing."""
+"""Charts of results, as plain numbers and words; `drawcharts` draws them."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ Numbers = tuple[float | None, ...]
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Values of one kind, a group each; None where there is none.
+    """Values of one kind, one for each group; None where a group has none.
 
     Parameters
     ----------
     name
-        For the legend.
+        What the legend calls it.
     values
-        A value a group.
+        One value for each group.
     lows, highs
         Ends of each value's interval; empty for none.
     points
-        Of each participant a value a group; empty for none.
+        The values of each participant, one for each group; empty for none.
     """
 
     name: str
@@ -32,18 +32,18 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Bars:
-    """Bars side by side: a panel a measure, a group a label, a bar a series.
+    """Bars side by side: a panel for each measure, a group for each label, a bar for each series.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Title of the figure.
     across
         Label of the groups' axis.
     groups
-        Their labels.
+        Labels of the groups.
     panels
-        Label of the values' axis, and the series, of each panel; from the top.
+        For each panel, from the top, the label of the values' axis and the series.
     """
 
     title: str
@@ -59,13 +59,13 @@ class Curve:
     Parameters
     ----------
     name
-        Whose.
+        What the line is called, such as a participant.
     trials
-        Numbers, from 1.
+        Numbers of the trials, from 1.
     correct
-        0 or 1 of each.
+        1 for each trial answered rightly, 0 for each other.
     average
-        Over the past trials, from 0 to 1; None before there are enough.
+        Mean over the past trials, from 0 to 1; None before there are enough.
     """
 
     name: str
@@ -76,7 +76,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """Legibility over time, a panel a run: Lévesque 2009, fig. 3.14."""
+    """Legibility over time, a panel for each run: Lévesque 2009, fig. 3.14."""
 
     title: str
     runs: tuple[Curve, ...]
@@ -91,11 +91,11 @@ class Path:
     name
         What the panel shows.
     time_s, x_mm
-        Of the array's left column.
+        Times, and places of the array's left column then.
     start_s, end_s
-        Between these the trial counts.
+        Times between which the trial counts.
     span_mm
-        From the left column to the right one.
+        Distance from the left column to the right one.
     dots_mm
         Centres of the dots.
     """
@@ -111,7 +111,7 @@ class Path:
 
 @dataclass(frozen=True, slots=True)
 class Paths:
-    """Typical reading patterns, a panel each: Lévesque 2009, fig. 3.15."""
+    """Typical reading patterns, a panel for each: Lévesque 2009, fig. 3.15."""
 
     title: str
     paths: tuple[Path, ...]
@@ -124,13 +124,13 @@ class Matrix:
     Parameters
     ----------
     title
-        Of the figure.
+        Title of the figure.
     down, across
-        What rows and columns are.
+        What the rows are, and what the columns are.
     rows, columns
-        Their labels.
+        Labels of the rows and of the columns.
     counts
-        int, a tuple a row.
+        Whole numbers, a tuple for each row.
     marks
         Errors above the first have a thin frame, above the second a thick one.
     diagonal

@@ -1,6 +1,6 @@
-"""Figures of the tables: matplotlib, and never pyplot.
+"""Figures of the tables, made with matplotlib and without its pyplot.
 
-Everything is told apart by place, line style or fill, so that it holds in grey.
+Everything is told apart by place, line style or fill, so that it can be read in grey.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def draw(table: FigureTable) -> Figure:
 
 
 def profile(table: FigureTable) -> Figure:
-    """Fig. 4.3: a panel a texture level."""
+    """Draw fig. 4.3: a panel for each level of texture."""
     names = [name for name in table.columns if name != "u_mm"]
     figure = Figure(figsize=(1 + 2.7 * len(names), 3.6))
     panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
@@ -51,7 +51,7 @@ def profile(table: FigureTable) -> Figure:
 
 
 def mapping(table: FigureTable) -> Figure:
-    """Fig. 4.5: a panel a method, a curve an actuator row."""
+    """Draw fig. 4.5: a panel for each method, a curve for each row of actuators."""
     methods = list(dict.fromkeys(table["method"].tolist()))
     across = min(3, len(methods))
     down = -(-len(methods) // across)
@@ -70,7 +70,7 @@ def mapping(table: FigureTable) -> Figure:
 
 
 def wave(table: FigureTable) -> Figure:
-    """Figs. 3.8 and 3.9: the array at four positions, and each column along all of them."""
+    """Draw figs. 3.8 and 3.9: the array at four positions, and each column along all of them."""
     series = _numbered(table, "deflection_column_")
     figure = Figure(figsize=(8, 8.5))
     panels = figure.subplot_mosaic([[*"abcd"], ["curves"] * 4], height_ratios=(1, 3))
@@ -95,7 +95,7 @@ def wave(table: FigureTable) -> Figure:
 
 
 def strain(table: FigureTable) -> Figure:
-    """Fig. 3.10: two neighbours above, the strain between them below, a dot width a column."""
+    """Draw fig. 3.10: two neighbours above, the strain between them below, for each dot width."""
     widths = np.unique(table["dot_width_mm"])
     figure = Figure(figsize=(1 + 2.8 * len(widths), 5.4))
     grid = figure.subplots(2, len(widths), sharex=True, sharey="row", squeeze=False)
@@ -120,7 +120,7 @@ def strain(table: FigureTable) -> Figure:
 
 
 def page(table: FigureTable) -> Figure:
-    """The lines with the array's outline, and the array by itself: bars fill to the deflection."""
+    """Draw the lines with the array's outline, and below it the array with its deflections."""
     dots, actuators = table.where("what", "dot"), table.where("what", "actuator")
     x, y, pitch = actuators["x_mm"], actuators["y_mm"], actuators["width_mm"][0]
     rows = np.unique(y)
@@ -173,7 +173,7 @@ DRAWINGS = {
 
 
 def _curves(axes: Axes, x_mm: NDArray, series: NDArray) -> None:
-    """Curves one below the other, each on a line of its own where its deflection is 0."""
+    """Draw curves one below the other, each above a line of its own at deflection 0."""
     rest = -BAND * np.arange(len(series))
     axes.hlines(rest, x_mm[0], x_mm[-1], color=FAINT, linewidth=0.8)
     axes.hlines(rest + 1, x_mm[0], x_mm[-1], color=MIDDLE, linewidth=0.6, linestyle="dotted")
@@ -193,7 +193,7 @@ def _against(width_mm: float, pitch_mm: float) -> str:
 
 
 def _dots(axes: Axes, dots: FigureTable, raised: str, share: float) -> None:
-    """Dots of the page: raised ones filled, of the others rings of a share of their width."""
+    """Draw the dots of the page: raised ones filled, the others as small rings."""
     places = zip(dots["x_mm"], dots["y_mm"], dots["width_mm"] / 2, dots["raised"], strict=True)
     circles = [(Circle((x, y), r if up else share * r), up) for x, y, r, up in places]
     _patches(axes, [circle for circle, up in circles if not up], "none", MIDDLE)
@@ -214,5 +214,5 @@ class _Box(NamedTuple):
 
     @property
     def steepness(self) -> float:
-        """Its height by its width."""
+        """Height of the box divided by its width."""
         return (self.near - self.far) / (self.right - self.left)

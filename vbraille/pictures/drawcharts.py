@@ -1,6 +1,6 @@
-"""Figures of the charts of results: matplotlib, and never pyplot.
+"""Figures of the charts of results, made with matplotlib and without its pyplot.
 
-Everything is told apart by place, hatch, line style or grey, so that it holds in print.
+Everything is told apart by place, hatch, line style or grey, so that it can be read in print.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _MATRIX = 5.8, 8.2  # inches of its columns and rows: with its labels within A4'
 
 
 def draw_chart(chart: Chart) -> Figure:
-    """Draw a chart; what its words have that no picture can have is spelled."""
+    """Draw a chart; characters in its words that no picture can show are spelled."""
     with styled():
         match chart:
             case Bars():
@@ -69,7 +69,7 @@ def draw_chart(chart: Chart) -> Figure:
 
 
 def _bars(chart: Bars) -> Figure:
-    """Figs. 3.12, 4.7, 4.8 and 4.9: a panel a measure."""
+    """Draw figs. 3.12, 4.7, 4.8 and 4.9: a panel for each measure."""
     groups = [plain(group) for group in chart.groups]
     most = max((len(series) for _, series in chart.panels), default=1)
     across = 0.13 * (most + 1) if most > 1 else 0.3  # inches a group needs for its bars
@@ -99,7 +99,7 @@ def _bars(chart: Bars) -> Figure:
 
 
 def _draw_series(axes: Axes, series: Series, number: int, width: float) -> None:
-    """One series' bars, beside those of the others; each bar is 0.8 / their number wide."""
+    """Draw the bars of one series beside those of the others; all together are 0.8 wide."""
     values = _numbers(series.values)
     at = np.arange(values.size) - 0.4 + (number + 0.5) * width
     known = np.isfinite(values)
@@ -126,7 +126,7 @@ def _draw_series(axes: Axes, series: Series, number: int, width: float) -> None:
 
 
 def _draw_points(axes: Axes, series: Series, at: NDArray, width: float) -> None:
-    """Each participant's values upon the bars, side by side; joined where bars stand alone."""
+    """Draw each participant's values upon the bars, joined where a group has one bar."""
     for number, points in enumerate(series.points):
         # Beside each other in the middle half of the bar, so that like values are seen apart.
         aside = ((number + 0.5) / len(series.points) - 0.5) * width / 2
@@ -150,7 +150,7 @@ def _fill(number: int) -> Patch:
 
 
 def _runs(chart: Runs) -> Figure:
-    """Fig. 3.14: a panel a run, a dot a trial."""
+    """Draw fig. 3.14: a panel for each run, a dot for each trial."""
     figure, panels = _grid(len(chart.runs), most=4, across="trial", sharey=True)
     room = int(figure.get_figwidth() / min(4, len(chart.runs)) / _INCHES)
     for axes, run in zip(panels, chart.runs, strict=True):
@@ -176,7 +176,7 @@ def _draw_run(axes: Axes, run: Curve) -> None:
 
 
 def _paths(chart: Paths) -> Figure:
-    """Fig. 3.15: the array's band over time, place across, from below upwards."""
+    """Draw fig. 3.15: where the array was, from left to right, over time from below upwards."""
     figure, panels = _grid(
         len(chart.paths), most=3, across="place on the line, x (mm)", sharey=False
     )
@@ -216,7 +216,7 @@ def _draw_path(axes: Axes, path: Path) -> None:
 
 
 def _matrix(chart: Matrix) -> Figure:
-    """Tables 3.4, 3.5 and 4.1: presented from above, answered from the left."""
+    """Draw tables 3.4, 3.5 and 4.1: presented from the top down, answered from the left."""
     rows, columns = (
         [_lines(label, 2 * _LABEL) for label in labels] for labels in (chart.rows, chart.columns)
     )
@@ -258,28 +258,28 @@ def _matrix(chart: Matrix) -> Figure:
 
 
 def _digits_size(digits: int, cell: float) -> float:
-    """Points of a number that has room in a cell of so many inches; a digit is 0.64 em wide."""
+    """Find the size in points at which a number fits into a cell; a digit is 0.64 em wide."""
     return min(cell * 72 * 0.85 / (digits * 0.64), 11.0)
 
 
 def _frame(count: int, marks: tuple[int, ...]) -> float:
-    """Width of an error's frame, in points: 0 for none."""
+    """Choose the width of the frame of an error's count, in points; 0 is none."""
     return (0.0, 0.9, 2.6)[min(sum(count > mark for mark in marks), 2)]
 
 
 def _cell(down: int, across: int, **look: Any) -> Rectangle:
-    """Frame just within a cell, so that two neighbours have two."""
+    """Draw a frame just within a cell, so that the frames of neighbours stay apart."""
     inset = 0.08
     return Rectangle((across + inset, down + inset), 1 - 2 * inset, 1 - 2 * inset, **look)
 
 
 def _figure(width: float, height: float) -> Figure:
-    """Figure of a size in inches, whose parts `draw_chart` places."""
+    """Make a figure of a size in inches, whose parts `draw_chart` places."""
     return Figure(figsize=(width, height), constrained_layout=False)
 
 
 def _grid(panels: int, most: int, across: str, sharey: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with a grid of panels, at most so many side by side; the lowest ones are labelled."""
+    """Make a figure with a grid of panels, so many side by side; the lowest are labelled."""
     columns = min(most, max(math.ceil(math.sqrt(panels)), 1) if most > 3 else panels)
     wide, high = _PANELS[columns - 1]
     rows = -(-panels // columns)
@@ -301,10 +301,10 @@ def _legend(figure: Figure, keys: list, words: list[str]) -> None:
 
 
 def _lines(text: str, width: int) -> str:
-    """All of a label, in lines of so many characters."""
+    """Break a label into lines of so many characters."""
     return "\n".join(textwrap.wrap(plain(text), max(width, 4)))
 
 
 def _numbers(values: Numbers | tuple[int, ...]) -> NDArray[np.float64]:
-    """As an array, NaN for None."""
+    """Make an array, in which NaN stands for None."""
     return np.array([math.nan if value is None else value for value in values])

@@ -50,7 +50,7 @@ _NEEDLESS = re.compile(rb"(?<=\.\d\d)\d+| transform=\"rotate\(-0 [^)]*\)\"")
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Have figures made and written in the style of the house."""
+    """Let figures be made and written in the style that all of them share."""
     with style.context(["default", STYLE]), warnings.catch_warnings():
         # A name in a script that the font has not: SVG keeps it, PNG shows boxes.
         warnings.filterwarnings("ignore", r"Glyph .* missing from font", UserWarning)
@@ -58,14 +58,14 @@ def styled() -> Iterator[None]:
 
 
 def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
-    """Content of a figure's file.
+    """Make the content of a figure's file.
 
     Parameters
     ----------
     kind
-        Of `METADATA`: png, svg or pdf.
+        What the file is, a key of `METADATA`: png, svg or pdf.
     dpi
-        Dots per inch of a PNG.
+        Resolution of a PNG, in dots per inch.
     """
     content = io.BytesIO()
     # A figure that is laid out already would be so again, and come out otherwise.
@@ -79,7 +79,7 @@ def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG or SVG, by the suffix of the path; wholly or not at all.
+    """Write a figure as PNG or SVG, as the path's suffix says; a whole file or none.
 
     Raises
     ------

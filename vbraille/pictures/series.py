@@ -1,4 +1,4 @@
-"""The numbers behind each picture; what is drawn and what `--csv` prints are these.
+"""The numbers behind each picture, which are drawn, and which `--csv` prints.
 
 Deflections are shares of the full swing: 0 is rest, 1 the other end. Rows and
 columns of actuators count from 0, from the far left.
@@ -38,21 +38,21 @@ LETTER = np.array([0b110101], np.uint8)
 
 
 def profile(model: Model) -> FigureTable:
-    """Deflection across one dot, at each texture level of the source's.
+    """Compute the deflection across one dot, at each texture level of Lévesque 2009.
 
     Lévesque 2009, fig. 4.3 (STReSS²) and 3.2 (VBD).
 
     Parameters
     ----------
     model
-        Its style gives the dots' width, their contrast and the texture's cycles; its texture
-        level is added if it is not there yet.
+        The display and the style, which gives the dots' width, their contrast, and the texture's
+        cycles. The style's texture level is added to the others if it is not there yet.
 
     Returns
     -------
     Table
-        ``u_mm``, the distance from the dot's left edge, and of each level T a
-        column ``deflection_T<percent>``.
+        ``u_mm``, the distance from the dot's left edge, and a column
+        ``deflection_T<percent>`` for each level T.
     """
     style, tuning = model.style, model.style.tuning
     width = style.geometry.dot_width_mm
@@ -72,16 +72,16 @@ def mapping(
     masks: NDArray[np.uint8] = LETTER,
     methods: Sequence[Mapping] = tuple(MAPPINGS.values()),
 ) -> FigureTable:
-    """Deflection of the six rows of the STReSS² along a letter, under each method.
+    """Compute the deflection of the six rows of the STReSS² along a letter, for each mapping.
 
     Lévesque 2009, fig. 4.5, and the two methods of its author's later code.
 
     Parameters
     ----------
     masks : uint8[cells]
-        The letter, or several.
+        Dot masks of the letter, or of several.
     methods
-        To compare; six rows each.
+        The mappings to compare, of six rows each.
 
     Returns
     -------
@@ -107,14 +107,14 @@ def mapping(
 
 
 def wave(model: Model) -> FigureTable:
-    """Deflection of each column while the array passes one dot.
+    """Compute the deflection of each column while the array passes one dot.
 
     Lévesque 2009, eq. 3.1 and figs. 3.8-3.9.
 
     Parameters
     ----------
     model
-        Whose array and dots; the dot's left edge is at 0.
+        The display and the style. The dot's left edge is at 0.
 
     Returns
     -------
@@ -132,14 +132,14 @@ def wave(model: Model) -> FigureTable:
 
 
 def strain(geometry: Geometry, tuning: Tuning) -> FigureTable:
-    """Two neighbouring actuators of the VBD, and the strain of the skin between them.
+    """Compute two neighbouring actuators of the VBD, and the strain of the skin between them.
 
     Lévesque 2009, 3.2 and fig. 3.10: (δ_{i+1} - δ_i) / ε.
 
     Parameters
     ----------
     geometry
-        Its dot width is added to `STRAIN_WIDTHS_MM` if it is not there yet.
+        Distances, of which the dot width is added to `STRAIN_WIDTHS_MM` if it is not there yet.
 
     Returns
     -------
@@ -177,7 +177,7 @@ def _swing(
 
 
 def _grid(low: float, high: float, step: float) -> NDArray[np.floating]:
-    """Multiples of a step from `low` to `high`, 0 among them."""
+    """Make the multiples of a step from `low` to `high`, 0 among them."""
     return np.arange(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1) * step
 
 

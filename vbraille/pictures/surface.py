@@ -32,9 +32,9 @@ def page(
     Parameters
     ----------
     lines
-        From the top; the first dot row of the first is at y = 0.
+        The lines from the top; the first dot row of the first line is at y = 0.
     model
-        What they are shown on, and how.
+        The display that shows them, and the style.
     x_mm
         Place of the array's centre.
     line_index
@@ -43,11 +43,10 @@ def page(
     Returns
     -------
     Table
-        A row a dot, then a row an actuator (``what``). Of both ``line`` (its
-        number), ``x_mm`` and ``y_mm`` (of the centre; y grows to the reader)
-        and ``width_mm`` (of the dot, or the column pitch); of a dot ``cell``
-        (from 0), ``dot`` (1 … 8) and ``raised`` (0 or 1); of an actuator
-        ``row``, ``column`` and ``deflection``.
+        A row for each dot, then a row for each actuator; ``what`` tells which. Both have
+        ``line`` (its number), ``x_mm`` and ``y_mm`` (of the centre; y grows to the reader) and
+        ``width_mm`` (of the dot, or the column pitch). Dots have ``cell`` (from 0), ``dot``
+        (1 … 8) and ``raised`` (0 or 1); actuators have ``row``, ``column`` and ``deflection``.
 
     Raises
     ------
@@ -88,7 +87,7 @@ def page(
 
 
 def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
-    """Places of the dots of a line whose first dot row is at `top_mm`."""
+    """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
     dot = np.arange(6 if six else 8)
     dot_row = np.where(dot < 6, dot % 3, 3)
     right = (dot == 7) | ((dot >= 3) & (dot < 6))
@@ -107,7 +106,7 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
 
 
 def _first_row_mm(model: Model) -> float:
-    """Where actuator row 0 is when the first row that shows dots is upon the row it shows."""
+    """Tell where actuator row 0 is when the first row that shows dots is upon these dots."""
     style = model.style
     first = style.rows_on(model.display).start
     pairs = zip(style.mapping.left, style.mapping.right, strict=True)

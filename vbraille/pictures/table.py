@@ -1,4 +1,4 @@
-"""One picture's numbers, which are drawn or written as CSV."""
+"""The numbers of one picture, which are drawn, or written as CSV."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class FigureTable:
     kind
         Which picture: profile, mapping, wave, strain or page.
     title
-        What it shows, in a line.
+        What the picture shows, in a line.
     columns
-        Values by name, all of one length; the names tell the units. NaN where
-        a row has no such value.
+        Values by name, all of one length; the names tell the units. NaN stands
+        where a row has no such value.
 
     Raises
     ------
@@ -57,24 +57,24 @@ class FigureTable:
         return replace(self, columns={n: v[chosen] for n, v in self.columns.items()})
 
     def rows(self) -> Iterator[tuple]:
-        """Row by row, as plain Python values."""
+        """Tell the values row by row, as plain Python values."""
         return zip(*(values.tolist() for values in self.columns.values()), strict=True)
 
 
 def write_csv(table: FigureTable, stream: TextIO) -> None:
-    """Write a table, its column names first; numbers to the sixth decimal."""
+    """Write a table, its column names first, and its numbers to the sixth decimal."""
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(table.columns)
     writer.writerows(map(_spell, row) for row in table.rows())
 
 
 def tuning_words(tuning: Tuning) -> str:
-    """Texture, and contrast if it is turned down, for the end of a title."""
+    """Name the texture, and the contrast if it is turned down, for the end of a title."""
     return f", T = {100 * tuning.texture:g} %{contrast_words(tuning)}"
 
 
 def contrast_words(tuning: Tuning) -> str:
-    """Contrast for the end of a title; nothing if it is full."""
+    """Name the contrast for the end of a title; nothing if it is full."""
     return "" if tuning.contrast == 1 else f", contrast {100 * tuning.contrast:g} %"
 
 
@@ -83,4 +83,4 @@ def _spell(value: str | float) -> str:
         return value
     if math.isnan(value):
         return ""
-    return f"{round(value, 6) + 0.0:.12g}"  # + 0.0: no "-0"
+    return f"{round(value, 6) + 0.0:.12g}"  # + 0.0, so that no "-0" is written

@@ -1,13 +1,13 @@
-"""Words from outside, as pages and pictures can have them."""
+"""Text from outside, made fit for pages and pictures."""
 
 from __future__ import annotations
 
 import re
 
-# Where a line ends, and the tab: a space does in a line.
+# Ends of lines and the tab become a space.
 _BREAKS = re.compile("[\t-\r\x1c-\x1e\x85\u2028\u2029]+")
-# Neither XML nor HTML has these: controls, halves of characters, what is no character.
-# What turns the direction of the text around it is no better.
+# Characters that XML and HTML forbid: controls, lone surrogates, noncharacters.
+# So are those that turn the direction of the text around them.
 _UNFIT = re.compile(
     "[\0-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufdd0-\ufdef"
     + "".join(chr(plane << 16 | 0xFFFE) + chr(plane << 16 | 0xFFFF) for plane in range(17))
@@ -16,7 +16,7 @@ _UNFIT = re.compile(
 
 
 def plain(text: str) -> str:
-    """Text on one line; what no page can have is spelled, as Python does."""
+    """Put a text on one line; what no page can show is spelled as Python spells it."""
     return _UNFIT.sub(_spell, _BREAKS.sub(" ", text))
 
 
