@@ -225,7 +225,7 @@ THREADS = f"""
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
-from vbraille.translate import Document, Table
+from vbraille.translate import Document, BrailleTable
 
 NAMES = {TABLES!r}
 TEXT = "Words, numbers 123 and \\U0001f600 \\0 \\u0152uvre: " * 10
@@ -235,7 +235,7 @@ def work(n):
     start.wait()
     cells = []
     for m in range(6):
-        table = Table(NAMES[(n + m) % 3])
+        table = BrailleTable(NAMES[(n + m) % 3])
         paragraph = Document.from_text(TEXT * (1 + m % 4)).paragraph(0)
         cells.append((table.name, m, table.translate(paragraph).to_unicode()))
     return cells
