@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from tests.conftest import SEED
 from vbraille.errors import InputError
 from vbraille.translate import BrailleTable, Cells, Document
-from vbraille.translate.liblouis import nearest
 
 TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "de-g2.ctb")
 # What Unicode calls ignorable: no text, but how other text is put.
@@ -94,7 +93,6 @@ class TestTable:
     def test_the_nearest_are_named(self):
         with pytest.raises(InputError, match=r"the nearest are en-ueb-g2\.ctb, en-ueb-g1\.ctb"):
             BrailleTable("en-ueb-g2")
-        assert nearest("fr-bfu-g3", ["fr-bfu-g2.ctb"]).startswith("; the nearest are fr-bfu-g2.ctb")
 
     def test_a_file_that_is_no_table(self, texts, capfd):
         with pytest.raises(InputError, match=r"liblouis cannot use .* as a braille table"):
