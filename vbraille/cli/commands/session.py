@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.wanted import check_rate, refuse_hand
 from vbraille.errors import InputError, VbrailleError
+from vbraille.files import check_free, write_file
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import FORMAT, check_free, create, load, versions
+from vbraille.sessions.record.folder import FORMAT, create, load, versions
 from vbraille.sessions.record.participants import alike, participants_in
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import ScriptedAnswers, Typed, parse_answers
@@ -148,7 +149,7 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 def _export(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.anonymous import anonymous
-    from vbraille.sessions.record.export import Traces, encode, rows, to_csv, write_new
+    from vbraille.sessions.record.export import Traces, encode, rows, to_csv
     from vbraille.sessions.record.folder import whole_lines
     from vbraille.sessions.record.notes import read_notes
 
@@ -168,7 +169,7 @@ def _export(arguments: argparse.Namespace) -> int:
         if arguments.out is None:
             sys.stdout.write(table)
         else:
-            write_new(Path(arguments.out), encode(table))
+            write_file(Path(arguments.out), encode(table))
             _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
     # Where the table is printed, nothing else may be between it and who reads it.
     if arguments.anonymous and (notes := len(read_notes(record.told.events))):
