@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.report.shown import KINDS, csv_name, picture_name
+from vbraille.analysis.report.shown import KINDS, csv_name, figure_name
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.tojson import to_json
 from vbraille.analysis.report.tomarkdown import to_markdown
@@ -55,14 +55,14 @@ def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
     from vbraille.pictures.figurefiles import to_bytes
 
     drawn: dict[str, bytes] = {}
-    pictures: dict[str, bytes] = {}
-    for picture in results.pictures():
-        figure = draw_chart(picture.chart)
+    svgs: dict[str, bytes] = {}
+    for figure in results.figures():
+        drawing = draw_chart(figure.chart)
         for kind in KINDS:
-            drawn[picture_name(picture, kind)] = to_bytes(figure, kind, _DPI)
-        pictures[picture.name] = drawn[picture_name(picture, "svg")]
+            drawn[figure_name(figure, kind)] = to_bytes(drawing, kind, _DPI)
+        svgs[figure.name] = drawn[figure_name(figure, "svg")]
     return {
-        PAGE: encode(to_html(results, pictures, (TEXT, NUMBERS, *extra))),
+        PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *extra))),
         TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *extra))),
         NUMBERS: encode("".join(to_json(results))),
         **extra,
