@@ -53,6 +53,13 @@ def is_compiled() -> bool:
     return folder is not None and any(folder.glob("*/serialtick.run-*.nbc"))
 
 
+def compiling_note() -> str | None:
+    """What to say before a first reading, which takes a while; None if nothing is to compile."""
+    if is_compiled():
+        return None
+    return "compiling: what drives the actuators, once, in up to a minute; then it begins"
+
+
 @cache
 def _compiled_folder() -> Path | None:
     """Find the folder for compiled code of this source; None if none can be written."""

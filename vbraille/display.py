@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.errors import InputError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -119,3 +121,16 @@ class Display:
     def row_offsets_mm(self) -> NDArray[np.float64]:
         """How far each row is from row 0, towards the reader; float64[rows]."""
         return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
+
+
+def check_rate(rate_hz: float) -> float:
+    """Frames a second, if a loop can have so many.
+
+    Raises
+    ------
+    InputError
+        If it is not 1 to 10,000.
+    """
+    if not 1 <= rate_hz <= 10_000:
+        raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+    return rate_hz

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Protocol
 
-from vbraille.devices.base import Placing
+from vbraille.devices.events import Placing
 from vbraille.engine.record import Flag
 
 if TYPE_CHECKING:

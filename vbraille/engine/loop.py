@@ -20,8 +20,9 @@ from vbraille.pose import Pose
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device, Lent
+    from vbraille.devices.base import Device
     from vbraille.devices.events import Event
+    from vbraille.devices.lent import Lent
     from vbraille.engine.clock import Clock
     from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program

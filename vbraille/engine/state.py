@@ -24,8 +24,8 @@ from vbraille.render.program import nothing, scratch_for
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Lent
     from vbraille.devices.events import Event
+    from vbraille.devices.lent import Lent
     from vbraille.display import Display
     from vbraille.engine.ring import Ring
     from vbraille.render.program import Program

@@ -1,9 +1,12 @@
 """A plan that was damaged on the disk is refused in one sentence."""
 
+import json
+
 import pytest
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan, make_plan
+from vbraille.sessions.planning.planfile import stimulus_from_json, stimulus_to_json
 from vbraille.sessions.planning.protocol import load_protocol
 
 
@@ -57,3 +60,20 @@ class TestDamage:
         for end in range(0, len(text) - 2, 97):
             with pytest.raises(InputError, match=r"^the plan is damaged: "):
                 Plan.from_json(text[:end])
+
+
+class TestStimuli:
+    @pytest.mark.parametrize("name", ["legibility", "tuning-width"])
+    def test_one_comes_back_as_it_went(self, name):
+        for trial in make_plan(load_protocol(name), "P07", 42).trials:
+            for stimulus in trial.stimuli:
+                written = json.dumps(stimulus_to_json(stimulus))
+                assert stimulus_from_json(json.loads(written)) == stimulus
+
+    @pytest.mark.parametrize(
+        "change", [{"cells": ""}, {"cells": 3}, {"texture": 2.0}, {"cycles": 7.0}, {"hue": 1}]
+    )
+    def test_one_that_is_damaged(self, change):
+        (stimulus,) = make_plan(load_protocol("words"), "P07", 42).trials[0].stimuli
+        with pytest.raises(ValueError, match=r"."):
+            stimulus_from_json(stimulus_to_json(stimulus) | change)

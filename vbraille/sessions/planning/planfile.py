@@ -126,21 +126,40 @@ def decode(text: str) -> tuple[Entry, dict[str, tuple[Trial, ...]]]:
     return head, {name: tuple(map(_read_trial, head.items(name))) for name in _RUNS}
 
 
+def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
+    """Strings, numbers and None that say all of a stimulus, as plan.json has them."""
+    return {
+        "cells": to_braille(stimulus.masks),
+        "value_mm": stimulus.value,
+        **asdict(stimulus.tuning),
+        **asdict(stimulus.geometry),
+    }
+
+
+def stimulus_from_json(value: object) -> Stimulus:
+    """Make the stimulus that `stimulus_to_json` wrote.
+
+    Raises
+    ------
+    ValueError
+        If something is missing, is not of its type or is out of range.
+    """
+    entry = Entry(value, ("cells", "value_mm", *_TUNING, *_GEOMETRY))
+    return Stimulus(
+        spell(entry.text("cells"), {}),
+        Tuning(entry.number("texture"), entry.number("contrast"), entry.whole("cycles")),
+        Geometry(**{name: entry.number(name) for name in _GEOMETRY}),
+        None if entry["value_mm"] is None else entry.number("value_mm"),
+    )
+
+
 def _trial_entry(trial: Trial) -> dict[str, object]:
     return {
         "number": trial.number,
         "block": trial.block,
         "condition": trial.condition,
         "asked": trial.asked,
-        "stimuli": [
-            {
-                "cells": to_braille(stimulus.masks),
-                "value_mm": stimulus.value,
-                **asdict(stimulus.tuning),
-                **asdict(stimulus.geometry),
-            }
-            for stimulus in trial.stimuli
-        ],
+        "stimuli": [stimulus_to_json(stimulus) for stimulus in trial.stimuli],
     }
 
 
@@ -153,18 +172,8 @@ def _read_trial(value: object) -> Trial:
         entry.whole("number"),
         entry.whole("block"),
         entry.text("condition"),
-        tuple(map(_read_stimulus, entry.items("stimuli"))),
+        tuple(map(stimulus_from_json, entry.items("stimuli"))),
         (asked[0], asked[1]),
-    )
-
-
-def _read_stimulus(value: object) -> Stimulus:
-    entry = Entry(value, ("cells", "value_mm", *_TUNING, *_GEOMETRY))
-    return Stimulus(
-        spell(entry.text("cells"), {}),
-        Tuning(entry.number("texture"), entry.number("contrast"), entry.whole("cycles")),
-        Geometry(**{name: entry.number(name) for name in _GEOMETRY}),
-        None if entry["value_mm"] is None else entry.number("value_mm"),
     )
 
 
