@@ -72,7 +72,7 @@ class Difference:
     what
         Field of `Display`, or of INFO.
     was, now
-        Its values.
+        Values of the property, before and after.
     """
 
     what: str
@@ -93,7 +93,7 @@ class Stranger(Event):
     differences
         In what it is otherwise: fields of `Display`.
     version
-        Of the protocol that it speaks, if it is another one.
+        Version of the protocol that it speaks, if that is another one.
     fault
         What cannot be in what it says of itself, with field and value; empty if that is not it.
     """
@@ -146,9 +146,9 @@ class Notice(Event):
     Parameters
     ----------
     code
-        Its maker's number for it.
+        Number by which the device's maker calls it.
     text
-        Its words; may be empty.
+        What the device says, in words; may be empty.
     """
 
     code: int
@@ -171,7 +171,7 @@ class Fault(Event):
     code
         The device's number for it; None if it does not say what is wrong.
     text
-        Its words; may be empty.
+        What the device says of it, in words; may be empty.
     stuck
         Whether it does not go to rest when it must.
     """

@@ -13,7 +13,7 @@ STILL_MM: Final = 0.05
 JUMP_MM_S: Final = 5_000.0
 # How far from its centre an array's actuators are, about: turning it moves them so.
 REACH_MM: Final = 10.0
-# Of the velocity, Lévesque 2009, eqs. 9.4 and 9.5: N poses and M velocities, which remembers 59.
+# N poses and M velocities of Lévesque 2009, eqs. 9.4 and 9.5: the velocity is of 59 poses.
 DIFFERENCE: Final = 10
 MEAN: Final = 50
 GAP_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement

@@ -75,7 +75,7 @@ def head_of(
     Parameters
     ----------
     protocol, plan, conditions
-        Of the session.
+        What the session does, in which order, and with what.
     fields
         What is said of the participant.
     """

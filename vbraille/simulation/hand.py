@@ -120,11 +120,11 @@ class Habits:
     movement_s
         How long a movement lasts.
     pause_chance, pause_s
-        Of standing still, and how long.
+        Chance of standing still, and for how long.
     regression_chance, regression_mm
-        Of a step back, and how far.
+        Chance of a step back, and how far it goes.
     rescan_chance, rescan_mm
-        Of going back to feel one cell or two again, and how far for each.
+        Chance of going back to feel one cell or two again, and how far for each.
     passes
         How often a line is read.
 

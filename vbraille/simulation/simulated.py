@@ -47,7 +47,7 @@ class SimulatedDevice(Device):
     info
         What it is to be.
     now_ns
-        Its clock.
+        Tells the time of the device's clock.
     hand
         What moves its carriage; `move` does, too.
     steering

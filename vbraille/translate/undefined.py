@@ -29,9 +29,9 @@ class Undefined(StrEnum):
     MARK = "mark"
     """The same short marker, such as ``[?]``, for each run of them."""
     NAME = "name"
-    """Its name in Unicode, such as ``[grinning face]``."""
+    """The character's name in Unicode, such as ``[grinning face]``."""
     CODE = "code"
-    """Its number in Unicode, such as ``[U+1F600]``."""
+    """The character's number in Unicode, such as ``[U+1F600]``."""
     DROP = "drop"
     """Nothing."""
 

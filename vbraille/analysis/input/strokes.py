@@ -52,11 +52,11 @@ class Stroke:
     Parameters
     ----------
     start, end
-        Its first and last tick: where the hand turned before, and turned next.
+        First and last tick of the stroke: the hand turned at either.
     from_mm, to_mm
         Where the array's left column was then.
     length_mm, seconds
-        Of it without the turns at its ends.
+        Length and time of the stroke without the turns at its ends.
     """
 
     start: int
@@ -81,7 +81,7 @@ class Reading:
     pattern
         One of `PATTERNS`, by `PATTERN_RULE`.
     duration_s
-        Of the trial, by the thesis's rule.
+        How long the trial took, by the thesis's rule.
     returned
         Whether the hand went back over the leftmost dot; see
         `vbraille.sessions.record.trajectory.Duration`.

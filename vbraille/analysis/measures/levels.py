@@ -174,7 +174,7 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
     measures
         What is compared.
     correction
-        Of the p-values of one measure and factor; see `statistics.correction.METHODS`.
+        How p-values of one measure and factor are corrected; see `statistics.correction.METHODS`.
     """
     rows: list[Row] = []
     notes: list[str] = []

@@ -136,7 +136,7 @@ def anova(
     Parameters
     ----------
     participants : str[n]
-        Whose score each is.
+        The participant of each score.
     factors
         One to four names, each with the level of every row, str[n]. Any name
         will do. Levels count in order of first appearance.

@@ -41,7 +41,7 @@ class Scale:
     errors : float64[k]
         Their standard errors.
     covariance : float64[k, k]
-        Of the strengths. That of s_i - s_j is c_ii + c_jj - 2 c_ij.
+        Covariance of the strengths; the variance of s_i - s_j is c_ii + c_jj - 2 c_ij.
     comparisons
         How many the scale comes from.
     """
@@ -157,9 +157,9 @@ def preferred(
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
     groups : int[n]
-        Whose comparison each is.
+        Number of the participant of each comparison.
     seed
-        Of the resampling of one participant's: the same seed, the same interval.
+        Begins the resampling, for one participant: the same seed gives the same interval.
     resamples
         How many. Those that leave some values uncompared are left out.
     level
@@ -227,7 +227,7 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
     groups : int[n]
-        Whose choice each is.
+        Number of the participant of each choice.
 
     Returns
     -------
@@ -327,7 +327,7 @@ def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArr
     """Where each scale is highest, float64[r] of float64[k] ascending and float64[r, k]."""
     k = values.size
     level = strengths >= strengths.max(axis=1, keepdims=True) - SAME
-    # Of equals an inner one, so that the parabola sees both.
+    # Among equals an inner value is taken, so that the parabola has neighbours on both sides.
     inner = np.r_[0, np.ones(max(0, k - 2), dtype=int), 0][:k]
     top = np.argmax(level * (1 + inner), axis=1)
     at_end = (top == 0) | (top == k - 1)

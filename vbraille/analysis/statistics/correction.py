@@ -36,7 +36,7 @@ def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDAr
     Parameters
     ----------
     p_values : float[n], 0…1
-        Of the tests that belong together; there may be none.
+        p-values of the tests that belong together; there may be none.
     method
         A key of `METHODS`.
 

@@ -50,7 +50,7 @@ def d_z_interval(t: float, n: int, level: float = LEVEL) -> Interval:
     if abs(t) > LARGEST:
         raise Unanswerable(f"t is beyond {LARGEST:g}")
     tail = (1 - level) / 2
-    # Of a positive t both ends are those of the negative one, turned round.
+    # Both ends for a positive t are those for the negative one, turned round.
     ends = [
         _root(lambda delta, p=p: noncentral_t_cdf(abs(t), n - 1, delta) - p, abs(t) - 1, abs(t) + 1)
         for p in (1 - tail, tail)

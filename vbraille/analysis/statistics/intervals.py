@@ -28,7 +28,7 @@ class Interval:
     Parameters
     ----------
     low, high
-        Its ends, in the unit of the quantity.
+        Ends of the interval, in the unit of the quantity.
     level
         Confidence, between 0 and 1.
     """

@@ -42,7 +42,7 @@ class PairedTest:
     d_z
         Cohen's d of the differences, mean / sd (Cohen 1988, 2.3.5).
     d_low, d_high
-        Its confidence interval, by noncentral t; None where t is too large for one.
+        Confidence interval of d, by noncentral t; None where t is too large for one.
     g_z
         `d_z` with Hedges' correction for few participants; None for two
         participants, where the correction leaves nothing of it.

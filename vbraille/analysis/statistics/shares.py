@@ -40,7 +40,7 @@ class Grid(NamedTuple):
     Parameters
     ----------
     ends : float64[MEANS + 1]
-        Of the cells of m, ascending from 0 to 1, even in the arcsine of its root.
+        Ends of the cells of m, ascending from 0 to 1, even in the arcsine of its root.
     spread : float64[SPREADS]
         σ, in log odds.
     centre : float64[MEANS, SPREADS]
@@ -61,7 +61,7 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
     Parameters
     ----------
     shares : float[n]
-        Of right answers, 0…1, one a participant.
+        Share of right answers, 0…1, for each participant.
     trials : int[n]
         How many answers each is of.
     level

@@ -53,7 +53,7 @@ class Transmission(NamedTuple):
 def transmission(counts: ArrayLike, *, seed: int, level: float = LEVEL) -> Transmission:
     """Information transmitted, in bits a character, given what was presented.
 
-    Its lower end is 0 where answers are not told apart from answers that do not depend on
+    The interval's lower end is 0 where answers are not told apart from such as do not depend on
     what was presented, by a permutation test of their mutual information. It is an interval for
     these people's answers taken together, each as if it came alone.
 
@@ -62,7 +62,7 @@ def transmission(counts: ArrayLike, *, seed: int, level: float = LEVEL) -> Trans
     counts : int[rows, columns]
         As in `information`.
     seed
-        Of the draws: the same seed, the same numbers.
+        Begins the draws: the same seed gives the same numbers.
     level
         Confidence.
 

@@ -34,7 +34,7 @@ class WithinSubject:
     cube : float64[participants, levels of the first factor, …]
         The scores.
     participants
-        Whose they are, in order of appearance.
+        The participants, in order of appearance.
     dropped
         Who is left out, each with the missing cells.
     averaged
@@ -64,7 +64,7 @@ def arrange(
     Parameters
     ----------
     participants : str[n]
-        Whose score each is.
+        The participant of each score.
     factors
         One to four names, each with the level of every row, str[n].
     scores : float[n]

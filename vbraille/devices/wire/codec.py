@@ -276,9 +276,9 @@ class Levels:
     Attributes
     ----------
     bits : int
-        Of one level.
+        Bits of one level.
     packed_bytes : int
-        Of all levels; bits left over in the last byte are 0.
+        Bytes of all levels; bits left over in the last byte are 0.
     """
 
     def __init__(self, actuators: int, top_level: int) -> None:

@@ -53,7 +53,7 @@ class Chance:
         items
             In any order.
         content
-            Of an item.
+            Tells the content of an item.
         before
             Content of what comes before them; None if nothing does.
 
@@ -92,7 +92,7 @@ def balanced_orders(number: int) -> list[tuple[int, ...]]:
     Parameters
     ----------
     number
-        Of conditions, at least 1.
+        How many conditions there are, at least 1.
 
     Returns
     -------

@@ -86,7 +86,7 @@ class TraceWriter:
     Parameters
     ----------
     path
-        Of the trace; it must not exist.
+        File of the trace, which must not exist yet.
     tie
         Tells which line of the journal is on the disk; None in a session of format 1, whose
         traces are not tied.
@@ -189,7 +189,7 @@ class Trace:
     Parameters
     ----------
     ticks : `TRACE`[n] or `LEFT_TRACE`[n]
-        Of its whole chunks, as they were written; `posed` and `left_places_mm` are of both kinds.
+        Ticks of the whole chunks, as they were written; see `posed` and `left_places_mm`.
     torn_bytes
         Length of a last chunk that a crash cut short.
     damage
@@ -199,7 +199,7 @@ class Trace:
     loose
         Whether a whole chunk of it names none.
     later : `TRACE`[m] or `LEFT_TRACE`[m], …
-        Of the whole chunks after the damage, a stretch after each place that is damaged.
+        Ticks of the whole chunks after the damage: one array after each place that is damaged.
     """
 
     ticks: NDArray[np.void]

@@ -14,7 +14,7 @@ class Order:
     word
         That it is typed by.
     name
-        Of the method of `vbraille.sessions.running.console.Console` that does it.
+        Name of the method of `vbraille.sessions.running.console.Console` that does it.
     help
         What it does, for people.
     takes
