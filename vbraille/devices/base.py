@@ -34,7 +34,7 @@ class Particulars:
     Parameters
     ----------
     firmware
-        Version of the firmware.
+        Its version.
     encoder
         What its encoder knows of its place, in words.
     largest_slew_per_s

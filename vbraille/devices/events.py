@@ -72,7 +72,7 @@ class Difference:
     what
         Field of `Display`, or of INFO.
     was, now
-        Values of the property, before and after.
+        Its values.
     """
 
     what: str
@@ -93,7 +93,7 @@ class Stranger(Event):
     differences
         In what it is otherwise: fields of `Display`.
     version
-        Version of the protocol that it speaks, if that is another one.
+        Of the protocol that it speaks, if it is another one.
     fault
         What cannot be in what it says of itself, with field and value; empty if that is not it.
     """
@@ -146,9 +146,9 @@ class Notice(Event):
     Parameters
     ----------
     code
-        Number by which the device's maker calls it.
+        Its maker's number for it.
     text
-        What the device says, in words; may be empty.
+        Its words; may be empty.
     """
 
     code: int
@@ -171,7 +171,7 @@ class Fault(Event):
     code
         The device's number for it; None if it does not say what is wrong.
     text
-        What the device says of it, in words; may be empty.
+        Its words; may be empty.
     stuck
         Whether it does not go to rest when it must.
     """

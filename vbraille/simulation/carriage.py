@@ -25,7 +25,7 @@ class Carriage:
     hand
         Reads lines as wide as the travel, one after the other; a recorded one reads once.
     span_mm, travel_mm
-        Span of the array, and travel of the carriage.
+        Of the array; of the carriage.
     """
 
     def __init__(self, hand: Hand | Recorded, span_mm: float, travel_mm: float) -> None:

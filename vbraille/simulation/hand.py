@@ -120,11 +120,11 @@ class Habits:
     movement_s
         How long a movement lasts.
     pause_chance, pause_s
-        Chance of standing still, and for how long.
+        Of standing still, and how long.
     regression_chance, regression_mm
-        Chance of a step back, and how far it goes.
+        Of a step back, and how far.
     rescan_chance, rescan_mm
-        Chance of going back to feel one cell or two again, and how far for each.
+        Of going back to feel one cell or two again, and how far for each.
     passes
         How often a line is read.
 

@@ -80,7 +80,7 @@ def load_recorded(path: Path | str) -> Recorded:
     Returns
     -------
     Recorded
-        The recorded hand, whose times begin at 0.
+        Its times begin at 0.
 
     Raises
     ------

@@ -47,7 +47,7 @@ class SimulatedDevice(Device):
     info
         What it is to be.
     now_ns
-        Tells the time of the device's clock.
+        Its clock.
     hand
         What moves its carriage; `move` does, too.
     steering

@@ -63,7 +63,7 @@ class Faults:
     defect
         What it is built wrong in; None if it is built right.
     seed
-        Begins the drawing of these chances.
+        Of these chances.
 
     Raises
     ------
@@ -150,7 +150,7 @@ class Simulator:
     controller : Controller
         What it is driven by.
     states_sent, states_dropped : int
-        How many STATEs were sent, and dropped, of those due since it was greeted.
+        Of those that were due since it was greeted.
     """
 
     def __init__(
@@ -186,7 +186,7 @@ class Simulator:
 
     @property
     def now_us(self) -> int:
-        """Tell the time of the controller's clock."""
+        """Its clock."""
         us = (time.monotonic_ns() - self._begun_ns) // 1000
         return us // 2 if self._faults.defect is Defect.SLOW_CLOCK else us
 

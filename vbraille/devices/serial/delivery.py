@@ -29,7 +29,7 @@ class Delivery:
     Parameters
     ----------
     rate_hz
-        How many STATEs the device sends a second: its ramp ends with a period of them.
+        Of the device's STATEs: its ramp ends with a period.
 
     Attributes
     ----------

@@ -75,7 +75,7 @@ class Identity:
     vendor, product
         Numbers of its make (VID and PID).
     serial_number
-        Serial number that the device on USB gives.
+        Its own.
     interface
         Which of several ports of one device; empty if it has one.
     """

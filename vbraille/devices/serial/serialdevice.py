@@ -49,9 +49,9 @@ class SerialDevice(Device):
     Parameters
     ----------
     port
-        The port that it is plugged into.
+        Its line.
     conversation
-        The conversation with the device, which has answered.
+        With the device, which has answered.
     now_ns, pause
         The host's clock, and how to wait for so many seconds.
     """

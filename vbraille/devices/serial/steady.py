@@ -37,7 +37,7 @@ WORK_BYTES = 256
 
 CONVERSATION = np.dtype(
     [
-        # What is known of the STATEs.
+        # Of the STATEs.
         ("heard_ns", "<i8"),  # when the last came, by the host's clock
         ("state_sequence", "<i8"),  # of the last
         ("missed", "<i8"),  # how many are missing so far
@@ -52,7 +52,7 @@ CONVERSATION = np.dtype(
         ("offset_ns", "<i8"),  # what is added to it, for it goes on over a restart
         ("device_ns", "<i8"),  # when the last sample was taken, by that clock
         ("x_mm", "<f8"),  # where the array's centre was then
-        # What is known of the FRAMEs.
+        # Of the FRAMEs.
         ("sequence", "<i8"),  # of the last
         ("sent_ns", "<i8"),  # when it went out; NEVER if none has since or it is acknowledged
         ("acknowledged_ns", "<i8"),  # how long it took until it was; NEVER as long as it is not

@@ -276,9 +276,9 @@ class Levels:
     Attributes
     ----------
     bits : int
-        Bits of one level.
+        Of one level.
     packed_bytes : int
-        Bytes of all levels; bits left over in the last byte are 0.
+        Of all levels; bits left over in the last byte are 0.
     """
 
     def __init__(self, actuators: int, top_level: int) -> None:
