@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import PLACES, mask_of
 from vbraille.pictures.table import FigureTable, tuning_words
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.reference import deflections
@@ -89,10 +90,10 @@ def page(
 
 def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
     """Places of the dots of a line whose first dot row is at `top_mm`."""
-    dot = np.arange(6 if six else 8)
-    dot_row = np.where(dot < 6, dot % 3, 3)
-    right = (dot == 7) | ((dot >= 3) & (dot < 6))
-    cell = np.repeat(np.arange(len(line)), dot.size)
+    dots = list(PLACES)[: 6 if six else 8]
+    bits = [mask_of([dot]) for dot in dots]
+    right, dot_row = np.array([PLACES[dot] for dot in dots]).T
+    cell = np.repeat(np.arange(len(line)), len(dots))
     centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
     return {
         "what": np.full(cell.size, "dot"),
@@ -101,8 +102,8 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
         "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
         "width_mm": np.full(cell.size, geometry.dot_width_mm),
         "cell": cell,
-        "dot": np.tile(dot + 1, len(line)),
-        "raised": (line.masks[:, None] >> dot.astype(np.uint8) & 1).ravel(),
+        "dot": np.tile(dots, len(line)),
+        "raised": (line.masks[:, None] & bits != 0).astype(np.uint8).ravel(),
     }
 
 
