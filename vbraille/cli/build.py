@@ -12,6 +12,7 @@ from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table, six_dot_table
+from vbraille.translate.languages import foreign_note
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Page:
 
     def say_note(self) -> None:
         """Say once if the text is not UTF-8, and of each script that the table does not know."""
-        for note in (self.document.note(), self.layout.book.table.note()):
+        for note in (self.document.note(), foreign_note(self.layout.book.table)):
             if note is not None:
                 print(printable(spelled(note)), file=sys.stderr, flush=True)
 

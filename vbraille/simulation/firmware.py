@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille import __version__
 from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import (
     FAULTY,
@@ -33,6 +32,7 @@ from vbraille.devices.wire.messages import (
     State,
     Watchdog,
 )
+from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
