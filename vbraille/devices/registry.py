@@ -58,7 +58,7 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
             try:
                 if fits:
                     check_actuators(device.display, wanted)
-                _check_rate(device.display, wanted.rate_hz)
+                _check_fast_enough(device.display, wanted.rate_hz)
             except InputError:
                 device.close()
                 raise
@@ -127,7 +127,7 @@ def check_actuators(info: Display, wanted: Display) -> None:
             )
 
 
-def _check_rate(info: Display, rate_hz: float) -> None:
+def _check_fast_enough(info: Display, rate_hz: float) -> None:
     """Raise InputError if a device is too slow for the loop."""
     if info.rate_hz < rate_hz:
         raise InputError(
