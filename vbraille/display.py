@@ -94,12 +94,12 @@ class Display:
 
     @property
     def span_mm(self) -> float:
-        """From the left column to the right one: S = (columns - 1) · pitch."""
+        """How far it is from the left column to the right one: S = (columns - 1) · pitch."""
         return (self.columns - 1) * self.column_pitch_mm
 
     @property
     def depth_mm(self) -> float:
-        """From row 0 to the row nearest to the reader."""
+        """How far it is from row 0 to the row nearest to the reader."""
         return (self.rows - 1) * self.row_pitch_mm
 
     @property

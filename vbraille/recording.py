@@ -42,7 +42,7 @@ class Recorder:
     Parameters
     ----------
     file
-        Of `new_file`.
+        A file that `new_file` has begun.
     display
         The hardware.
     width
@@ -161,9 +161,9 @@ class Poses(NamedTuple):
     Parameters
     ----------
     t_s : float64[n]
-        When, from 0.
+        The time of each frame, from 0.
     x_mm, y_mm, theta_rad : float64[n]
-        Its pose, see `vbraille.pose`.
+        The array's pose, see `vbraille.pose`.
     """
 
     t_s: NDArray[np.float64]
@@ -210,7 +210,7 @@ def _numbers(file: h5py.File, name: str) -> NDArray[np.float64]:
 
 
 def _half_mm(file: h5py.File) -> float:
-    """From the array's left column to its centre."""
+    """How far it is from the array's left column to its centre."""
     return float(np.asarray(file.attrs["column_offset_mm"])[-1]) / 2
 
 

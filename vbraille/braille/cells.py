@@ -104,12 +104,12 @@ class Cells:
         return first, after
 
     def to_unicode(self) -> str:
-        """Unicode braille patterns, U+2800-28FF."""
+        """Give the cells as Unicode braille patterns, U+2800-28FF."""
         return (self.masks.astype("<u4") + UNICODE_BLANK).tobytes().decode("utf-32-le")
 
     @classmethod
     def from_unicode(cls, text: str) -> Cells:
-        """Cells of Unicode braille patterns.
+        """Make cells of Unicode braille patterns.
 
         Raises
         ------

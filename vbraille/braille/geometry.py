@@ -28,9 +28,9 @@ class Geometry:
     dot_width_mm
         Width of a dot along x, twice its radius.
     dot_spacing_mm
-        From the centre of a cell's left dot column to that of its right one.
+        How far it is from the centre of a cell's left dot column to that of its right one.
     cell_gap_mm
-        From the right dot column of a cell to the left one of the next.
+        How far it is from the right dot column of a cell to the left one of the next.
     row_spacing_mm
         Between the centres of neighbouring dot rows.
     line_pitch_mm
@@ -67,7 +67,7 @@ class Geometry:
 
     @property
     def cell_pitch_mm(self) -> float:
-        """From a dot column of one cell to the same column of the next."""
+        """How far it is from a dot column of one cell to the same column of the next."""
         return self.dot_spacing_mm + self.cell_gap_mm
 
     def extent_mm(self, cells: int) -> float:

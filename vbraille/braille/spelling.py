@@ -155,7 +155,7 @@ def parse_choice(text: str) -> str:
     Parameters
     ----------
     text
-        As typed: 1 or 2, first or second, f or s, in either case.
+        What was typed: 1 or 2, first or second, f or s, in either case.
 
     Raises
     ------

@@ -32,7 +32,7 @@ def naming(driver: EntryPoint) -> Iterator[None]:
     Raises
     ------
     DeviceError
-        In the place of any other exception of the driver.
+        For any other exception of the driver, which it names.
     """
     try:
         yield

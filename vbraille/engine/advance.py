@@ -13,7 +13,7 @@ HOME_MM = 1.0
 
 
 class EndOfLine:
-    """Watch a hand read a line.
+    """What watches a hand read a line, and knows when it has read all of it.
 
     The hand has reached the line's end when the array's centre passes the last
     dot, and is done when the array is then back at the left stop, to a
@@ -22,7 +22,7 @@ class EndOfLine:
     Parameters
     ----------
     span_mm
-        From the array's left column to its right one.
+        How far it is from the array's left column to its right one.
     end_mm
         Right edge of the line's last dot.
     """

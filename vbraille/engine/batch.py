@@ -143,7 +143,7 @@ class BatchEngine:
         return ticks
 
     def start(self) -> None:
-        """Nothing: its ticks are the polls."""
+        """Do nothing: each poll does its ticks."""
 
     def close(self) -> None:
         """Nothing: whoever opened the device closes it."""
@@ -152,4 +152,4 @@ class BatchEngine:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Nothing, as `close`."""
+        """Do nothing, as `close` does."""

@@ -155,7 +155,7 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
     Returns
     -------
     float64[n]
-        As many as were acknowledged; none if the device does not do that.
+        How long each took that was acknowledged; none if the device does not acknowledge.
 
     Raises
     ------

@@ -85,7 +85,7 @@ def place_of(tick: np.void | None) -> float | None:
 
 
 def placing_of(tick: np.void | None) -> Placing:
-    """What the device waited for in a record."""
+    """What the device waited for at the tick of a record."""
     flags = 0 if tick is None else int(tick["flags"])
     if flags & Flag.STOP:
         return Placing.STOP

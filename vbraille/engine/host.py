@@ -192,14 +192,14 @@ class Host:
 
     @property
     def _posted(self) -> Mailbox:
-        """Where orders go, once started."""
+        """The mailbox, which is there once the host was started."""
         if self._mailbox is None:
             raise DeviceError("no device is open; start the host first")
         return self._mailbox
 
     @property
     def process_id(self) -> int | None:
-        """The host process."""
+        """The number of the host's process."""
         return None if self._process is None else self._process.pid
 
     @property
@@ -245,7 +245,7 @@ class Host:
         self._posted.zero()
 
     def poll(self) -> NDArray[np.void]:
-        """Records of all ticks since the last poll.
+        """Give the records of all ticks since the last poll.
 
         Raises
         ------
@@ -353,7 +353,7 @@ class Host:
         self.counts = answer.get("counts", self.counts)
 
     def _end(self) -> VbrailleError:
-        """Why there is no host any more."""
+        """The error that says why there is no host any more."""
         code = self._reap()
         fault, self._fault = self._fault, None  # kept, it would keep all that raises it
         if fault is not None:

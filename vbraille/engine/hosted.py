@@ -97,7 +97,7 @@ class Channel:
             os.write(self._descriptor, line + b"\n")
 
     def never_wait(self) -> None:
-        """Wait for no room from now on."""
+        """Have output dropped from now on that finds no room, and never wait."""
         os.set_blocking(self._descriptor, False)
 
 
@@ -107,7 +107,7 @@ class Hosted:
     Parameters
     ----------
     loop
-        To run.
+        The loop to run.
     mailbox
         What is to be done.
     parent
@@ -123,7 +123,7 @@ class Hosted:
         self._taken = 0
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
-        """Take a signal: end after this tick."""
+        """Take a signal, upon which the loop ends after this tick."""
         self._ended = True
 
     @property

@@ -51,7 +51,7 @@ class LocalEngine:
 
     @property
     def tally(self) -> Tally:
-        """What the loop has done."""
+        """What the loop has done so far."""
         return self.loop.tally
 
     @property
@@ -73,7 +73,7 @@ class LocalEngine:
         self.loop.show(picture, line)
 
     def poll(self) -> NDArray[np.void]:
-        """Do some ticks; their records."""
+        """Do some ticks, and give their records."""
         for _ in range(self._poll_ticks):
             self.loop.tick()
         self.loop.ring.publish()

@@ -124,7 +124,7 @@ class Loop:
 
     @property
     def tally(self) -> Tally:
-        """What happened so far."""
+        """How many ticks there were so far, and what happened in them."""
         now = self.state.now
         return Tally(
             ticks=int(now["tick"]),

@@ -124,7 +124,7 @@ class Mailbox:
         return self._words[_ZEROED]
 
     def zero(self) -> None:
-        """Say so."""
+        """Have the device take it that the carriage is at the left stop."""
         self._words[_ZEROED] += 1
 
     @property
@@ -133,7 +133,7 @@ class Mailbox:
         return bool(self._words[_STOPPED])
 
     def stop(self) -> None:
-        """End the loop."""
+        """Have the loop end."""
         self._words[_STOPPED] = 1
 
 

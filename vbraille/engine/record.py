@@ -43,7 +43,7 @@ X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE = range(len(FLOATS))
 
 
 class Flag(IntFlag):
-    """What else is true of a tick."""
+    """What else is true of a tick, a bit each."""
 
     PAUSED = 1
     SILENT = 2  # the device has given no pose for a while

@@ -85,7 +85,7 @@ class RingReader:
     Parameters
     ----------
     buffer, shape, size
-        Those that the writer's end was made with. The memory may be read-only.
+        The same that the writer's end was made with. The memory may be read-only.
 
     Attributes
     ----------

@@ -23,11 +23,11 @@ class Extent:
     Parameters
     ----------
     rows, columns
-        Of the array.
+        The rows and columns of the array.
     room
         Bytes of the largest picture.
     ticks
-        That the ring holds.
+        How many ticks the ring holds.
     """
 
     rows: int

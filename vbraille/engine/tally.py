@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Tally:
-    """What happened so far.
+    """How many ticks there were so far, and what happened in them.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Tally:
 
     @classmethod
     def of(cls, tick: np.void) -> Self:
-        """From a record of the ring."""
+        """Make a tally of a record of the ring."""
         return cls(
             ticks=int(tick["tick"]) + 1,
             late=int(tick["late"]),
@@ -46,7 +46,7 @@ class Tally:
         )
 
     def __add__(self, other: Tally) -> Tally:
-        """Both together."""
+        """The tally of the ticks of both."""
         return Tally(
             self.ticks + other.ticks,
             self.late + other.late,

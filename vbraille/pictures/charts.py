@@ -14,13 +14,13 @@ class Series:
     Parameters
     ----------
     name
-        For the legend.
+        What the legend calls it.
     values
         A value a group.
     lows, highs
         Ends of each value's interval; empty for none.
     points
-        Of each participant a value a group; empty for none.
+        A row a participant, with a value a group; empty if none are drawn.
     """
 
     name: str
@@ -37,11 +37,11 @@ class Bars:
     Parameters
     ----------
     title
-        Of the figure.
+        The title of the figure.
     across
         Label of the groups' axis.
     groups
-        Their labels.
+        The label of each group.
     panels
         Label of the values' axis, and the series, of each panel; from the top.
     """
@@ -91,11 +91,11 @@ class Path:
     name
         What the panel shows.
     time_s, x_mm
-        Of the array's left column.
+        When the array's left column was where.
     start_s, end_s
         Between these the trial counts.
     span_mm
-        From the left column to the right one.
+        How far it is from the array's left column to its right one.
     dots_mm
         Centres of the dots.
     """
@@ -124,11 +124,11 @@ class Matrix:
     Parameters
     ----------
     title
-        Of the figure.
+        The title of the figure.
     down, across
         What rows and columns are.
     rows, columns
-        Their labels.
+        The labels of the rows and of the columns.
     counts
         int, a tuple a row.
     marks

@@ -214,5 +214,5 @@ class _Box(NamedTuple):
 
     @property
     def steepness(self) -> float:
-        """Its height by its width."""
+        """The height of the picture by its width."""
         return (self.near - self.far) / (self.right - self.left)

@@ -301,10 +301,10 @@ def _legend(figure: Figure, keys: list, words: list[str]) -> None:
 
 
 def _lines(text: str, width: int) -> str:
-    """All of a label, in lines of so many characters."""
+    """Break a label into lines of so many characters, with nothing left out."""
     return "\n".join(textwrap.wrap(plain(text), max(width, 4)))
 
 
 def _numbers(values: Numbers | tuple[int, ...]) -> NDArray[np.float64]:
-    """As an array, NaN for None."""
+    """Make an array of numbers, NaN for None."""
     return np.array([math.nan if value is None else value for value in values])

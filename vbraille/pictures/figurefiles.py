@@ -58,12 +58,12 @@ def styled() -> Iterator[None]:
 
 
 def to_bytes(figure: Figure, kind: str, dpi: int = DPI) -> bytes:
-    """Content of a figure's file.
+    """Make the content of a figure's file.
 
     Parameters
     ----------
     kind
-        Of `METADATA`: png, svg or pdf.
+        One of the keys of `METADATA`: png, svg or pdf.
     dpi
         Dots per inch of a PNG.
     """

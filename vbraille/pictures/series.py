@@ -82,7 +82,7 @@ def mapping(
     masks : uint8[cells]
         The letter, or several.
     methods
-        To compare; six rows each.
+        The methods to compare, of six rows each.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def wave(model: Model) -> FigureTable:
     Parameters
     ----------
     model
-        Whose array and dots; the dot's left edge is at 0.
+        What has the array and the dots; the dot's left edge is at 0.
 
     Returns
     -------

@@ -33,7 +33,7 @@ def page(
     Parameters
     ----------
     lines
-        From the top; the first dot row of the first is at y = 0.
+        The lines from the top; the first dot row of the first is at y = 0.
     model
         What they are shown on, and how.
     x_mm

@@ -23,7 +23,7 @@ class FigureTable:
     Parameters
     ----------
     kind
-        Which picture: profile, mapping, wave, strain or page.
+        Which picture it is: profile, mapping, wave, strain or page.
     title
         What it shows, in a line.
     columns
@@ -57,7 +57,7 @@ class FigureTable:
         return replace(self, columns={n: v[chosen] for n, v in self.columns.items()})
 
     def rows(self) -> Iterator[tuple]:
-        """Row by row, as plain Python values."""
+        """The table row by row, as plain Python values."""
         return zip(*(values.tolist() for values in self.columns.values()), strict=True)
 
 

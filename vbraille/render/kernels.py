@@ -145,7 +145,7 @@ def _write(numbers, table, base, scratch, first, out, above, below):
 
 @_compiled
 def _write_larger(numbers, table, base, scratch, first, out, above, below):
-    """Of dots that overlap, the one with the larger swing."""
+    """Take the one with the larger swing of dots that overlap."""
     rows, columns = out.shape
     for row in range(above, below):
         idle = numbers[IDLE + row]

@@ -52,12 +52,12 @@ class Program:
 
     @property
     def kind(self) -> ProgramKind:
-        """What it is of."""
+        """The kind of picture that it is of."""
         return ProgramKind(int(self.numbers[work.KIND]))
 
     @property
     def nbytes(self) -> int:
-        """What it takes in memory."""
+        """How many bytes it takes in memory."""
         return self.numbers.nbytes + self.table.nbytes
 
     @property
@@ -110,7 +110,7 @@ class Program:
         theta_rad
             How far the array is turned.
         part
-            Which part of the picture; see `part_of`.
+            Which part of the picture is shown; see `part_of`.
         time_s
             The picture's own time, since its start.
 

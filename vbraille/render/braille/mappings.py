@@ -28,7 +28,7 @@ class Mapping:
     Parameters
     ----------
     name
-        Of the method.
+        What the method is called.
     left, right
         The dot row (0, 1, 2; 3 for dots 7 and 8) that each actuator row shows
         of a cell's left and right dot column; `NONE` for none.
