@@ -6,4 +6,6 @@ surface, ``render`` turns a place on it into deflections, ``devices`` and
 them.
 """
 
-__version__ = "0.1.0"
+from vbraille.version import __version__
+
+__all__ = ["__version__"]

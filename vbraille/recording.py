@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import h5py
 import numpy as np
 
-from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import whole_file
+from vbraille.version import __version__
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

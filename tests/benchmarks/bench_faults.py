@@ -35,7 +35,8 @@ _PATIENCE_S = 30.0
 _CONTROLLER = """
 import sys
 from tests.benchmarks.bench_engine import INFO
-from vbraille.cli.commands.simulate import go_real_time
+from vbraille.cli.commands.simulate import PRIORITY
+from vbraille.engine.realtime import come_first
 from vbraille.simulation.firmware import describe
 from vbraille.simulation.hand import Sweep
 from vbraille.devices.wire.messages import Encoder
@@ -52,7 +53,7 @@ def stopped():
         print(controller.rest_after_us / 1000, flush=True)
     return False
 print("ready", flush=True)
-go_real_time()
+come_first(PRIORITY)
 simulator.run(stopped)
 """
 _PARENT = """

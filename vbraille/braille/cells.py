@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import dots_of, mask_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -21,7 +23,7 @@ _BRF_MASKS[_BRF_CODES] = np.arange(64, dtype=np.uint8)
 # Files in the wild use 0x60-0x7E for 0x40-0x5E, letters in lower case among them.
 _BRF_MASKS[0x60:0x7F] = _BRF_MASKS[0x40:0x5F]
 
-_DOTS = ["-".join(str(d + 1) for d in range(8) if mask >> d & 1) or "0" for mask in range(256)]
+_DOTS = ["-".join(map(str, dots_of(mask))) or "0" for mask in range(256)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,12 +104,12 @@ class Cells:
         return first, after
 
     def to_unicode(self) -> str:
-        """Unicode braille patterns, U+2800-28FF."""
+        """Give the cells as Unicode braille patterns, U+2800-28FF."""
         return (self.masks.astype("<u4") + UNICODE_BLANK).tobytes().decode("utf-32-le")
 
     @classmethod
     def from_unicode(cls, text: str) -> Cells:
-        """Cells of Unicode braille patterns.
+        """Make cells of Unicode braille patterns.
 
         Raises
         ------
@@ -169,5 +171,5 @@ class Cells:
                 raise ValueError(
                     f"{word!r} is not the dots of a cell, such as 1-2-4, or 0 for none"
                 )
-            masks.append(sum({1 << int(dot) - 1 for dot in word if dot not in "-0"}))
+            masks.append(mask_of(int(dot) for dot in word if dot not in "-0"))
         return cls.bare(np.array(masks, np.uint8))

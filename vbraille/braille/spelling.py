@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import re
 import string
+from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
+from vbraille.braille.dots import dots_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 # Letters of literary braille are one cell each, the same in English and French, and ASCII braille
 # writes those cells as the letters.
@@ -16,22 +21,29 @@ LETTERS = dict(
         strict=True,
     )
 )
+# A cell that was not read: how it is typed and kept, and its number among dot masks.
 UNREAD = "?"
+UNREAD_MASK = 0x100
 
 _LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
 _DOT_NUMBERS = re.compile(r"[0-9-]+")
 _LONGEST_QUOTE = 20
-_UNREAD_MASK = 0x100  # one more than masks of eight dots
 
 
-def to_braille(masks: tuple[int, ...]) -> str:
+def to_braille(masks: Iterable[int]) -> str:
     """Unicode braille of some cells."""
     return "".join(chr(UNICODE_BLANK + mask) for mask in masks)
 
 
+def to_answer(masks: Iterable[int | None]) -> str:
+    """Answer as it is kept: Unicode braille, ``?`` for a place that is `UNREAD_MASK` or None."""
+    unread = (None, UNREAD_MASK)
+    return "".join(UNREAD if mask in unread else chr(UNICODE_BLANK + mask) for mask in masks)
+
+
 def name_dots(mask: int) -> str:
     """Dots of a mask as in a sentence: "dot 1", "dots 1 and 4", "no dots"."""
-    dots = [str(bit + 1) for bit in range(8) if mask >> bit & 1]
+    dots = list(map(str, dots_of(mask)))
     if not dots:
         return "no dots"
     if len(dots) == 1:
@@ -121,9 +133,9 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
         raise ValueError(f"nothing was typed; type {_count(places)}, or ? if none was read")
     if text.strip() == UNREAD:
         return UNREAD * places
-    typed = _cells(text, {UNREAD: _UNREAD_MASK, **_either_case(keys)})
+    typed = _cells(text, {UNREAD: UNREAD_MASK, **_either_case(keys)})
     for spelling, mask in typed:
-        if mask != _UNREAD_MASK and mask & ~shown_dots:
+        if mask != UNREAD_MASK and mask & ~shown_dots:
             raise ValueError(
                 f"{spelling!r} has {name_dots(mask)}, and the display shows "
                 f"{name_dots(shown_dots)} only; type a cell of those, or ? for one not read"
@@ -134,7 +146,7 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
         )
     if len(typed) > places:
         raise ValueError(f"{_count(len(typed))} typed, and {places} asked for; type no more")
-    return "".join(UNREAD if mask == _UNREAD_MASK else to_braille((mask,)) for _, mask in typed)
+    return to_answer(mask for _, mask in typed)
 
 
 def parse_choice(text: str) -> str:
@@ -143,7 +155,7 @@ def parse_choice(text: str) -> str:
     Parameters
     ----------
     text
-        As typed: 1 or 2, first or second, f or s, in either case.
+        What was typed: 1 or 2, first or second, f or s, in either case.
 
     Raises
     ------

@@ -12,7 +12,8 @@ from vbraille.layout.pages import Layout
 from vbraille.layout.unknown import Unknown
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table, six_dot_table
-from vbraille.wording import printable, spelled
+from vbraille.translate.languages import foreign_note
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -77,9 +78,9 @@ class Page:
 
     def say_note(self) -> None:
         """Say once if the text is not UTF-8, and of each script that the table does not know."""
-        for note in (self.document.note(), self.layout.book.table.note()):
+        for note in (self.document.note(), foreign_note(self.layout.book.table)):
             if note is not None:
-                print(printable(spelled(note)), file=sys.stderr, flush=True)
+                say_line(spelled(note), aside=True)
 
     def say_unknown(self) -> None:
         """Say at the end how many characters the table does not know, if there were any."""
@@ -187,7 +188,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
             raise InputError(f"{name} has no text in it; give a text file")
         raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
     cells = "1 cell" if width == 1 else f"{width} cells"
-    print(f"line width: {cells}, table {printable(book.table.name)}", file=sys.stderr, flush=True)
+    say_line(f"line width: {cells}, table {book.table.name}", aside=True)
     unknown = Unknown(book.table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille import __version__
 from vbraille.cli.options import lab, reading
 from vbraille.errors import InputError
+from vbraille.version import __version__
 
 TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:

@@ -34,7 +34,7 @@ class Particulars:
     Parameters
     ----------
     firmware
-        Its version.
+        The version of its firmware.
     encoder
         What its encoder knows of its place, in words.
     largest_slew_per_s

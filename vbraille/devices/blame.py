@@ -10,7 +10,6 @@ from pathlib import Path
 from traceback import extract_tb
 from typing import TYPE_CHECKING, NoReturn
 
-import vbraille
 from vbraille.errors import DeviceError, VbrailleError
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 # Set to anything, it lets a traceback through for whoever mends the driver.
 TRACEBACK = "VBRAILLE_TRACEBACK"
-_OURS = str(Path(vbraille.__file__).parent)
+_OURS = str(Path(__file__).parents[1])
 _PYTHON = sysconfig.get_path("stdlib")
 _PACKAGES = sysconfig.get_path("purelib")
 
@@ -33,7 +32,7 @@ def naming(driver: EntryPoint) -> Iterator[None]:
     Raises
     ------
     DeviceError
-        In the place of any other exception of the driver.
+        For any other exception of the driver, which it names.
     """
     try:
         yield

@@ -52,7 +52,7 @@ class Silent(Event):
     Parameters
     ----------
     silent_ms
-        For how long it has been silent.
+        How long it has been silent, in ms.
     """
 
     silent_ms: float
@@ -72,7 +72,7 @@ class Difference:
     what
         Field of `Display`, or of INFO.
     was, now
-        Its values.
+        What the field was before, and what it is now.
     """
 
     what: str
@@ -91,9 +91,9 @@ class Stranger(Event):
     name
         Name of what came back; empty if it does not say.
     differences
-        In what it is otherwise: fields of `Display`.
+        The fields of `Display` in which it is otherwise.
     version
-        Of the protocol that it speaks, if it is another one.
+        The version of the protocol that it speaks, if it is another one.
     fault
         What cannot be in what it says of itself, with field and value; empty if that is not it.
     """
@@ -112,7 +112,7 @@ class Changed(Event):
     Parameters
     ----------
     what
-        In what: fields of INFO.
+        The fields of INFO in which it is otherwise.
     gain, inverted, enabled
         How many of its actuators have another gain, rest level, and fitness for use.
     placing
@@ -146,9 +146,9 @@ class Notice(Event):
     Parameters
     ----------
     code
-        Its maker's number for it.
+        The number that the device's maker has given it.
     text
-        Its words; may be empty.
+        The device's words, which may be none.
     """
 
     code: int
@@ -171,7 +171,7 @@ class Fault(Event):
     code
         The device's number for it; None if it does not say what is wrong.
     text
-        Its words; may be empty.
+        The device's words, which may be none.
     stuck
         Whether it does not go to rest when it must.
     """
@@ -189,7 +189,7 @@ class Button(Event):
     Parameters
     ----------
     number
-        From 1.
+        Which button it is, counted from 1.
     pressed
         Whether it is down now.
     """
@@ -210,7 +210,7 @@ class Knob(Event):
     Parameters
     ----------
     number
-        From 1.
+        Which knob it is, counted from 1.
     value
         Where it stands, 0 to 1.
     """
@@ -220,7 +220,7 @@ class Knob(Event):
 
     @property
     def kind(self) -> Hashable:
-        """Knobs stand for themselves."""
+        """Turns of one knob are of one kind."""
         return type(self), self.number
 
 
@@ -299,7 +299,7 @@ def to_json(event: Event) -> dict[str, Any]:
 
 
 def from_json(told: Mapping[str, Any]) -> Event:
-    """Event that `to_json` made this of."""
+    """The event that `to_json` made this of."""
     values = {name: _value(name, value) for name, value in told.items() if name != "event"}
     return _KINDS[told["event"]](**values)
 

@@ -60,7 +60,7 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
             try:
                 if fits:
                     check_actuators(device.display, wanted)
-                _check_rate(device.display, wanted.rate_hz)
+                _check_fast_enough(device.display, wanted.rate_hz)
             except InputError:
                 device.close()
                 raise

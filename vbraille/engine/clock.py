@@ -10,7 +10,7 @@ _RETURN_NS = 6_000
 
 
 class Clock(Protocol):
-    """Nanoseconds that never go back."""
+    """A clock of nanoseconds that never goes back."""
 
     def now_ns(self) -> int:
         """Time since some fixed moment."""
@@ -52,11 +52,11 @@ class ManualClock:
         self._now_ns = 0
 
     def now_ns(self) -> int:
-        """Time turned so far."""
+        """How far the clock was turned so far."""
         return self._now_ns
 
     def busy_ns(self) -> int:
-        """Time turned so far."""
+        """How far the clock was turned so far."""
         return self._now_ns
 
     def sleep_until_ns(self, deadline_ns: int) -> None:

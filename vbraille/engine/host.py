@@ -247,7 +247,7 @@ class Host:
         self._posted.zero()
 
     def poll(self) -> NDArray[np.void]:
-        """Records of all ticks since the last poll.
+        """Give the records of all ticks since the last poll.
 
         Raises
         ------

@@ -133,7 +133,7 @@ class Mailbox:
         return bool(self._words[_STOPPED])
 
     def stop(self) -> None:
-        """End the loop."""
+        """Have the loop end."""
         self._words[_STOPPED] = 1
 
 

@@ -23,20 +23,33 @@ def go_real_time() -> NotInTime | None:
     NotInTime or None
         What the system does not allow; None if it allows everything.
     """
-    gc.collect()
-    gc.freeze()
-    gc.disable()
     _keep_awake()
     refused = []
-    try:
-        # Threads that a driver starts are not first in line: RESET_ON_FORK.
-        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
-        os.sched_setscheduler(0, policy, os.sched_param(PRIORITY))
-    except OSError:
+    if not come_first(PRIORITY):
         refused.append("priority")
     if not _lock_memory():
         refused.append("memory")
     return NotInTime(tuple(refused)) if refused else None
+
+
+def come_first(priority: int) -> bool:
+    """Have this thread run by SCHED_FIFO, without garbage collection; whether the system allows it.
+
+    Parameters
+    ----------
+    priority
+        Of two that have something to do, the one with the higher number runs.
+    """
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    try:
+        # Threads that a driver starts are not first in line: RESET_ON_FORK.
+        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+        os.sched_setscheduler(0, policy, os.sched_param(priority))
+    except OSError:
+        return False
+    return True
 
 
 def _keep_awake() -> None:

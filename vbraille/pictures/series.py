@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.spelling import to_braille
 from vbraille.pictures.table import FigureTable, contrast_words, tuning_words
 from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.render.braille.models import STRESS2, VBD
@@ -101,7 +102,7 @@ def mapping(
         "x_mm": np.tile(x, len(methods)),
         **_numbered("deflection_row_", np.concatenate(frames).T),
     }
-    letters = "".join(chr(0x2800 + mask) for mask in masks.tolist())
+    letters = to_braille(masks.tolist())
     title = f"{STRESS2.title}: {letters} on six actuator rows{tuning_words(tuning)}"
     return FigureTable("mapping", title, columns)
 

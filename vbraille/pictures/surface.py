@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import PLACES, mask_of
 from vbraille.pictures.table import FigureTable, tuning_words
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.reference import deflections
@@ -100,8 +101,8 @@ def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str,
         "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
         "width_mm": np.full(cell.size, geometry.dot_width_mm),
         "cell": cell,
-        "dot": np.tile(dot + 1, len(line)),
-        "raised": (line.masks[:, None] >> dot.astype(np.uint8) & 1).ravel(),
+        "dot": np.tile(dots, len(line)),
+        "raised": (line.masks[:, None] & bits != 0).astype(np.uint8).ravel(),
     }
 
 

@@ -110,7 +110,7 @@ class Program:
         theta_rad
             How far the array is turned, in radians.
         part
-            Which part of the picture; see `part_of`.
+            Which part of the picture is shown; see `part_of`.
         time_s
             The picture's own time, in seconds since its start.
 

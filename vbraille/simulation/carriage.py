@@ -25,7 +25,7 @@ class Carriage:
     hand
         Reads lines as wide as the travel, one after the other; a recorded one reads once.
     span_mm, travel_mm
-        Of the array; of the carriage.
+        How wide the array is, and how far the carriage moves.
     """
 
     def __init__(self, hand: Hand | Recorded, span_mm: float, travel_mm: float) -> None:

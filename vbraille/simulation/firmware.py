@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille import __version__
 from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import (
     FAULTY,
@@ -33,6 +32,7 @@ from vbraille.devices.wire.messages import (
     State,
     Watchdog,
 )
+from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -101,7 +101,7 @@ class Controller:
     buttons : int
         Bit 0 is the first button; 1 while it is pressed.
     force_mn : int | None
-        Of the finger on the array.
+        How hard the finger presses on the array; None if that is not measured.
     levels : uint16[rows · columns]
         Where each actuator stands.
     at_rest : bool
@@ -148,7 +148,7 @@ class Controller:
 
     @property
     def dropped(self) -> int:
-        """Frames received that came to nothing."""
+        """How many frames were received that came to nothing."""
         return sum(self._decoder.dropped.values()) + self._misfits
 
     @property
@@ -173,9 +173,9 @@ class Controller:
         Parameters
         ----------
         now_us
-            Its clock.
+            The time by the controller's clock.
         way_mm
-            Of the carriage, from the left stop.
+            How far the carriage is from the left stop.
         """
         self._now_us = now_us
         if self._timer_us is None:

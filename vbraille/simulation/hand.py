@@ -72,7 +72,7 @@ class Sweep:
     Parameters
     ----------
     speed_mm_s
-        To the right.
+        How fast it moves to the right.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class Sweep:
             )
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """The next line; see `Hand`."""
+        """Read the next line; see `Hand`."""
         way = along(start_mm, end_mm)
         if start_mm == end_mm:
             way.wait(EMPTY_LINE_S)
@@ -99,7 +99,7 @@ class Sweep:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """All lines of a page, each along its middle; see `Hand`."""
+        """Read all lines of a page, each along its middle; see `Hand`."""
         return read_lines(self.read_line, area)
 
 
@@ -120,11 +120,11 @@ class Habits:
     movement_s
         How long a movement lasts.
     pause_chance, pause_s
-        Of standing still, and how long.
+        The chance of standing still, and how long it does so.
     regression_chance, regression_mm
-        Of a step back, and how far.
+        The chance of a step back, and how far it goes.
     rescan_chance, rescan_mm
-        Of going back to feel one cell or two again, and how far for each.
+        The chance of going back to feel one cell or two again, and how far it goes for each.
     passes
         How often a line is read.
 
@@ -214,7 +214,7 @@ class HumanHand:
         self._drifting = np.random.default_rng((seed, 1))  # lines are read alike on any carriage
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """The next line; see `Hand`. Each call draws further."""
+        """Read the next line; see `Hand`. Each call draws further."""
         way = along(start_mm, end_mm)
         length_mm, passes = end_mm - start_mm, 1
         if length_mm >= LEAST_REREAD_MM:
@@ -259,7 +259,7 @@ class HumanHand:
             self._step(way, to_mm)
 
     def _step(self, way: Way, to_mm: float) -> None:
-        """One movement at a speed of its own."""
+        """Make one movement at a speed of its own."""
         habits = self.habits
         low, high = habits.speed_bounds_mm_s
         drawn = habits.speed_mm_s * math.exp(habits.spread * self._random.standard_normal())

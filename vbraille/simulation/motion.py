@@ -70,7 +70,7 @@ class Motion:
 
     @property
     def duration_s(self) -> float:
-        """Time of the last knot."""
+        """How long the motion takes: the time of its last knot."""
         return float(self.t_s[-1])
 
     def sample(
@@ -85,12 +85,12 @@ class Motion:
         first
             Number of the first tick wanted; tick 0 is at time 0.
         count
-            At most so many, for a long motion in parts; None is all.
+            How many ticks at most, for a long motion in parts; None is all.
 
         Returns
         -------
         float64[n]
-            In mm. The end itself is there only if it falls on a tick.
+            Places in mm. The end itself is among them only if it falls on a tick.
 
         Raises
         ------
@@ -136,11 +136,11 @@ class Way:
             self.wait(duration_s)
 
     def wait(self, duration_s: float) -> None:
-        """Stay for some time."""
+        """Stay where it is for some time."""
         self._t_s += max(duration_s, LEAST_KNOT_S)
         self._knots.append((self._t_s, self.x_mm))
 
     def motion(self) -> Motion:
-        """Return what there is of it."""
+        """Give the motion that was made so far."""
         t_s, x_mm = np.array(self._knots).T
         return Motion(t_s, x_mm)

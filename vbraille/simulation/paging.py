@@ -33,7 +33,7 @@ class Area:
     lines
         How many, 1 or more; line n, from 0, takes y from n to n + 1 line pitches.
     pitch_mm
-        From line to line.
+        How far it is from one line to the next.
     start_mm, end_mm
         Where the array begins and ends each line, along x as in `Motion`.
 

@@ -27,7 +27,7 @@ class Link:
         self._target: str | None = None
 
     def point(self, target: str) -> None:
-        """Point it at a port.
+        """Have the link point at a port.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class Port:
 
     @property
     def descriptor(self) -> int | None:
-        """To select on; None while it is unplugged."""
+        """The descriptor to select on; None while it is unplugged."""
         return self._master
 
     def plug(self) -> None:
@@ -99,7 +99,7 @@ class Port:
                 raise
 
     def unplug(self) -> None:
-        """Hang up, and be no more."""
+        """Hang up, and let the port go."""
         if self._link is not None:
             self._link.remove()
         for descriptor in (self._master, self._slave):
@@ -108,7 +108,7 @@ class Port:
         self._master = self._slave = None
 
     def read(self) -> bytes:
-        """What there is."""
+        """Give what has come."""
         if self._master is None:
             return b""
         try:

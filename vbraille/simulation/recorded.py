@@ -169,7 +169,7 @@ def _is_number(field: str) -> bool:
 
 
 def _number(field: str, name: str, where: str) -> float:
-    """Value of a field, finite."""
+    """The value of a field, which must be finite."""
     try:
         value = float(field)
     except ValueError:

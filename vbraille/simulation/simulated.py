@@ -47,7 +47,7 @@ class SimulatedDevice(Device):
     info
         What it is to be.
     now_ns
-        Its clock.
+        The clock by which the hand moves, in nanoseconds.
     hand
         What moves its carriage; `move` does, too.
     steering
@@ -89,7 +89,7 @@ class SimulatedDevice(Device):
 
     @property
     def hand(self) -> Hand | Recorded | None:
-        """What moves its carriage."""
+        """The hand that moves its carriage."""
         return self._hand
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
@@ -234,7 +234,7 @@ class SimulatedDevice(Device):
         self.frames += 1
 
     def _release(self) -> None:
-        """Nothing to let go."""
+        """Do nothing: there is nothing to let go."""
 
 
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:

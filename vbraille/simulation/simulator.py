@@ -63,7 +63,7 @@ class Faults:
     defect
         What it is built wrong in; None if it is built right.
     seed
-        Of these chances.
+        What these chances are drawn by.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Faults:
 
 
 class Spoiler:
-    """Loses and corrupts messages."""
+    """What loses and corrupts messages."""
 
     def __init__(self, faults: Faults) -> None:
         self._faults = faults
@@ -150,7 +150,7 @@ class Simulator:
     controller : Controller
         What it is driven by.
     states_sent, states_dropped : int
-        Of those that were due since it was greeted.
+        How many of the STATEs that were due since it was greeted went out, and how many did not.
     """
 
     def __init__(
@@ -186,7 +186,7 @@ class Simulator:
 
     @property
     def now_us(self) -> int:
-        """Its clock."""
+        """The time by the controller's clock."""
         us = (time.monotonic_ns() - self._begun_ns) // 1000
         return us // 2 if self._faults.defect is Defect.SLOW_CLOCK else us
 
@@ -278,7 +278,7 @@ class Simulator:
         )
 
     def _plug(self, now_us: int) -> None:
-        """Unplug it, or plug it in again."""
+        """Unplug the device, or plug it in again."""
         if self._port.descriptor is None:
             self._port.plug()
             self._say(f"plugged in again: {self._port.path}")

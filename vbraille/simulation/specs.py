@@ -21,7 +21,7 @@ SLOW = ("slow", "device")  # what the hand that reads so is called; the second i
 
 
 def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
-    """Hand of a spec.
+    """The hand that a spec describes.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class ReadPage:
     lines
         How many there are; line n, from 0, takes y from n to n + 1 line pitches.
     pitch_mm
-        From line to line.
+        How far it is from one line to the next.
     end_mm
         Where the last dot of the longest line ends.
 

@@ -56,7 +56,7 @@ class Wander:
         self._random = np.random.default_rng(seed)
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """To and fro on the next line, then to its end and back; see `Hand`."""
+        """Move to and fro on the next line, then to its end and back; see `Hand`."""
         way = along(start_mm, end_mm)
         low_mm, high_mm = start_mm + CLEAR_MM, end_mm - CLEAR_MM
         if low_mm >= high_mm:
@@ -69,7 +69,7 @@ class Wander:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """All about a page, and back to the start of its first line; see `Hand`."""
+        """Move all about a page, and back to the start of its first line; see `Hand`."""
         along(area.start_mm, area.end_mm)
         home = np.array([area.start_mm, area.middle_mm(0), 0.0])
         low = np.array([area.start_mm, 0.0, -TURN_RAD])

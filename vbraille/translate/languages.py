@@ -158,6 +158,17 @@ def six_dot_table(language: str) -> str | None:
     return next((name for name in names if not BrailleTable(name).eight_dots), None)
 
 
+def foreign_note(table: BrailleTable) -> str | None:
+    """Say once of each script that passages are in it which a table does not know."""
+    script = table.take_foreign()
+    if script is None:
+        return None
+    return (
+        f"most of this passage is in {script.name}, which the table {table.name} does not "
+        f"know; {tables_for(script)}"
+    )
+
+
 def tables_for(script: Script) -> str:
     """End of a sentence that says which languages and tables there are for a script."""
     there = {table.language for table in list_tables()}

@@ -213,19 +213,12 @@ class BrailleTable:
         """What marks characters that the table does not know."""
         return "".join(map(chr, self._first_written(MARKERS)))
 
-    def note(self) -> str | None:
-        """Say once of each script that passages are in it which the table does not know."""
+    def take_foreign(self) -> Script | None:
+        """Give each script once that a passage is in and the table does not know; then None."""
         if self._noted == len(self._foreign):
             return None
-        # Not above: what a language takes is looked up among the tables here.
-        from vbraille.translate.languages import tables_for
-
-        script = list(self._foreign.values())[self._noted]
         self._noted += 1
-        return (
-            f"most of this passage is in {script.name}, which the table {self.name} does not "
-            f"know; {tables_for(script)}"
-        )
+        return list(self._foreign.values())[self._noted - 1]
 
     def translate(self, paragraph: Paragraph) -> Cells:
         """Cells of a paragraph, none of its characters left out unless that was asked for.

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille import __version__
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
@@ -19,6 +18,7 @@ from vbraille.analysis.input.sources import check_copies, distinct_names, named,
 from vbraille.analysis.input.trials import LeftOut, count, natural
 from vbraille.errors import InputError
 from vbraille.sessions.record.export import encode, to_csv
+from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

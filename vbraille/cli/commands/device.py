@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
 from vbraille.devices import opened_device
 from vbraille.devices.saying import say
 from vbraille.engine.checking import check
@@ -12,7 +13,6 @@ from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
 from vbraille.render import MODELS
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -47,9 +47,9 @@ def _list() -> int:
         ids = "" if port.vid is None else f", id {port.vid:04x}:{port.pid:04x}"
         number = f", serial number {port.serial_number}" if port.serial_number else ""
         name = port.description if port.description != "n/a" else "no name"
-        _say(f"port: serial:{port.device}, {name}{ids}{number}")
+        say_line(f"port: serial:{port.device}, {name}{ids}{number}")
     if not ports:
-        _say("port: none; plug the device in")
+        say_line("port: none; plug the device in")
     return 0
 
 
@@ -61,21 +61,21 @@ def _wanted(arguments: argparse.Namespace) -> Display | None:
 
 def _describe(device: Device) -> None:
     info, told = device.display, device.particulars
-    _say(f"name: {info.name}")
-    _say(f"actuators: {info.rows} row{'s' * (info.rows > 1)} of {info.columns}")
-    _say(f"pitch: {info.column_pitch_mm:g} mm along the line, {info.row_pitch_mm:g} mm across")
-    _say(f"levels: {info.levels}")
-    _say(f"rest side: {info.rest_side}")
-    _say(f"travel: {info.travel_mm:g} mm")
-    _say(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
-    _say(f"rate: {info.rate_hz:g} Hz")
+    say_line(f"name: {info.name}")
+    say_line(f"actuators: {info.rows} row{'s' * (info.rows > 1)} of {info.columns}")
+    say_line(f"pitch: {info.column_pitch_mm:g} mm along the line, {info.row_pitch_mm:g} mm across")
+    say_line(f"levels: {info.levels}")
+    say_line(f"rest side: {info.rest_side}")
+    say_line(f"travel: {info.travel_mm:g} mm")
+    say_line(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
+    say_line(f"rate: {info.rate_hz:g} Hz")
     if told is None:
         return
     slew = told.largest_slew_per_s
-    _say(f"firmware: {told.firmware or 'it does not say'}")
-    _say(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
-    _say(f"disabled actuators: {_places(told.disabled, info)}")
-    _say(f"inverted actuators: {_places(told.inverted, info)}")
+    say_line(f"firmware: {told.firmware or 'it does not say'}")
+    say_line(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
+    say_line(f"disabled actuators: {_places(told.disabled, info)}")
+    say_line(f"inverted actuators: {_places(told.inverted, info)}")
 
 
 def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
@@ -89,9 +89,5 @@ def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:
 def _check(device: Device) -> int:
     refused = go_real_time()
     if refused is not None:
-        _say(say(refused))
-    return check(device, RealClock(), _say)
-
-
-def _say(sentence: str) -> None:
-    print(printable(sentence), flush=True)
+        say_line(say(refused))
+    return check(device, RealClock(), say_line)

@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
                 page.layout,
                 host,
                 model=page.model,
-                say=_say,
+                say=say_line,
                 first=page.first,
                 last=page.last,
                 advance=arguments.advance == "return",
@@ -112,9 +112,9 @@ def run(arguments: argparse.Namespace) -> int:
             host.close()
     faults = ", ".join(f"{name} {count}" for name, count in host.counts.items() if count)
     if faults:
-        _say(f"device: {faults}")
+        say_line(f"device: {faults}")
     page.say_unknown()
-    _say(_summary(reader.lines, host.tally, rate_hz))
+    say_line(_summary(reader.lines, host.tally, rate_hz))
     return 0
 
 
@@ -144,7 +144,7 @@ class _Reading:
         self._reader.start()
         self._page.say_note()
         if self._keyboard.attached:
-            _say("h says the keys")
+            say_line("h says the keys")
         while not self._reader.done:
             for key in self._pressed():
                 self._press(key)
@@ -159,7 +159,7 @@ class _Reading:
 
     def _step(self, ticks: NDArray[np.void]) -> None:
         for sentence in told(self._host.take_events()):
-            _say(sentence)
+            say_line(sentence)
         if not ticks.size:
             return
         placing = placing_of(ticks[-1])
@@ -169,7 +169,7 @@ class _Reading:
                 raise InputError(
                     "the device must be told where its left stop is; read at a terminal"
                 )
-            _say(_PLACES.get(placing, "place: known"))
+            say_line(_PLACES.get(placing, "place: known"))
         line = self._reader.lines
         self._reader.step(ticks)
         felt = not int(ticks["flags"][-1]) & Flag.HELD
@@ -196,12 +196,12 @@ class _Reading:
         """Stop, with the array at rest, until the shell says to go on."""
         host = self._host
         paused, host.paused = host.paused, True
-        _say("stopped: the array rests; fg goes on")
+        say_line("stopped: the array rests; fg goes on")
         self._keyboard.release()
         self._suspension.stop()
         self._keyboard.take()
         host.paused = paused
-        _say("paused" if paused else "reading")
+        say_line("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
         if self._placing is Placing.STOP and key not in ("q", PASTE):
@@ -219,7 +219,7 @@ class _Reading:
         """
         if not self._keyboard.attached:
             raise fault
-        _say(f"fault: {fault}; space begins again, q stops")
+        say_line(f"fault: {fault}; space begins again, q stops")
         while True:
             keys = self._pressed()
             if "q" in keys:
@@ -228,11 +228,11 @@ class _Reading:
             if " " in keys:
                 break
             if keys:
-                _say("fault: nothing drives the device; space begins again, q stops")
+                say_line("fault: nothing drives the device; space begins again, q stops")
         self._placing = Placing.DONE
         self._host.start()
         self._reader.steer()
-        _say("reading")
+        say_line("reading")
 
 
 def _echo(chosen: str | None) -> Echo:
@@ -240,10 +240,6 @@ def _echo(chosen: str | None) -> Echo:
     if chosen is not None:
         return Echo(chosen)
     return Echo.NONE if sys.stdout.isatty() else Echo.BOTH
-
-
-def _say(sentence: str) -> None:
-    print(printable(sentence), flush=True)
 
 
 def _summary(lines: int, tally: Tally, rate_hz: float) -> str:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import gc
-import os
-from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
 from vbraille.devices.wire.messages import Encoder
+from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
 from vbraille.simulation.firmware import describe
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.simulation.specs import parse_hand
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Info
 
 # Above the engine's 40: a real controller has a processor of its own.
-_PRIORITY = 41
+PRIORITY = 41
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -47,15 +45,15 @@ def run(arguments: argparse.Namespace) -> int:
     with EAR.deferred():
         port = Port(Link(arguments.link) if arguments.link is not None else None)
         try:
-            simulator = Simulator(info, hand, port, say=_say, faults=faults)
-            _say(f"port: {port.path}")
+            simulator = Simulator(info, hand, port, say=say_line, faults=faults)
+            say_line(f"port: {port.path}")
             if arguments.link is not None:
-                _say(f"link: {arguments.link}")
-            go_real_time()
+                say_line(f"link: {arguments.link}")
+            come_first(PRIORITY)
             simulator.run(stopped=lambda: EAR.heard)
         finally:
             port.unplug()
-    _say(_summary(simulator))
+    say_line(_summary(simulator))
     return 0
 
 
@@ -71,19 +69,6 @@ def _info(arguments: argparse.Namespace) -> Info:
         return describe(device, Encoder[arguments.encoder.upper()])
     except ValueError as error:
         raise InputError(str(error)) from None
-
-
-def go_real_time() -> None:
-    """Be scheduled before the host, if the system allows it."""
-    with suppress(OSError):
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
-    gc.collect()
-    gc.freeze()
-    gc.disable()
-
-
-def _say(sentence: str) -> None:
-    print(printable(sentence), flush=True)
 
 
 def _summary(simulator: Simulator) -> str:

@@ -39,7 +39,7 @@ _GREETING: Final = frozenset({Stage.GREETING, Stage.ASKED})
 
 
 class _Wish(Enum):
-    """Kinds of messages that may be due."""
+    """The kinds of messages that may be due."""
 
     REST = auto()
     HELLO = auto()
@@ -74,7 +74,7 @@ class Conversation(Listening):
         return list(self._notices.take(now_ns))
 
     def lose(self, now_ns: int) -> None:
-        """The port is gone."""
+        """Take it that the port is gone."""
         if self._go(Cause.UNPLUGGED):
             self._tell_away(Unplugged(), now_ns)
 
@@ -104,7 +104,7 @@ class Conversation(Listening):
         Parameters
         ----------
         frame : float64[rows, columns]
-            In [0, 1].
+            Where the actuators are to be, in [0, 1].
         now_ns
             When.
         """
@@ -175,7 +175,7 @@ class Conversation(Listening):
         return self.info is not None and self.delivery.rest_due
 
     def sent(self) -> None:
-        """The message given last goes out."""
+        """Take it that the message given last goes out now."""
         now_ns, frames = self._now_ns, self.frames
         if self._offer is _Wish.FRAME:
             self._frame_due = False

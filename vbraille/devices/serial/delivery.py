@@ -29,7 +29,7 @@ class Delivery:
     Parameters
     ----------
     rate_hz
-        Of the device's STATEs: its ramp ends with a period.
+        How often the device sends STATE: its ramp ends with a period.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Delivery:
         self._sent, self.sent_ns = sequence, now_ns
 
     def told(self, now_ns: int) -> None:
-        """REST was sent."""
+        """Take it that REST was sent."""
         self.rest_due, self._told_ns = False, now_ns
 
     def stop(self, *, tell: bool) -> None:

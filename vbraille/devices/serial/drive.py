@@ -39,7 +39,7 @@ class Drive:
     limited : bool
         Whether the device limits how fast its actuators may be moved.
     slew_per_ns, period_ns : float
-        By how many swings, and over which time at most.
+        The most swings a nanosecond that they may be moved by, and the time between FRAMEs.
     swing, rest_level : float64[rows, columns], int64[rows, columns]
         Levels from rest to full swing, and at rest.
     top_level, bits : int
@@ -75,7 +75,7 @@ class Drive:
         Parameters
         ----------
         deflections : float64[rows, columns]
-            In [0, 1].
+            Where the actuators are to be, in [0, 1].
         now_ns
             When; the slew limit is by the time since the frame before. After a longer time than
             a period it is by a period: an actuator that stood still must not make up for it.
@@ -105,6 +105,6 @@ class Drive:
         self.last_ns = now_ns
 
     def rested(self, now_ns: int) -> None:
-        """The actuators go to rest by themselves."""
+        """Take it that the actuators go to rest by themselves."""
         self.last.fill(0.0)
         self.last_ns = now_ns

@@ -195,7 +195,7 @@ class Listening:
         return self.display.name if self.display is not None else ""
 
     def _take(self, message: Heard, now_ns: int) -> None:
-        """Take what is no STATE."""
+        """Take a message that is no STATE."""
         self.speaks = self.speaks or isinstance(message, Watchdog | Error)
         if isinstance(message, Info):
             if self.stage is Stage.ASKED:
@@ -313,7 +313,7 @@ class Listening:
             self._tell(fault, now_ns)
 
     def _pass(self, now_ns: int) -> None:
-        """Mind how long nothing has come."""
+        """Count how long nothing has come, and do what is due then."""
         if self.display is None:
             if now_ns - self._begun_ns >= ANSWER_MS * _NS_PER_MS:
                 self._go(Cause.NO_ANSWER)
@@ -328,7 +328,7 @@ class Listening:
             self._hello_ns = now_ns
 
     def _fall(self, cause: Cause, now_ns: int) -> None:
-        """The device went to rest, or may have."""
+        """Take it that the device went to rest, or may have."""
         self._go(cause)
         self._stop(tell=False)
         self.frames.felt_ns = now_ns

@@ -84,7 +84,7 @@ def begin(
         conversation = Conversation(now_ns(), rate_hz)
         info = greet(port, conversation, now_ns, pause)
         if rate_hz is not None:
-            _check_rate(info, rate_hz)
+            _check_often_enough(info, rate_hz)
             _check_baud(port.address, info, rate_hz)
         return SerialDevice(port, conversation, now_ns, pause)
     except BaseException:  # a signal's, too
@@ -148,7 +148,7 @@ def _no_answer(conversation: Conversation, address: Address) -> DeviceError:
     )
 
 
-def _check_rate(info: Info, rate_hz: float) -> None:
+def _check_often_enough(info: Info, rate_hz: float) -> None:
     """See that frames come often enough for the device's watchdog.
 
     Raises

@@ -35,7 +35,7 @@ _GROUP = "dialout"
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where a port is.
+    """Where a port is, and how it is to be opened.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Address:
 
     @property
     def is_path(self) -> bool:
-        """Whether it is a path, and no URL."""
+        """Whether the address is a path, and no URL."""
         return "://" not in self.url
 
     @property
@@ -75,9 +75,9 @@ class Identity:
     vendor, product
         Numbers of its make (VID and PID).
     serial_number
-        Its own.
+        The number of this very device.
     interface
-        Which of several ports of one device; empty if it has one.
+        Which of the device's ports it is, if that has several; else empty.
     """
 
     vendor: int

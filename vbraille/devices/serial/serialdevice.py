@@ -49,9 +49,9 @@ class SerialDevice(Device):
     Parameters
     ----------
     port
-        Its line.
+        The line to the device.
     conversation
-        With the device, which has answered.
+        The conversation with the device, which has answered.
     now_ns, pause
         The host's clock, and how to wait for so many seconds.
     """

@@ -41,7 +41,7 @@ class SerialLine(Protocol):
     """Frames that were taken, and then did not go out."""
 
     def read(self) -> bytes:
-        """What has come; never waits."""
+        """Give what has come; never waits."""
         ...
 
     def write(self, frame: bytes) -> bool:
@@ -81,7 +81,7 @@ class DescriptorLine:
         self._left = b""  # of a frame that was sent in part
 
     def read(self) -> bytes:
-        """What has come, by one read."""
+        """Give what has come, by one read."""
         try:
             chunk = os.read(self._descriptor, _MOST_BYTES)
         except BlockingIOError:
@@ -163,7 +163,7 @@ class ThreadedLine:
             thread.start()
 
     def read(self) -> bytes:
-        """What the thread has read."""
+        """Give what the thread has read."""
         if self._come:
             return b"".join(self._come.popleft() for _ in range(len(self._come)))
         self._check()
@@ -183,10 +183,10 @@ class ThreadedLine:
     bare_descriptor = None
 
     def keep(self, rest: bytes) -> None:
-        """Nothing: no part of a frame goes out but by the thread."""
+        """Do nothing: no part of a frame goes out but by the thread."""
 
     def drop_unsent(self) -> None:
-        """Empty the letter box."""
+        """Forget the frame that waits for the thread."""
         with suppress(IndexError):
             self._box.popleft()
             self.lost += 1

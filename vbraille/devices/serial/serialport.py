@@ -167,7 +167,7 @@ class _Finder(threading.Thread):
                     return
 
     def stop(self) -> None:
-        """Look no more; what was found is closed."""
+        """Look for no port any more, and close one that was found."""
         with self._handing:
             self._stopped.set()
             if self.found is not None:

@@ -110,7 +110,7 @@ def silent(talk, now_ns):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def take(received, size, now_ns, talk, work):
-    """Take STATEs.
+    """Take all STATEs that have come.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def make(deflections, now_ns, talk, actuators, out):
     talk : record of CONVERSATION
         The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
     actuators : Actuators
-        Whose ``wanted`` and ``body`` are changed.
+        What FRAMEs are made with; its ``wanted`` and ``body`` are changed.
     out : uint8[bytes]
         Room for the frame, as it goes over the line.
 

@@ -276,9 +276,9 @@ class Levels:
     Attributes
     ----------
     bits : int
-        Of one level.
+        How many bits a level takes.
     packed_bytes : int
-        Of all levels; bits left over in the last byte are 0.
+        How many bytes all levels take; bits left over in the last one are 0.
     """
 
     def __init__(self, actuators: int, top_level: int) -> None:

@@ -61,7 +61,7 @@ class Fixed:
 
     @property
     def layout(self) -> Struct:
-        """The field alone."""
+        """The layout of the field by itself."""
         return Struct("<" + self.code)
 
     def pack(self, value: Any) -> bytes:
@@ -103,7 +103,7 @@ class Number(Fixed):
         return {} if self.none is None else {self.none: None}
 
     def check(self, name: str, value: int | None, _message: Any) -> None:
-        """From `low` to `high`, or None if that can be told."""
+        """See that the value is from `low` to `high`, or None if that can be told."""
         if value is None and self.none is not None:
             return
         if value is None or not self.low <= value <= self.high:
@@ -124,7 +124,7 @@ class OneOf(Fixed):
         return {int(choice): choice for choice in self.of}
 
     def check(self, name: str, value: int, _message: Any) -> None:
-        """One of the numbers."""
+        """See that the value is one of the numbers."""
         if value not in list(self.of):
             names = ", ".join(f"{choice.value} ({choice.name})" for choice in self.of)
             raise ValueError(f"{name} is {value}; it must be one of {names}")
@@ -142,7 +142,7 @@ class Text:
     most: int = 0xFF
 
     def check(self, name: str, value: str, _message: Any) -> None:
-        """Printable, and of the length allowed."""
+        """See that the text is printable, and of the length allowed."""
         if not value.isprintable() or (self.fewest and not value.strip()):
             raise ValueError(f"{name} is {value!r}; it must be printable, and not blank")
         if not self.fewest <= len(value.encode()) <= self.most:
@@ -170,7 +170,7 @@ class PerActuator:
     pack = bytes
 
     def check(self, name: str, value: bytes, message: Any) -> None:
-        """As many as there are actuators, up to `high`."""
+        """See that there are as many as actuators, each up to `high`."""
         actuators = message.rows * message.columns
         if len(value) != actuators:
             raise WrongLengthError(
@@ -193,12 +193,12 @@ class Packed:
     pack = bytes
 
     def check(self, name: str, value: bytes, _message: Any) -> None:
-        """From one byte to `most`."""
+        """See that there are 1 to `most` bytes."""
         if not 1 <= len(value) <= self.most:
             raise WrongLengthError(f"{name} are {len(value)} bytes; they must be 1 to {self.most}")
 
     def unpack(self, body: bytes, at: int, _earlier: dict[str, Any]) -> tuple[bytes, int]:
-        """Give all that is left."""
+        """Give all bytes that are left."""
         return body[at:], len(body)
 
 

@@ -43,9 +43,9 @@ def crc32(source, start, end):
     Parameters
     ----------
     source : uint8[bytes]
-        Bytes.
+        The bytes, with others around them.
     start, end : int64
-        Which of them; both in the array.
+        Which of them it is of; both are in the array.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def unframe(source, start, end, body):
     start, end : int64
         A frame in it, without its delimiter.
     body : uint8[bytes]
-        At least as long as the frame.
+        Room for the body, at least as long as the frame.
 
     Returns
     -------

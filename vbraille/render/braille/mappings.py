@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import DOT_ROWS, PLACES, mask_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 NONE = -1
-DOT_ROWS = 4  # dots 7 and 8 make a fourth row
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +79,12 @@ class Mapping:
         """
         bits = np.zeros((256, 2), np.uint16)
         masks = np.arange(256)
-        for dot, (column, dot_row) in _PLACE.items():
+        for dot, (column, dot_row) in PLACES.items():
             table = self.right if column else self.left
             rows = sum(1 << r for r, shown in enumerate(table) if shown == dot_row)
-            bits[:, column] |= np.where(masks >> dot & 1, rows, 0).astype(np.uint16)
+            bits[:, column] |= np.where(masks & mask_of([dot]), rows, 0).astype(np.uint16)
         return bits
 
-
-# Dot column and dot row of each dot, by its bit.
-_PLACE = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2), 6: (0, 3), 7: (1, 3)}
 
 _NO = (False,) * 6
 _PAIRS = (0, 0, 1, 1, 2, 2)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.braille.dots import PLACES, dots_of
 from vbraille.render.braille.profiles import Profile, half_sine_peak
 
 if TYPE_CHECKING:
@@ -88,10 +89,8 @@ def deflections(
     swing = np.zeros((x.size, display.rows, display.columns))
     own = style.rows_on(display)
     for cell, mask in enumerate(masks):
-        for dot in range(8):
-            if not mask >> dot & 1:
-                continue
-            dot_row, right = (dot % 3, dot >= 3) if dot < 6 else (3, dot == 7)
+        for dot in dots_of(int(mask)):
+            right, dot_row = PLACES[dot]
             edge = cell * geometry.cell_pitch_mm + right * geometry.dot_spacing_mm
             bump_mm = SWINGS[style.profile](surface - edge, geometry.dot_width_mm, tuning)
             for row, shown in enumerate(mapping.right if right else mapping.left, own.start):

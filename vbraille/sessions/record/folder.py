@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
 from vbraille.sessions.planning.plan import Plan
@@ -25,6 +24,7 @@ from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.salvage import salvage
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
+from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
+from vbraille.braille.spelling import to_answer
 from vbraille.errors import InputError
 from vbraille.sessions.simulated.observer import Observer
 from vbraille.wording import setting
@@ -222,7 +223,7 @@ class Simulated:
         places = self._lead_cells + len(trial.stimuli[0].masks)
         masks = self._observer.read(felt[0], places, random)
         asked = slice(*(self._lead_cells + place for place in trial.asked))
-        return "".join("?" if m is None else chr(0x2800 + m) for m in masks[asked]), 0
+        return to_answer(masks[asked]), 0
 
 
 def seed_of(text: str) -> int:

@@ -52,6 +52,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from vbraille.braille.dots import PLACES, mask_of
 from vbraille.sessions.simulated.skin import (
     STILL_MM_S,
     Exploration,
@@ -75,9 +76,6 @@ LEAST_SWING = 1e-4  # of the largest; rest itself is exactly 0
 APART = 0.1  # of the nominal dot width
 TIE = 0.04  # of the nominal length: as near as each other, where no noise decides
 
-# Dot column (0 = left) and dot row of each dot, by its bit.
-_PLACES = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Touch:
@@ -86,7 +84,7 @@ class Touch:
     Parameters
     ----------
     evidence : float64[places, 8]
-        E / E₀ by cell and bit of the dot mask; NaN where the hand was not, and
+        E / E₀ by cell and dot; NaN where the hand was not, and
         of dots that the mapping does not show.
 
     Raises
@@ -149,16 +147,16 @@ class Observer:
         self.noise = noise
         self._half_mm = array.span_mm / 2
         self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
-        # Rows that show the same dots are one channel: its number by bit of the dot mask.
+        # Rows that show the same dots are one channel: its number by dot.
         tables = mapping.left, mapping.right
         rows = {}
-        for bit, (side, dot_row) in enumerate(_PLACES):
+        for dot, (side, dot_row) in PLACES.items():
             if dot_row in tables[side]:
-                rows[bit] = tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
+                rows[dot] = tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
         kinds = sorted({*rows.values()})
         if not rows:
             raise ValueError(f"mapping {mapping.name} shows no dot; it must show one or more")
-        self._channels = {bit: kinds.index(kind) for bit, kind in rows.items()}
+        self._channels = {dot: kinds.index(kind) for dot, kind in rows.items()}
         # Frames times these are strains and swings, by pair or column and then by channel.
         signs = 1 - 2 * mapping.idle()
         weights = np.zeros((array.rows, len(kinds)))
@@ -203,9 +201,9 @@ class Observer:
                 over &= moving
                 speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
                 rms = rates.rms(left_mm, right_mm, smoothing_mm(speed_mm_s))
-                for bit, channel in self._channels.items():
-                    if _PLACES[bit][0] == side:
-                        evidence[place, bit] = rms[channel]
+                for dot, channel in self._channels.items():
+                    if PLACES[dot][0] == side:
+                        evidence[place, dot - 1] = rms[channel]
         return Touch(evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm))
 
     def answer(self, touch: Touch, random: np.random.Generator) -> list[int | None]:
@@ -215,7 +213,7 @@ class Observer:
             return [None] * len(noisy)
         strong = noisy[noisy > np.nanmax(noisy) / 2]
         criterion = strong.mean() / 2 if strong.size else math.inf
-        masks = (noisy > criterion) @ (1 << np.arange(8))
+        masks = (noisy > criterion) @ [mask_of([dot]) for dot in PLACES]
         return [
             None if np.isnan(row).all() else int(mask)
             for mask, row in zip(masks, noisy, strict=True)

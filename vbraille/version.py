@@ -1,0 +1,3 @@
+"""The version of this package, for whatever writes it into a file or says it."""
+
+__version__ = "0.1.0"
