@@ -10,11 +10,13 @@ from dataclasses import dataclass, replace
 from itertools import cycle
 from typing import TYPE_CHECKING
 
+from msgspec import structs
+
 from vbraille.errors import InputError
 from vbraille.sessions.planning import planfile
 from vbraille.sessions.planning.chance import Chance, balanced_orders
-from vbraille.sessions.planning.design import Combinations, StringList
-from vbraille.sessions.planning.practice import Item, content
+from vbraille.sessions.planning.design import Choice, Item, StringList
+from vbraille.sessions.planning.planfile import WrittenPlan, WrittenTrial
 from vbraille.sessions.planning.rules import check_plan, is_balanced
 from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
 from vbraille.wording import setting
@@ -22,7 +24,7 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.sessions.planning.design import Condition
+    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.protocol import Protocol
 
 __all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
@@ -75,14 +77,15 @@ class Plan:
     def to_json(self) -> str:
         """JSON, a trial a line; the same bytes on every machine."""
         return planfile.encode(
-            {
-                "format": self.version,
-                "protocol": self.protocol,
-                "participant": self.participant,
-                "seed": self.seed,
-                "order": self.order,
-            },
-            {"practice": self.practice, "trials": self.trials},
+            WrittenPlan(
+                self.version,
+                self.protocol,
+                self.participant,
+                self.seed,
+                self.order,
+                list(map(WrittenTrial.of, self.practice)),
+                list(map(WrittenTrial.of, self.trials)),
+            )
         )
 
     @classmethod
@@ -95,15 +98,15 @@ class Plan:
             If it is damaged.
         """
         with planfile.damage():
-            head, runs = planfile.decode(text)
+            written = planfile.decode(text)
             return cls(
-                head.text("protocol"),
-                head.text("participant"),
-                head.whole("seed"),
-                head.whole("order"),
-                runs["practice"],
-                runs["trials"],
-                head.whole("format"),
+                written.protocol,
+                written.participant,
+                written.seed,
+                written.order,
+                tuple(map(WrittenTrial.trial, written.practice)),
+                tuple(map(WrittenTrial.trial, written.trials)),
+                written.format,
             )
 
 
@@ -167,25 +170,13 @@ def make_plan(
 
 def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:
     """Conditions with what is given instead of the display's own values."""
-    for name, value in given.items():
-        if value is not None and all(name in condition.own for condition in protocol.conditions):
+    given = {name: float(value) for name, value in given.items() if value is not None}
+    for name in given:
+        if all(name in condition.given for condition in protocol.conditions):
             raise ValueError(
-                f"every condition of {protocol.name} has its own {name}; leave --{name} out"
+                f"every condition of {protocol.name} has its own {name}; leave {setting(name)} out"
             )
-    return [
-        replace(
-            condition,
-            tuning=replace(
-                condition.tuning,
-                **{
-                    name: float(value)
-                    for name, value in given.items()
-                    if value is not None and name not in condition.own
-                },
-            ),
-        )
-        for condition in protocol.conditions
-    ]
+    return [structs.replace(c, **(given | c.given)) for c in protocol.conditions]
 
 
 def _choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
@@ -237,7 +228,7 @@ def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> 
         return [chance.shuffled(block) for block in blocks]
 
     def shows(shown: _Shown) -> Item:
-        return content(protocol.design, shown[0])
+        return protocol.design.content(shown[0])
 
     ordered: list[list[_Shown]] = []
     before: Item | None = None
@@ -303,18 +294,18 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
 
 def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> Trial:
     """Make a trial of an item of the design; it gets its number later."""
-    design, tuning = protocol.design, condition.tuning
-    if isinstance(design, Combinations | StringList):
-        masks = tuple(map(int, item))
-        first = 0
-        if isinstance(design, Combinations):
-            first, masks = len(design.before), (*design.before, *masks, *design.after)
-        stimuli = (Stimulus(masks, tuning, protocol.geometry),)
-        return Trial(1, block, condition.name, stimuli, (first, first + len(item)))
+    design, tuning = protocol.design, protocol.tuning(condition)
+    if isinstance(design, Choice):
+        shown = [(design.string, value) for value in item]
+        asked = (0, len(design.string))
+    else:
+        before, after = design.around
+        shown = [((*before, *map(int, item), *after), None)]
+        asked = (len(before), len(before) + len(item))
     stimuli = tuple(
-        Stimulus(design.string, tuning, protocol.geometry_at(value), value) for value in item
+        Stimulus(masks, tuning, protocol.geometry_at(value), value) for masks, value in shown
     )
-    return Trial(1, block, condition.name, stimuli, (0, len(design.string)))
+    return Trial(1, block, condition.name, stimuli, asked)
 
 
 def _numbered(trials: list[Trial]) -> tuple[Trial, ...]:

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from vbraille.braille.geometry import Geometry
 from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
@@ -14,59 +16,55 @@ from vbraille.render import Tuning
 from vbraille.sessions.planning.stimuli import Stimulus, Trial
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Iterator
 
 VERSIONS = (1, 2)  # of the making of plans; the file's layout is the same
-_HEAD = ("format", "protocol", "participant", "seed", "order")
-_RUNS = ("practice", "trials")
-_TUNING = tuple(field.name for field in fields(Tuning))
-_GEOMETRY = tuple(field.name for field in fields(Geometry))
+_OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
 
 
-class Entry:
-    """An object of the file; values are taken from it, each of its type.
+class WrittenTrial(msgspec.Struct, forbid_unknown_fields=True):
+    """A trial as the file has it."""
 
-    Parameters
-    ----------
-    value
-        As `json` read it.
-    names
-        All that it must have.
+    number: int
+    block: int
+    condition: str
+    asked: tuple[int, int]
+    stimuli: list[dict[str, Any]]
 
-    Raises
-    ------
-    ValueError
-        If it is no object, or has other names.
-    """
+    @classmethod
+    def of(cls, trial: Trial) -> WrittenTrial:
+        """Write a trial."""
+        stimuli = list(map(stimulus_to_json, trial.stimuli))
+        return cls(trial.number, trial.block, trial.condition, trial.asked, stimuli)
 
-    def __init__(self, value: object, names: Collection[str]) -> None:
-        if not isinstance(value, dict) or set(value) != set(names):
-            raise ValueError(f"an entry must have {', '.join(names)}, and nothing else")
-        self._values = value
+    def trial(self) -> Trial:
+        """Make the trial that was written.
 
-    def text(self, name: str) -> str:
-        """A string."""
-        return self._take(name, str)
+        Raises
+        ------
+        ValueError
+            If something of it is out of range, or not of its type.
+        """
+        stimuli = tuple(map(stimulus_from_json, self.stimuli))
+        return Trial(self.number, self.block, self.condition, stimuli, self.asked)
 
-    def whole(self, name: str) -> int:
-        """A whole number."""
-        return self._take(name, int)
 
-    def number(self, name: str) -> float:
-        """A number that is written with a point."""
-        return self._take(name, float)
+class WrittenPlan(msgspec.Struct, forbid_unknown_fields=True):
+    """A plan as the file has it, in whose order its keys are written."""
 
-    def items(self, name: str) -> list[Any]:
-        """A list."""
-        return self._take(name, list)
+    format: int
+    protocol: str
+    participant: str
+    seed: int
+    order: int
+    practice: list[WrittenTrial]
+    trials: list[WrittenTrial]
 
-    def __getitem__(self, name: str) -> object:
-        return self._values[name]
 
-    def _take(self, name: str, kind: type) -> Any:
-        if type(self._values[name]) is not kind:  # True is an int to isinstance
-            raise ValueError(f"{name} is not of its type")
-        return self._values[name]
+class _Version(msgspec.Struct):
+    """What is known of a plan of any version."""
+
+    format: int
 
 
 @contextmanager
@@ -86,25 +84,21 @@ def damage() -> Iterator[None]:
         raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
 
 
-def encode(head: dict[str, object], runs: dict[str, tuple[Trial, ...]]) -> str:
-    """JSON of a plan.
-
-    Parameters
-    ----------
-    head
-        What stands before the trials.
-    runs
-        Trials by name.
-    """
-    lines = [f"{_json(name)}: {_json(value)}" for name, value in head.items()]
-    for name, trials in runs.items():
-        written = ",\n".join(_json(_trial_entry(trial)) for trial in trials)
-        lines.append(f"{_json(name)}: [\n{written}\n]" if trials else f"{_json(name)}: []")
+def encode(plan: WrittenPlan) -> str:
+    """JSON of a plan, a trial a line."""
+    lines = []
+    for name, value in msgspec.structs.asdict(plan).items():
+        if isinstance(value, list):
+            written = ",\n".join(map(_json, value))
+            value = f"[\n{written}\n]" if value else "[]"
+        else:
+            value = _json(value)
+        lines.append(f'"{name}": {value}')
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def decode(text: str) -> tuple[Entry, dict[str, tuple[Trial, ...]]]:
-    """Head and trials of a plan.
+def decode(text: str) -> WrittenPlan:
+    """Read what `encode` wrote.
 
     Raises
     ------
@@ -113,17 +107,13 @@ def decode(text: str) -> tuple[Entry, dict[str, tuple[Trial, ...]]]:
     InputError
         If it is of another version.
     """
-    tree = json.loads(text)
-    written = tree.get("format") if isinstance(tree, dict) else None
-    if type(written) is not int:
-        raise ValueError("it does not say which format it has")
-    if written not in VERSIONS:
+    version = msgspec.json.decode(text, type=_Version).format
+    if version not in VERSIONS:
         raise InputError(
-            f"the plan is of version {written}, and this vbraille knows the versions 1 and 2; use "
+            f"the plan is of version {version}, and this vbraille knows the versions 1 and 2; use "
             f"the vbraille that made it, or a newer one"
         )
-    head = Entry(tree, (*_HEAD, *_RUNS))
-    return head, {name: tuple(map(_read_trial, head.items(name))) for name in _RUNS}
+    return msgspec.json.decode(text, type=WrittenPlan)
 
 
 def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
@@ -136,7 +126,7 @@ def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
     }
 
 
-def stimulus_from_json(value: object) -> Stimulus:
+def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
     """Make the stimulus that `stimulus_to_json` wrote.
 
     Raises
@@ -144,38 +134,16 @@ def stimulus_from_json(value: object) -> Stimulus:
     ValueError
         If something is missing, is not of its type or is out of range.
     """
-    entry = Entry(value, ("cells", "value_mm", *_TUNING, *_GEOMETRY))
+    if set(written) != _OF_STIMULUS:
+        raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
     return Stimulus(
-        spell(entry.text("cells"), {}),
-        Tuning(entry.number("texture"), entry.number("contrast"), entry.whole("cycles")),
-        Geometry(**{name: entry.number(name) for name in _GEOMETRY}),
-        None if entry["value_mm"] is None else entry.number("value_mm"),
-    )
-
-
-def _trial_entry(trial: Trial) -> dict[str, object]:
-    return {
-        "number": trial.number,
-        "block": trial.block,
-        "condition": trial.condition,
-        "asked": trial.asked,
-        "stimuli": [stimulus_to_json(stimulus) for stimulus in trial.stimuli],
-    }
-
-
-def _read_trial(value: object) -> Trial:
-    entry = Entry(value, ("number", "block", "condition", "asked", "stimuli"))
-    asked = entry.items("asked")
-    if len(asked) != 2 or any(type(place) is not int for place in asked):
-        raise ValueError("asked is not two whole numbers")
-    return Trial(
-        entry.whole("number"),
-        entry.whole("block"),
-        entry.text("condition"),
-        tuple(map(stimulus_from_json, entry.items("stimuli"))),
-        (asked[0], asked[1]),
+        spell(msgspec.convert(written["cells"], str), {}),
+        msgspec.convert(written, Tuning),
+        msgspec.convert(written, Geometry),
+        msgspec.convert(written["value_mm"], float | None),
     )
 
 
 def _json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    # Not msgspec's own, which writes 0.00001 where plans have had 1e-05.
+    return json.dumps(msgspec.to_builtins(value), ensure_ascii=False, allow_nan=False)
