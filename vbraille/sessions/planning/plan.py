@@ -6,19 +6,23 @@ Protocol, participant and seed give the same plan on every machine.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
 from itertools import cycle
 from typing import TYPE_CHECKING
 
-from msgspec import structs
+from msgspec import Struct, field, structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning import planfile
 from vbraille.sessions.planning.chance import Chance, balanced_orders
 from vbraille.sessions.planning.design import Choice, Item, StringList
-from vbraille.sessions.planning.planfile import WrittenPlan, WrittenTrial
 from vbraille.sessions.planning.rules import check_plan, is_balanced
-from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
+from vbraille.sessions.planning.stimuli import (
+    Stimuli,
+    Stimulus,
+    Trial,
+    check_participant,
+    check_seed,
+)
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -32,12 +36,14 @@ __all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
 _Shown = tuple[Item, "Condition"]
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """All trials of a session, in order.
+class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All trials of a session, in order. Its file has its fields in this order.
 
     Parameters
     ----------
+    version
+        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
+        name. Nothing makes such plans any more; those of sessions are kept.
     protocol
         Its name.
     participant
@@ -48,9 +54,6 @@ class Plan:
         Which of the balanced orders of conditions, from 1; 0 if there is only one.
     practice, trials
         In the order in which they are shown.
-    version
-        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
-        name. Nothing makes such plans any more; those of sessions are kept.
 
     Raises
     ------
@@ -58,13 +61,13 @@ class Plan:
         If the participant, the seed or the order cannot be used.
     """
 
+    version: int = field(name="format", default=planfile.VERSIONS[-1])
     protocol: str
     participant: str
     seed: int
     order: int
     practice: tuple[Trial, ...]
     trials: tuple[Trial, ...]
-    version: int = planfile.VERSIONS[-1]
 
     def __post_init__(self) -> None:
         check_participant(self.participant)
@@ -76,17 +79,7 @@ class Plan:
 
     def to_json(self) -> str:
         """JSON, a trial a line; the same bytes on every machine."""
-        return planfile.encode(
-            WrittenPlan(
-                self.version,
-                self.protocol,
-                self.participant,
-                self.seed,
-                self.order,
-                list(map(WrittenTrial.of, self.practice)),
-                list(map(WrittenTrial.of, self.trials)),
-            )
-        )
+        return planfile.encode(self)
 
     @classmethod
     def from_json(cls, text: str) -> Plan:
@@ -97,17 +90,7 @@ class Plan:
         InputError
             If it is damaged.
         """
-        with planfile.damage():
-            written = planfile.decode(text)
-            return cls(
-                written.protocol,
-                written.participant,
-                written.seed,
-                written.order,
-                tuple(map(WrittenTrial.trial, written.practice)),
-                tuple(map(WrittenTrial.trial, written.trials)),
-                written.format,
-            )
+        return planfile.decode(text, cls)
 
 
 def make_plan(
@@ -155,14 +138,15 @@ def make_plan(
         for block, shown in enumerate(blocks, 1)
         for item, condition in shown
     ]
+    # By chances of its own: another number of practice trials leaves the others as they are.
+    practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
     plan = Plan(
-        protocol.name,
-        participant,
-        seed,
-        order,
-        # By chances of its own: another number of practice trials leaves the others as they are.
-        _numbered(_practice(protocol, conditions, Chance(f"{drawn} practice"))),
-        _numbered(trials),
+        protocol=protocol.name,
+        participant=participant,
+        seed=seed,
+        order=order,
+        practice=_numbered(practice),
+        trials=_numbered(trials),
     )
     check_plan(protocol, plan)
     return plan
@@ -302,11 +286,11 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         before, after = design.around
         shown = [((*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
-    stimuli = tuple(
+    stimuli = Stimuli(
         Stimulus(masks, tuning, protocol.geometry_at(value), value) for masks, value in shown
     )
-    return Trial(1, block, condition.name, stimuli, asked)
+    return Trial(1, block, condition.name, asked, stimuli)
 
 
 def _numbered(trials: list[Trial]) -> tuple[Trial, ...]:
-    return tuple(replace(trial, number=number) for number, trial in enumerate(trials, 1))
+    return tuple(structs.replace(trial, number=number) for number, trial in enumerate(trials, 1))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from contextlib import contextmanager
 from dataclasses import asdict, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
@@ -13,52 +12,16 @@ from vbraille.braille.geometry import Geometry
 from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
 from vbraille.render import Tuning
-from vbraille.sessions.planning.stimuli import Stimulus, Trial
+from vbraille.sessions.planning.stimuli import Stimuli, Stimulus
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.stimuli import Trial
+
+_Plan = TypeVar("_Plan")
 
 VERSIONS = (1, 2)  # of the making of plans; the file's layout is the same
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-
-
-class WrittenTrial(msgspec.Struct, forbid_unknown_fields=True):
-    """A trial as the file has it."""
-
-    number: int
-    block: int
-    condition: str
-    asked: tuple[int, int]
-    stimuli: list[dict[str, Any]]
-
-    @classmethod
-    def of(cls, trial: Trial) -> WrittenTrial:
-        """Write a trial."""
-        stimuli = list(map(stimulus_to_json, trial.stimuli))
-        return cls(trial.number, trial.block, trial.condition, trial.asked, stimuli)
-
-    def trial(self) -> Trial:
-        """Make the trial that was written.
-
-        Raises
-        ------
-        ValueError
-            If something of it is out of range, or not of its type.
-        """
-        stimuli = tuple(map(stimulus_from_json, self.stimuli))
-        return Trial(self.number, self.block, self.condition, stimuli, self.asked)
-
-
-class WrittenPlan(msgspec.Struct, forbid_unknown_fields=True):
-    """A plan as the file has it, in whose order its keys are written."""
-
-    format: int
-    protocol: str
-    participant: str
-    seed: int
-    order: int
-    practice: list[WrittenTrial]
-    trials: list[WrittenTrial]
 
 
 class _Version(msgspec.Struct):
@@ -67,53 +30,37 @@ class _Version(msgspec.Struct):
     format: int
 
 
-@contextmanager
-def damage() -> Iterator[None]:
-    """Say that a plan is damaged.
-
-    Raises
-    ------
-    InputError
-        For a `ValueError` within.
-    """
-    try:
-        yield
-    except RecursionError:
-        raise InputError("the plan is damaged: its brackets nest too deep") from None
-    except ValueError as error:
-        raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
-
-
-def encode(plan: WrittenPlan) -> str:
+def encode(plan: Plan) -> str:
     """JSON of a plan, a trial a line."""
-    lines = []
-    for name, value in msgspec.structs.asdict(plan).items():
-        if isinstance(value, list):
-            written = ",\n".join(map(_json, value))
-            value = f"[\n{written}\n]" if value else "[]"
-        else:
-            value = _json(value)
-        lines.append(f'"{name}": {value}')
+    head = {"format": plan.version}
+    head |= {name: getattr(plan, name) for name in ("protocol", "participant", "seed", "order")}
+    lines = [f"{_json(name)}: {_json(value)}" for name, value in head.items()]
+    for name, trials in (("practice", plan.practice), ("trials", plan.trials)):
+        written = ",\n".join(map(_trial, trials))
+        lines.append(f"{_json(name)}: [\n{written}\n]" if trials else f"{_json(name)}: []")
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
-def decode(text: str) -> WrittenPlan:
+def decode(text: str, kind: type[_Plan]) -> _Plan:
     """Read what `encode` wrote.
 
     Raises
     ------
-    ValueError
-        If it is damaged.
     InputError
-        If it is of another version.
+        If it is damaged, or of another version.
     """
-    version = msgspec.json.decode(text, type=_Version).format
-    if version not in VERSIONS:
-        raise InputError(
-            f"the plan is of version {version}, and this vbraille knows the versions 1 and 2; use "
-            f"the vbraille that made it, or a newer one"
-        )
-    return msgspec.json.decode(text, type=WrittenPlan)
+    try:
+        version = msgspec.json.decode(text, type=_Version).format
+        if version in VERSIONS:
+            return msgspec.json.decode(text, type=kind, dec_hook=_read_stimuli)
+    except RecursionError:
+        raise InputError("the plan is damaged: its brackets nest too deep") from None
+    except ValueError as error:
+        raise InputError(f"the plan is damaged: {error}; put it back as it was") from None
+    raise InputError(
+        f"the plan is of version {version}, and this vbraille knows the versions 1 and 2; use "
+        f"the vbraille that made it, or a newer one"
+    )
 
 
 def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
@@ -144,6 +91,15 @@ def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
     )
 
 
+def _trial(trial: Trial) -> str:
+    stimuli = list(map(stimulus_to_json, trial.stimuli))
+    return _json(msgspec.structs.asdict(trial) | {"stimuli": stimuli})
+
+
+def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:
+    return Stimuli(map(stimulus_from_json, msgspec.convert(written, list[dict[str, Any]])))
+
+
 def _json(value: object) -> str:
     # Not msgspec's own, which writes 0.00001 where plans have had 1e-05.
-    return json.dumps(msgspec.to_builtins(value), ensure_ascii=False, allow_nan=False)
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -5,6 +5,10 @@ from __future__ import annotations
 import re
 import tomllib
 from collections import Counter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 # Keys of tables and numbers of items, from 0, that lead from the whole file to a value in it.
 Path = tuple[str | int, ...]
@@ -22,7 +26,7 @@ _TOKEN = re.compile(
 
 
 def lines_of(text: str) -> dict[Path, int]:
-    r"""Line of every key, table and item, from 1, by its path.
+    r"""Line of every key, table and item, from 1, by its path; but of those in braces.
 
     Parameters
     ----------
@@ -34,94 +38,59 @@ def lines_of(text: str) -> dict[Path, int]:
     >>> lines_of('size = 3\n[[box]]\nnames = [\n  "a",\n  "b",\n]')["box", 0, "names", 1]
     5
     """
-    scan = _Scan(text)
+    lines: dict[Path, int] = {}
+    tables: Counter[Path] = Counter()  # under each [[name]] so far
     table: Path = ()
-    while scan.token:
-        if scan.token == "[":
-            table = scan.header()
-        elif scan.token == "\n":
-            scan.take()
+    for statement in _statements(text):
+        tokens = [token for token, _ in statement]
+        header = tokens[0] == "["
+        path: Path = () if header else table
+        for token in tokens[: len(tokens) if header else tokens.index("=")]:
+            if token in "[].":
+                continue
+            if path in tables:
+                path = (*path, tables[path] - 1)
+            path = (*path, _unquoted(token))
+            lines.setdefault(path, statement[0][1])
+        if not header:
+            _add_items(lines, path, statement[tokens.index("=") + 1 :])
+            continue
+        if tokens[1] == "[":
+            tables[path] += 1
+            path = (*path, tables[path] - 1)
+        lines[path] = statement[0][1]
+        table = path
+    return lines
+
+
+def _statements(text: str) -> Iterator[list[tuple[str, int]]]:
+    """Tokens of each header, and of each key with its value, and their lines."""
+    statement: list[tuple[str, int]] = []
+    depth, line = 0, 1
+    for match in _TOKEN.finditer(f"{text}\n"):
+        token = match[0]
+        if token == "\n":
+            if statement and not depth:
+                yield statement
+                statement = []
+        elif match["nothing"] is None:
+            statement.append((token, line))
+            depth += (token in "[{") - (token in "]}")
+        line += token.count("\n")
+
+
+def _add_items(lines: dict[Path, int], path: Path, value: list[tuple[str, int]]) -> None:
+    """Add the lines of the items of a list, and of lists in it."""
+    places: list[int] = []  # of the items that stand open, each in the one before it
+    for token, line in value:
+        if token in "]}":
+            places.pop()
+        elif token == "," and places:
+            places[-1] += 1
         else:
-            scan.pair(table)
-    return scan.lines
-
-
-class _Scan:
-    """The tokens of a text, taken one after the other, and the lines that are known so far."""
-
-    def __init__(self, text: str) -> None:
-        self.lines: dict[Path, int] = {}
-        self.line = 1
-        self._tables: Counter[Path] = Counter()  # under each [[name]] so far
-        self._matches = _TOKEN.finditer(text)
-        self.token = ""
-        self.take()
-
-    def take(self) -> str:
-        """Go on to the next token, which is empty at the end, and return the one before it."""
-        taken, self.token = self.token, ""
-        self.line += taken.count("\n")
-        for match in self._matches:
-            if match["nothing"] is None:
-                self.token = match[0]
-                break
-        return taken
-
-    def header(self) -> Path:
-        """Path of the table that ``[a.b]`` or ``[[a.b]]`` begins."""
-        self.take()
-        several, line = self.token == "[", self.line
-        if several:
-            self.take()
-        *before, last = self._keys()
-        path: Path = ()
-        for key in before:
-            path = (*path, key)
-            self.lines.setdefault(path, line)
-            if path in self._tables:
-                path = (*path, self._tables[path] - 1)
-        path = (*path, last)
-        self.lines.setdefault(path, line)
-        if several:
-            self._tables[path] += 1
-            path = (*path, self._tables[path] - 1)
-        self.lines[path] = line
-        while self.token == "]":
-            self.take()
-        return path
-
-    def pair(self, path: Path) -> None:
-        """Pass over a key and its value."""
-        line = self.line
-        for key in self._keys():
-            path = (*path, key)
-            self.lines.setdefault(path, line)
-        self.take()
-        self._value(path)
-
-    def _keys(self) -> list[str]:
-        """Keys of a dotted key."""
-        keys = [_unquoted(self.take())]
-        while self.token == ".":
-            self.take()
-            keys.append(_unquoted(self.take()))
-        return keys
-
-    def _value(self, path: Path) -> None:
-        first, number = self.take(), 0
-        if first not in ("[", "{"):
-            while self.token not in ("\n", ",", "]", "}", ""):
-                self.take()  # the rest of a number with a point, or of a date with a time
-            return
-        while self.token not in ("]", "}", ""):
-            if self.token in ("\n", ","):
-                number += self.take() == ","
-            elif first == "{":
-                self.pair(path)
-            else:
-                self.lines[*path, number] = self.line
-                self._value((*path, number))
-        self.take()
+            lines.setdefault((*path, *places), line)
+        if token in "[{":
+            places.append(0)
 
 
 def _unquoted(key: str) -> str:
