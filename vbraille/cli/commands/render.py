@@ -76,8 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
             model=model,
             rate_hz=rate_hz,
             first_line=page.first,
-            source=page.document.name,
-            sha256=page.document.sha256(),
+            source=page.source.name,
+            sha256=page.source.sha256(),
         )
         for stretch in _walk(page, hand, rate_hz, pages):
             last = stretch.lines[-1]
