@@ -31,8 +31,9 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import DeviceError, InputError
+from vbraille.reading.commands import press
+from vbraille.reading.context import Context
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.recorded import Recorded
@@ -204,10 +205,9 @@ class _Reading:
         _say("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
-        if self._placing is Placing.STOP and key not in ("q", PASTE):
-            self._host.set_zero()
-        else:
-            self._reader.press(key)
+        placing = self._placing is Placing.STOP
+        self._reader.context = Context.PLACING if placing else Context.READING
+        press(self._reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.

@@ -22,7 +22,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.wanted import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
-from vbraille.reading.reader import too_fast_note
+from vbraille.reading.speed import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK
