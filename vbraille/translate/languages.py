@@ -8,13 +8,12 @@ listed in `USUAL`. `docs/languages.md` has the outcome for every language.
 
 from __future__ import annotations
 
-import difflib
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate.liblouis import BrailleTable, list_tables
+from vbraille.translate.liblouis import BrailleTable, list_tables, nearest
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -109,11 +108,7 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
             return tag, found
         tag = tag.rpartition("-")[0]
     tags = sorted({table.language for table in list_tables() if table.language})
-    close = difflib.get_close_matches(wanted, tags, n=3, cutoff=0.0)
-    raise InputError(
-        f"there is no table for language {language!r}; the nearest are {', '.join(close)} "
-        f"(vbraille tables lists all)"
-    )
+    raise InputError(f"there is no table for language {language!r}{nearest(wanted, tags)}")
 
 
 def find_table(language: str = "en", grade: int | None = None) -> str:

@@ -200,7 +200,8 @@ class Document:
     def note(self) -> str | None:
         """What must be said of the file, each thing once after it is found; None if nothing is.
 
-        That the text is not UTF-8, and where; that the file has grown since it was opened.
+        It may be that the text is not UTF-8, and where, or that the file has grown since it was
+        opened.
         """
         if self._grown:
             self._grown = False
