@@ -15,6 +15,7 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.devices.saying import told
@@ -24,8 +25,9 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import DeviceError, InputError
+from vbraille.reading.commands import press
+from vbraille.reading.context import Context
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.recorded import Recorded
@@ -36,7 +38,6 @@ from vbraille.simulation.specs import (
     refuse_hand,
     steering_of,
 )
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -204,10 +205,9 @@ class _Reading:
         say_line("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
-        if self._placing is Placing.STOP and key not in ("q", PASTE):
-            self._host.set_zero()
-        else:
-            self._reader.press(key)
+        placing = self._placing is Placing.STOP
+        self._reader.context = Context.PLACING if placing else Context.READING
+        press(self._reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.
