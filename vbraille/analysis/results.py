@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vbraille.errors import InputError
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    import pandas as pd
 
     from vbraille.analysis.schemas import ResultTable
     from vbraille.pictures.charts import Chart
@@ -101,6 +105,21 @@ class Results:
         """All tables, in the order of the report."""
         for section in self.sections:
             yield from section.tables
+
+    def table(self, name: str) -> pd.DataFrame:
+        """A table as a data frame, by its name, such as "legibility".
+
+        Raises
+        ------
+        InputError
+            If there is none of that name; it names those that there are.
+        """
+        import pandas as pd
+
+        found = {table.name: table for table in self.tables()}
+        if name not in found:
+            raise InputError(f"there is no table {name!r}; there are {', '.join(found)}")
+        return pd.DataFrame(found[name].records(), columns=list(found[name].names))
 
     def pictures(self) -> Iterator[ReportFigure]:
         """All pictures, in the order of the report."""

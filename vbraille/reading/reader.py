@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -112,6 +111,11 @@ class Reader:
         return None if self._line is None else self._waiting.hopeless
 
     @property
+    def line(self) -> Line | None:
+        """The line under the hand; None before the first."""
+        return self._line
+
+    @property
     def line_number(self) -> int:
         """Of the line under the hand; 0 before the first."""
         return 0 if self._line is None else self._line.number
@@ -169,6 +173,19 @@ class Reader:
             self._say(f"no command: {key!r}; h says the keys")
         else:
             getattr(self, command.name.lower())()
+
+    def tune(self, **turned: float) -> None:
+        """Show the line, and those after it, with another texture or contrast, 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range.
+        """
+        self.style = self.style.replace(**turned)
+        self._too_fast_said = False
+        if self._line is not None:
+            self._picture(self._line)
 
     def lndn(self) -> None:
         """Next line."""
@@ -276,11 +293,8 @@ class Reader:
         if value == getattr(tuning, name):
             self._say(f"{name}: {value:g}, the {'most' if step > 0 else 'least'}")
             return
-        self.style = replace(self.style, tuning=replace(tuning, **{name: value}))
-        self._too_fast_said = False
         self._say(f"{name}: {value:g}")
-        if self._line is not None:
-            self._picture(self._line)
+        self.tune(**{name: value})
 
     def _watch_speed(self, speed_mm_s: float) -> None:
         if self._too_fast_said or self._end.reached:
