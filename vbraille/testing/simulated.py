@@ -51,7 +51,7 @@ def simulated_device(
     --------
     >>> from vbraille.testing import simulated_device
     >>> with simulated_device() as device:
-    ...     device.read().x_mm
+    ...     round(device.read().x_mm, 3)
     -5.4
     """
     info = display.display if isinstance(display, Model) else display
