@@ -10,6 +10,7 @@ from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
+from vbraille.layout.texts import cells_per_line
 from vbraille.layout.unknown import Unknown
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import (
@@ -196,10 +197,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
     InputError
         If there is no room for a cell, or the text ends before the lines asked for.
     """
-    try:
-        width = model.style.geometry.cells_per_line(model.display.span_mm)
-    except ValueError as error:
-        raise InputError(str(error)) from None
+    width = cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
     layout = Layout(book, width)
     if layout.line(first) is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.engine.advance import EndOfLine
@@ -183,7 +182,7 @@ class Reader:
         ValueError
             If a value is out of range.
         """
-        self.style = replace(self.style, tuning=replace(self.style.tuning, **turned))
+        self.style = self.style.replace(**turned)
         self._too_fast_said = False
         if self.line is not None:
             self._render(self.line)
