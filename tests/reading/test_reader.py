@@ -14,7 +14,7 @@ from vbraille.reading.echo import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, CellsSource, Document
 
 SPAN_MM = 10.8
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
@@ -32,13 +32,17 @@ class Device(Recording):
 class Bench:
     """A reader with its device, and all that it says."""
 
-    def __init__(self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, **options):
+    def __init__(
+        self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, book=None, **options
+    ):
         self.clock = ManualClock()
         self.device = Device(self.clock, hand)
         self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
         self.loop = self.engine.loop
         self.said: list[str] = []
-        self.layout = Layout(Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb")), width)
+        if book is None:
+            book = Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb"))
+        self.layout = Layout(book, width)
         self.reader = Reader(
             self.layout,
             self.engine,
@@ -79,6 +83,21 @@ def test_the_hand_s_return_brings_the_next_line_until_the_end():
         )
     ]
     assert biggest_step(bench.device.sent) < 1  # a frame a tick, and the hand's own motion only
+
+
+def test_a_text_that_is_braille_already_is_read_like_any_other():
+    braille = Document.from_text(",read ,me\n  #c", keep_lines=True)
+    bench = Bench(book=Book(CellsSource(braille)), hand=Sweep(400), echo=Echo.BOTH)
+    bench.run()
+    assert bench.reader.done
+    assert [said for said in bench.said if not said.startswith("speed")] == [
+        "line: 1",
+        "cells: ⠠⠗⠑⠁⠙⠀⠠⠍⠑",
+        "text: ,read ,me",
+        "line: 2",
+        "cells: ⠀⠀⠼⠉",
+        "text: #c",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.scripts import script_of
+from vbraille.translate.scripts import all_letters, native_letters, script_of
 from vbraille.translate.text import SPACE, to_codes, to_text
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
 from vbraille.wording import nearest
@@ -175,7 +175,7 @@ class BrailleTable:
         self._noted = 0
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
-        if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, _all_letters)):
+        if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, all_letters)):
             raise InputError(
                 f"{name} has no braille in it, as tables for hyphenation have not; give a braille "
                 f"table (vbraille tables lists all)"
@@ -204,7 +204,7 @@ class BrailleTable:
         if said == b"6":
             return False
         if said == b"8" or not described:
-            return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(_native_letters())
+            return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(native_letters())
         has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
         return self._high(_DIGITS if has_digits else _SMALL)
 
@@ -364,18 +364,6 @@ class BrailleTable:
         """Whether any of these letters that the table knows is written with dot 7 or 8."""
         masks, _ = self._call(to_codes(letters), _MODE | louis.noUndefined)
         return bool(masks.size) and bool(masks.max() > 0x3F)
-
-
-@cache
-def _native_letters() -> str:
-    """Letters of other scripts than the Latin, for what a table's metadata leave open."""
-    return "".join(c for c in map(chr, range(0x370, 0x700)) if c.isalpha())
-
-
-def _all_letters() -> str:
-    """Letters of every script of today but the Latin; of the large ones some."""
-    codes = (*range(0x370, 0x2000), *range(0x3041, 0x3100), *range(0x4E00, 0xD7A4, 64))
-    return "".join(c for c in map(chr, codes) if c.isalpha())
 
 
 def _codes(text: str) -> tuple[int, ...]:
