@@ -9,10 +9,11 @@ from vbraille.analysis.measures import (
     confusion,
     doterrors,
     legibility,
-    levels,
     movement,
     overtime,
 )
+from vbraille.analysis.measures import levels as compared
+from vbraille.analysis.schemas import Schema
 
 COLUMNS = "participant condition presented answered duration_s"
 
@@ -40,6 +41,18 @@ def answers(*lines, timed="-"):
     return made(*(f"{line} {timed}" for line in lines))
 
 
+def levels(column):
+    """Levels of a column, in their order."""
+    return tuple(column.cat.categories)
+
+
+def table_of(columns, rows, notes=(), marks=(), told=("t", "", "")):
+    """A table of rows whose values are in the columns' order."""
+    schema = Schema(*told, columns)
+    named = [dict(zip(schema.names, row, strict=True)) for row in rows]
+    return schema.fill(named, notes, marks=marks)
+
+
 def record(table, **where):
     """The one row that has these values."""
     (found,) = [
@@ -53,14 +66,17 @@ def all_tables(trials, places):
     by_participant = legibility.legibility(trials, places)
     measures = of_trials(trials, places, ["condition"])
     seen = movement.trajectories([])
-    matrices = [confusion.of_characters(places), confusion.of_pairs(trials)]
+    matrices = [
+        (confusion.CONFUSION_CHARACTERS, confusion.of_characters(places)),
+        (confusion.CONFUSION_PAIRS, confusion.of_pairs(trials)),
+    ]
     return [
         by_participant,
         legibility.averages(by_participant),
-        characters.characters(trials, places),
+        characters.characters(places),
         characters.strings(trials),
-        characters.dots(trials, places),
-        *(confusion.to_table(matrix, places) for matrix in matrices if matrix is not None),
+        characters.dots(places),
+        *(confusion.to_table(*of, places) for of in matrices if of[1] is not None),
         confusion.transmitted(trials, places, seed=1),
         doterrors.errors(places),
         overtime.over_time(trials),
@@ -68,7 +84,7 @@ def all_tables(trials, places):
         seen,
         movement.patterns(seen),
         movement.correlations(trials),
-        levels.level_means(measures),
-        levels.t_tests(measures, "holm"),
-        levels.analyses(measures)[0],
+        compared.level_means(measures),
+        compared.t_tests(measures, "holm"),
+        compared.analyses(measures)[0],
     ]

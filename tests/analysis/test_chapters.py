@@ -7,13 +7,17 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.analysis.chapters import Options, analyse, analyse_scores
-from vbraille.analysis.input.study import load_scores, load_study, trials_file
+from vbraille.analysis import analyse, analyse_scores
+from vbraille.analysis.chapters import Options, analyse_study, compare_scores
+from vbraille.analysis.input.study import load_scores, load_study
+from vbraille.analysis.input.trials import written
 from vbraille.analysis.report.files import write_report
 from vbraille.analysis.report.tojson import to_json
+from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError
 from vbraille.sessions.record.export import rows, to_csv
 from vbraille.sessions.record.folder import load
@@ -58,12 +62,12 @@ def table(tmp_path):
 
 
 def tables(results):
-    return {table.name: table for table in results.tables()}
+    return {table.name: table for table in results.result_tables()}
 
 
 def test_sessions_of_all_kinds_together(sessions):
     study = load_study([sessions / name for name in ("read-P10", "compared", "read-P2")])
-    results = analyse(study, Options())
+    results = analyse_study(study, Options())
     found = tables(results)
     assert [chapter.title for chapter in results.chapters] == [
         "Legibility",
@@ -92,7 +96,7 @@ def test_sessions_of_all_kinds_together(sessions):
 
 def test_durations_are_those_of_the_export(sessions):
     study = load_study([sessions / "read-P2"])
-    row = tables(analyse(study, Options()))["legibility"].records()[0]
+    row = tables(analyse_study(study, Options()))["legibility"].records()[0]
     (sitting,) = study.sittings
     own = [r["duration_s"] for r in sitting.rows if r["condition"] == row["condition"]]
     assert row["duration_mean_s"] == pytest.approx(sum(own) / len(own))
@@ -100,14 +104,12 @@ def test_durations_are_those_of_the_export(sessions):
 
 def test_the_order_in_which_things_are_given_is_of_no_matter(sessions, table):
     paths = [table, *(sessions / name for name in ("read-P10", "read-P2", "compared"))]
-    texts = {
-        "".join(to_json(analyse(load_study(order), Options()))) for order in (paths, paths[::-1])
-    }
+    texts = {"".join(to_json(analyse(order))) for order in (paths, paths[::-1])}
     assert len(texts) == 1
 
 
 def test_a_table_has_what_a_table_can_tell(table):
-    results = analyse(load_study([table]), Options())
+    results = analyse_study(load_study([table]), Options())
     found = tables(results)
     assert not found["trajectories"].rows
     assert found["trajectories"].notes == ("no trial has a trajectory",)
@@ -119,29 +121,60 @@ def test_a_table_has_what_a_table_can_tell(table):
 
 def test_other_columns_are_kept_and_compared_by(table):
     study = load_study([table])
-    (content,) = trials_file(study).values()
-    lines = content.decode().splitlines()
+    lines = frame_to_csv(written(study.trials)).splitlines()
     assert lines[0].endswith("duration_s,finger")
     assert lines[1] == "A,trials.csv,,T0,,1,⠁⠃,,⠁⠃,1,3.0,left"
     assert len(lines) == 1 + 8
-    found = tables(analyse(study, Options(factors=("finger",))))
+    found = tables(analyse_study(study, Options(factors=("finger",))))
     assert {row["level"] for row in found["level_means"].records()} == {"left", "right"}
     with pytest.raises(InputError, match=r"no column 'fingre' to compare by; there are condition"):
-        analyse(study, Options(factors=("fingre",)))
+        analyse_study(study, Options(factors=("fingre",)))
 
 
 def test_trials_written_are_trials_read(table, tmp_path):
     study = load_study([table])
     again = tmp_path / "again.csv"
-    again.write_bytes(trials_file(study)["trials.csv"])
-    first, second = (tables(analyse(each, Options())) for each in (study, load_study([again])))
+    again.write_text(frame_to_csv(written(study.trials)))
+    first, second = (analyse([path]).tables for path in (table, again))
     for name, of in first.items():
-        assert of.rows == second[name].rows, name
+        pd.testing.assert_frame_equal(of, second[name])
+
+
+def test_from_python_tables_are_data_frames(table):
+    results = analyse([str(table)], exclude={"C": "fell asleep"}, factors=["finger"], marks=[2])
+    frame = results.table("legibility")
+    assert frame is results.tables["legibility"]
+    assert frame["correct"].tolist() == [1, 1, 0, 2]
+    assert [str(frame[name].dtype) for name in ("participant", "trials", "low")] == [
+        "str", "Int64", "float64"
+    ]  # fmt: skip
+    assert results.trials is not None
+    assert len(results.trials) == 6
+    with pytest.raises(InputError, match=r"there is no table 'legible'; there are legibility, av"):
+        results.table("legible")
+
+
+def test_from_python_scores_are_compared(tmp_path):
+    path = tmp_path / "scores.csv"
+    lines = [
+        "participant,texture,score",
+        "A,T0,1",
+        "A,T1,2",
+        "B,T0,1",
+        "B,T1,4",
+        "C,T0,2",
+        "C,T1,2",
+    ]
+    path.write_text("\n".join(lines))
+    (test,) = analyse_scores(path, correction="none").table("t_tests").to_dict("records")
+    assert (test["participants"], test["mean_difference"]) == (3, pytest.approx(-4 / 3))
+    with pytest.raises(ValueError, match="correction is 'tukey'"):
+        analyse_scores(path, correction="tukey")
 
 
 def test_who_is_left_out_is_named_with_the_reason(table):
     study = load_study([table], exclude={"C": "fell asleep"})
-    results = analyse(study, Options())
+    results = analyse_study(study, Options())
     assert {row["participant"] for row in tables(results)["legibility"].records()} == {"A", "B"}
     assert "participant C: fell asleep" in dict(results.about)["Excluded"]
     with pytest.raises(InputError, match="no participant 'D' with answered trials; there are A, B"):
@@ -164,7 +197,7 @@ def test_only_one_protocol(sessions):
     study = load_study(paths, protocol="widths")
     assert study.trials is None
     assert [sitting.head["protocol"] for sitting in study.sittings] == ["widths"]
-    results = analyse(study, Options())
+    results = analyse_study(study, Options())
     assert [chapter.title for chapter in results.chapters] == ["Which of two was chosen"]
     assert "protocols other than widths" in dict(results.about)["Excluded"]
     with pytest.raises(InputError, match="no protocol 'letters'"):
@@ -181,7 +214,7 @@ def test_several_protocols_are_told_of_and_kept_apart(sessions, tmp_path):
     other.sit()
     study = load_study([tmp_path / "one", other.folder])
     assert any("2 protocols, mini, other" in warning for warning in study.warnings)
-    found = tables(analyse(study, Options()))
+    found = tables(analyse_study(study, Options()))
     for name in ("legibility", "trajectories", "patterns"):
         assert {row["condition"] for row in found[name].records()} == {"mini", "other"}
 
@@ -193,7 +226,7 @@ def test_a_session_broken_off_is_told_of(tmp_path):
     assert any("broken is not whole: broken off in trial 2" in w for w in study.warnings)
     assert len(study.trials) == 1
     assert "trials of broken: no answer" in study.left_out[0].what + ": " + study.left_out[0].reason
-    assert tables(analyse(study, Options()))["legibility"].records()[0]["trials"] == 1
+    assert tables(analyse_study(study, Options()))["legibility"].records()[0]["trials"] == 1
 
 
 def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
@@ -207,7 +240,7 @@ def test_a_duration_with_a_pause_in_it_is_not_used(tmp_path):
         "no answer",
         "the trial was paused meanwhile",
     ]
-    found = tables(analyse(study, Options()))
+    found = tables(analyse_study(study, Options()))
     (row,) = found["legibility"].records()
     assert (row["trials"], row["timed"]) == (1, 0)
     (row,) = found["trajectories"].records()
@@ -225,7 +258,7 @@ def test_a_damaged_session_is_analysed_as_far_as_it_is_whole(tmp_path):
     study = load_study([session.folder])
     assert len(study.faults) == 1
     assert "does not match its checksum" in study.faults[0]
-    found = tables(analyse(study, Options()))
+    found = tables(analyse_study(study, Options()))
     assert found["legibility"].records()[0]["trials"] == len(study.trials)
     assert found["trajectories"].records()[-1]["note"].endswith("is damaged before the end of it")
 
@@ -241,7 +274,7 @@ def test_scores(tmp_path):
         "participant,texture,score\nA,0,1\nA,1,2\nB,0,3\nB,1,5\nC,0,2\nC,1,\nD,0,1\nD,1,1.5\n"
     )
     scores, about = load_scores(path)
-    results = analyse_scores(scores, about, Options(correction="holm"))
+    results = compare_scores(scores, about, Options(correction="holm"))
     (chapter,) = results.chapters
     names = [table.name for table in chapter.tables]
     assert names == ["level_means", "level_scores", "t_tests", "anova"]
@@ -271,7 +304,7 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
         env={**os.environ, "PYTHONHASHSEED": "1"},
     )
     study = load_study(paths)
-    write_report(analyse(study, Options()), here, trials_file(study))
+    write_report(analyse_study(study, Options()), here(study))
     assert again.wait() == 0
     written = [
         {path.relative_to(out): path.read_bytes() for path in out.rglob("*") if path.is_file()}
@@ -298,7 +331,7 @@ def test_a_duration_of_an_early_answer_is_not_used(tmp_path):
         "no answer",
         "it was answered before it was read to its end",
     ]
-    found = tables(analyse(study, Options()))
+    found = tables(analyse_study(study, Options()))
     (row,) = found["legibility"].records()
     assert (row["trials"], row["timed"]) == (2, 1)
     early, timed = found["trajectories"].records()

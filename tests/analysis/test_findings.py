@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.analysis.making import COLUMNS, sheet
-from vbraille.analysis.chapters import Options, analyse, analyse_scores
+from vbraille.analysis.chapters import Options, analyse_study, compare_scores
 from vbraille.analysis.findings import findings, interval_words
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import Scores
@@ -31,11 +31,11 @@ def lines(rng, people=6, conditions=("T0", "T25", "T100"), shares=(0.2, 0.5, 0.9
 
 @pytest.fixture(scope="module")
 def results():
-    return analyse(study(*lines(np.random.default_rng(7))), Options())
+    return analyse_study(study(*lines(np.random.default_rng(7))), Options())
 
 
 def rows(results, name):
-    (table,) = [table for table in results.tables() if table.name == name]
+    (table,) = [table for table in results.result_tables() if table.name == name]
     return table.records()
 
 
@@ -132,7 +132,7 @@ def test_the_main_figure_has_the_participants_points(results):
 
 
 def test_one_participant_has_no_interval_and_the_reason_is_told():
-    results = analyse(study(*lines(np.random.default_rng(1), people=1)), Options())
+    results = analyse_study(study(*lines(np.random.default_rng(1), people=1)), Options())
     said = one(results, "^On average participants read right")
     assert "1 participant, no interval" in said
     assert not [finding for finding in results.findings if "d_z" in finding]
@@ -150,7 +150,7 @@ def test_reasons_stand_for_numbers_that_are_not_there():
 
 def test_what_has_no_number_is_not_told_as_one(results):
     tables = []
-    for table in results.tables():
+    for table in results.result_tables():
         if table.name == "information":
             empty = [row | {"corrected_bits": None, "note": "too few"} for row in table.records()]
             kept = tuple(tuple(row[name] for name in table.names) for row in empty)
@@ -168,9 +168,9 @@ def test_choices_are_told_with_the_preferred_value():
         if a != b
     ]
     made = sheet(*pairs, columns=columns)
-    made.columns["presented"][:] = [p.replace("_", " ") for p in made.columns["presented"]]
+    made.frame["presented"] = made.frame["presented"].str.replace("_", " ")
     parsed = parse([made])
-    results = analyse(Study(None, parsed.comparisons, (), (), (), (), ()), Options())
+    results = analyse_study(Study(None, parsed.comparisons, (), (), (), (), ()), Options())
     said = one(results, "^The preferred dot width is")
     (row,) = rows(results, "preferred")
     assert f"is {to_print(row['preferred'], Kind.NUMBER)} mm" in said
@@ -184,6 +184,6 @@ def test_scores_are_told_too():
     scores = Scores(
         "score", list("AABBCCDD"), {"t": list("01010101")}, [1.0, 3, 2, 5, 1, 2.5, 2, 4]
     )
-    results = analyse_scores(scores, [("Data", "8 scores")], Options())
+    results = compare_scores(scores, [("Data", "8 scores")], Options())
     assert one(results, "^Score was [0-9.]+ lower in 0 than in 1 ")
     assert results.main == "means_t"

@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from itertools import permutations
 
-import numpy as np
 import pytest
 
 from tests.analysis.making import record
@@ -19,7 +18,7 @@ from tests.analysis.published import (
 )
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
-from vbraille.analysis.input.trials import Places, name_cell
+from vbraille.analysis.input.trials import Places, chosen, name_cell
 from vbraille.analysis.measures import characters, confusion, doterrors
 from vbraille.analysis.measures.legibility import averages, legibility
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
@@ -82,7 +81,7 @@ BY_SUBJECT = legibility(TRIALS, PLACES)
 AVERAGES = averages(BY_SUBJECT)
 COUNTED, COUNTED_PLACES = of_table_3_4()
 NAMES = [name_cell(mask) for mask in (0b1, 0, 0b1001, 0b1000)]
-OF_CHARACTERS = characters.characters(COUNTED, COUNTED_PLACES)
+OF_CHARACTERS = characters.characters(COUNTED_PLACES)
 
 
 def column(name, condition):
@@ -143,7 +142,7 @@ def test_3_1_average_row(told):
 @each((RECONSTRUCTED, "totals", READ["totals"]))
 def test_3_1_totals(told):
     (totals,) = told
-    vbd = TRIALS[np.array([name != "control" for name in TRIALS.condition.names()])]
+    vbd = chosen(TRIALS, TRIALS["condition"] != "control")
     row = record(confusion.transmitted(vbd, Places.of(vbd), seed=1), of="pairs", condition="all")
     assert len(vbd) == row["presented"] == totals["vbd_trials"]
     assert vbd.correct.sum() == totals["vbd_correct"]
@@ -165,7 +164,7 @@ def test_3_2_values_rank_as_the_pooled_ones(told):
 @each((RECONSTRUCTED, "rates", TOLD["table_3_2"]["pooled_from_3_4_pct"]))
 def test_3_2_pooled_rates_of_table_3_4(told):
     (rates,) = told
-    pooled = sorted(OF_CHARACTERS.column("pooled"))
+    pooled = sorted(OF_CHARACTERS.frame["pooled"].tolist())
     assert [to_print(value, Kind.PERCENT) for value in pooled] == printed(rates)
 
 
@@ -220,10 +219,9 @@ def test_3_3_decimals_are_those_of_means_within_participants_first(told):
 def test_3_4_confusions(told):
     (counts,) = told
     found = confusion.of_characters(COUNTED_PLACES)
-    assert sorted(found.rows) == sorted(found.columns) == sorted(NAMES)
-    rows, columns = ([names.index(n) for n in NAMES] for names in (found.rows, found.columns))
-    assert found.counts[np.ix_(rows, columns)].tolist() == counts
-    table = confusion.to_table(found, COUNTED_PLACES)
+    assert sorted(found.index) == sorted(found.columns) == sorted(NAMES)
+    assert found.loc[NAMES, NAMES].to_numpy().tolist() == counts
+    table = confusion.to_table(confusion.CONFUSION_CHARACTERS, found, COUNTED_PLACES)
     for shown, row in zip(NAMES, counts, strict=True):
         values = record(table, presented=shown)
         assert [values[f"answered {name}"] for name in NAMES] == row
@@ -234,7 +232,7 @@ def test_3_4_sums(told):
     (table,) = told
     rows = {row["name"]: row for row in OF_CHARACTERS.records()}
     assert [rows[name]["presented"] for name in NAMES] == table["row_sums"]
-    answered = Counter(COUNTED.answered.names())
+    answered = Counter(COUNTED["answered"].tolist())
     assert [answered[glyph] for glyph in GLYPHS] == table["col_sums"]
     assert len(COUNTED_PLACES) == table["total"]
     assert sum(row["correct"] for row in rows.values()) == table["trace"]
@@ -282,15 +280,15 @@ def test_3_4_errors_by_kind(told):
         "1 dot removed": removed,
         f"2 dots {two}": 1,
     }
-    assert sum(table.column("count")) == CHARACTERS["derived"]["errors"]
+    assert sum(table.frame["count"].tolist()) == CHARACTERS["derived"]["errors"]
 
 
 @each((EXACT, "text", "⠁⠀⠉⠈"), (EXACT, "text, blank and c changed", "⠁⠉⠀⠈"))
 def test_3_4_characters_of_one_dot_are_hardest(told):
     (glyphs,) = told
-    table = characters.dots(*of_table_3_4(glyphs))
-    assert table.column("dots") == [0, 1, 2]
-    none, one, two = table.column("pooled")
+    table = characters.dots(of_table_3_4(glyphs)[1])
+    assert table.frame["dots"].tolist() == [0, 1, 2]
+    none, one, two = table.frame["pooled"].tolist()
     assert one < min(none, two)
     assert record(table, dots=1)["presented"] == 344 + 342
 
@@ -362,7 +360,7 @@ def test_3_5_frequent_errors_can_be_a_dot_added_or_moved(told):
         for pair in pairs:
             shown, answer = ("".join(glyph[place] for place in label) for label in pair)
             row = {"participant": "all", "condition": "all", "presented": shown, "answered": answer}
-            kinds.add(tuple(doterrors.errors(trials_of([row])[1]).column("error")))
+            kinds.add(tuple(doterrors.errors(trials_of([row])[1]).frame["error"].tolist()))
         assert kinds & {("1 dot added",), ("1 dot moved",)}
 
 

@@ -1,9 +1,21 @@
-"""Sessions in, tables and figures out. Sees no device and no engine.
+r"""Sessions in, tables and figures out. Sees no device and no engine.
 
-`study` reads sessions (`sittings`, `reading`) and tables (`sheets`, `parsing`, `values`) into
-`trials`. A module a question makes `tables` of them: `legibility`, `characters`, `confusion`,
-`errors`, `overtime`, `motion`, `levels` and `tuning`; `figures` says what to draw. `analyse` puts
-all together as `results`, which `report` writes. `statistics` knows nothing but plain numbers.
+`analyse` reads sessions and tables of trials, `analyse_scores` a table of scores; both give
+`vbraille.analysis.results.Results`, whose tables are pandas data frames:
+
+>>> from pathlib import Path
+>>> from tempfile import mkdtemp
+>>> path = Path(mkdtemp(), "trials.csv")
+>>> _ = path.write_text("participant,condition,presented,answered\nP1,T0,ab,ab\nP1,T0,ca,c?\n")
+>>> results = analyse([path])
+>>> results.table("legibility")[["participant", "condition", "trials", "correct", "legibility"]]
+  participant condition  trials  correct  legibility
+0          P1        T0       2        1         0.5
+
+Inside, `input` reads and checks what is given. Each module of `measures` makes tables for one
+question, each of `figures` says what to draw of them, and `findings` puts them in words.
+`chapters` puts all together as `results`, which `report` writes. `statistics` knows plain
+numbers alone.
 """
 
 from __future__ import annotations
@@ -17,7 +29,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.results import Results
 
-__all__ = ["analyse"]
+__all__ = ["analyse", "analyse_scores"]
 
 
 def analyse(
@@ -26,8 +38,10 @@ def analyse(
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
     sites: bool = False,
-    factors: Sequence[str] = ("condition",),
+    factors: Sequence[str] | None = None,
     correction: str = "holm",
+    marks: Sequence[int] | None = None,
+    seed: int | None = None,
 ) -> Results:
     """Analyse sessions and tables of trials together.
 
@@ -35,7 +49,7 @@ def analyse(
     ----------
     paths
         Directories of sessions, and CSV files with the columns ``participant``, ``condition``,
-        ``presented`` and ``answered``.
+        ``presented`` and ``answered``, in any order.
     exclude
         Participants who are left out, each with the reason.
     protocol
@@ -43,21 +57,55 @@ def analyse(
     sites
         Whether each folder that something stands in has participants of its own.
     factors
-        Columns by which trials are compared.
+        Columns by which trials are compared; by the condition if not given.
     correction
         How the p-values of t-tests are corrected for their number: "none", "bonferroni", "holm"
         or "fdr".
+    marks
+        Errors above these counts are marked in the report's confusion matrices; 4 and 9 if not
+        given.
+    seed
+        Seed of random draws; the same one each time if not given.
 
     Raises
     ------
     InputError
-        If something is no session and no table of trials, or leaves nothing to analyse.
+        If something is no session and no table of trials, cannot be read, or leaves nothing to
+        analyse.
+    ValueError
+        If there is no such correction.
+    VbrailleError
+        If a session has lost what it began with.
     """
     # Here, so that a program that only offers this function need not wait for statistics.
-    from vbraille.analysis.chapters import Options, analyse
+    from vbraille.analysis.chapters import analyse_study, options_of
     from vbraille.analysis.input.study import load_study
 
-    study = load_study(
-        [Path(path) for path in paths], exclude=exclude or {}, protocol=protocol, sites=sites
-    )
-    return analyse(study, Options(factors=tuple(factors), correction=correction))
+    options = options_of(correction, factors=factors, marks=marks, seed=seed)
+    study = load_study([Path(p) for p in paths], exclude=exclude, protocol=protocol, sites=sites)
+    return analyse_study(study, options)
+
+
+def analyse_scores(
+    path: str | PathLike[str], *, correction: str = "holm", seed: int | None = None
+) -> Results:
+    """Compare the levels of a table of scores.
+
+    Parameters
+    ----------
+    path
+        CSV file with the columns ``participant``, ``score``, and one or more of what was varied.
+    correction, seed
+        As of `analyse`.
+
+    Raises
+    ------
+    InputError
+        If it is no such table.
+    ValueError
+        If there is no such correction.
+    """
+    from vbraille.analysis.chapters import compare_scores, options_of
+    from vbraille.analysis.input.study import load_scores
+
+    return compare_scores(*load_scores(Path(path)), options_of(correction, seed=seed))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
-from vbraille.analysis.figures import matrices, ofmeasures
+from vbraille.analysis.figures import bars, curves, matrices
 from vbraille.analysis.findings import findings
 from vbraille.analysis.input.scoretable import of_trials
-from vbraille.analysis.input.trials import Places
+from vbraille.analysis.input.trials import Places, written
 from vbraille.analysis.measures import (
     characters,
     confusion,
@@ -26,9 +26,11 @@ from vbraille.analysis.statistics.correction import METHODS
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
+
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.study import Study
-    from vbraille.analysis.input.trials import Comparisons, LeftOut, Trials
+    from vbraille.analysis.input.trials import LeftOut
     from vbraille.analysis.results import ReportFigure
     from vbraille.analysis.schemas import ResultTable
 
@@ -45,11 +47,12 @@ class Options:
     factors
         Columns by which trials are compared.
     correction
-        Of the p-values of t-tests, of `METHODS`.
+        How the p-values of t-tests are corrected for their number, one of `METHODS`.
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Of what is drawn: resamples of comparisons, and shares that information is worked out of.
+        Seed of what is drawn: resamples of comparisons, and shares that information is worked
+        out of.
 
     Raises
     ------
@@ -75,7 +78,13 @@ class Options:
         ]
 
 
-def analyse(study: Study, options: Options) -> Results:
+def options_of(correction: str, **chosen: Any) -> Options:
+    """Options with what is chosen; those that are None are as they are without a choice."""
+    given = {name: value for name, value in chosen.items() if value is not None}
+    return Options(correction=correction, **given)
+
+
+def analyse_study(study: Study, options: Options) -> Results:
     """Analyse trials and comparisons.
 
     Raises
@@ -93,10 +102,12 @@ def analyse(study: Study, options: Options) -> Results:
         table = remarks.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
     about = (*study.about, *_excluded(left_out), *options.told())
-    return _told("Legibility sessions", about, study.warnings, chapters)
+    results = _told("Legibility sessions", about, study.warnings, chapters)
+    trials = None if study.trials is None else written(study.trials)
+    return replace(results, trials=trials, faults=study.faults)
 
 
-def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
+def compare_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
     """Compare the levels of a table of scores.
 
     Parameters
@@ -134,7 +145,7 @@ def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
 
 
 def _of_trials(
-    study: Study, trials: Trials, options: Options, left_out: list[LeftOut]
+    study: Study, trials: pd.DataFrame, options: Options, left_out: list[LeftOut]
 ) -> list[Chapter]:
     places = Places.of(trials)
     scores = of_trials(trials, places, options.factors)
@@ -142,35 +153,35 @@ def _of_trials(
         _legibility(trials, places),
         _characters(trials, places),
         _confusions(trials, places, options),
-        _errors(trials, places),
+        _errors(places),
         _over_time(trials),
         _motion(study, trials),
         _compared(scores, options, left_out),
     ]
 
 
-def _legibility(trials: Trials, places: Places) -> Chapter:
+def _legibility(trials: pd.DataFrame, places: Places) -> Chapter:
     table = legibility.legibility(trials, places)
     averages = legibility.averages(table)
     return Chapter(
         "Legibility",
         "Who read how much of it right, and how long it took.",
         (table, averages),
-        (ofmeasures.legibility(table, averages),),
+        (bars.legibility(table, averages),),
     )
 
 
-def _characters(trials: Trials, places: Places) -> Chapter:
-    by_dots = characters.dots(trials, places)
-    own = characters.dots_of_participants(trials, places)
-    tables = (characters.characters(trials, places), by_dots, own, characters.strings(trials))
-    figures = (ofmeasures.dots(by_dots, own),) if by_dots.rows else ()
+def _characters(trials: pd.DataFrame, places: Places) -> Chapter:
+    by_dots = characters.dots(places)
+    own = characters.dots_of_participants(places)
+    tables = (characters.characters(places), by_dots, own, characters.strings(trials))
+    figures = (bars.dots(by_dots, own),) if len(by_dots) else ()
     return Chapter(
         "Characters and strings", "What is easy to read, and what is not.", tables, figures
     )
 
 
-def _confusions(trials: Trials, places: Places, options: Options) -> Chapter:
+def _confusions(trials: pd.DataFrame, places: Places, options: Options) -> Chapter:
     tables: list[ResultTable] = [confusion.transmitted(trials, places, seed=options.seed)]
     figures: list[ReportFigure] = []
     for counts, schema, reason in (
@@ -188,31 +199,31 @@ def _confusions(trials: Trials, places: Places, options: Options) -> Chapter:
         if counts is None:
             tables.append(schema.fill([], [reason]))
         else:
-            tables.append(confusion.to_table(counts, places, options.marks))
+            tables.append(confusion.to_table(schema, counts, places, options.marks))
             figures.append(matrices.confusion(tables[-1]))
     return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(figures))
 
 
-def _errors(trials: Trials, places: Places) -> Chapter:
-    table, own = doterrors.errors(places), doterrors.of_participants(trials, places)
-    figures = (ofmeasures.errors(table, own),) if table.rows else ()
+def _errors(places: Places) -> Chapter:
+    table, own = doterrors.errors(places), doterrors.of_participants(places)
+    figures = (bars.errors(table, own),) if len(table) else ()
     return Chapter("Errors", "What is wrong with wrong answers.", (table, own), figures)
 
 
-def _over_time(trials: Trials) -> Chapter:
+def _over_time(trials: pd.DataFrame) -> Chapter:
     table, slopes = overtime.over_time(trials), overtime.slopes(trials)
     return Chapter(
         "Over time",
         "Whether reading became harder or easier.",
         (slopes, table),
-        tuple(ofmeasures.over_time(table, slopes)),
+        tuple(curves.over_time(table, slopes)),
     )
 
 
-def _motion(study: Study, trials: Trials) -> Chapter:
+def _motion(study: Study, trials: pd.DataFrame) -> Chapter:
     table = movement.trajectories(study.sittings, trials)
     tables = [movement.patterns(table), movement.correlations(trials), table]
-    drawn = ofmeasures.examples(study.sittings)
+    drawn = curves.examples(study.sittings)
     if drawn is not None:
         tables.append(drawn[0])
     return Chapter(
@@ -232,16 +243,16 @@ def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut
         "Levels compared",
         "Differences within participants.",
         (means, own, levels.t_tests(scores, options.correction), table),
-        tuple(ofmeasures.level_means(means, own)) if means.rows else (),
+        tuple(bars.level_means(means, own)) if len(means) else (),
     )
 
 
-def _of_comparisons(comparisons: Comparisons, options: Options) -> Chapter:
+def _of_comparisons(comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
     return Chapter(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
         (table, own, preferred),
-        tuple(ofmeasures.choices(table, preferred, own)),
+        tuple(bars.choices(table, preferred, own)),
     )

@@ -26,7 +26,7 @@ def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
     tables
         All tables of the report.
     """
-    of = {table.name: table for table in tables if table.rows}
+    of = {table.name: table for table in tables if len(table)}
     found = [
         *_averages(of),
         *_effects(of),
@@ -143,7 +143,7 @@ def _effects(of: Mapping[str, ResultTable]) -> Iterator[str]:
 
 
 def _characters(of: Mapping[str, ResultTable]) -> Iterator[str]:
-    if "characters" not in of or len(of["characters"].rows) < 2:
+    if "characters" not in of or len(of["characters"]) < 2:
         return
     rows = of["characters"].records()
     shares = [row["legibility"] for row in rows]
@@ -165,17 +165,7 @@ def _confusions(of: Mapping[str, ResultTable]) -> Iterator[str]:
             f"“{first['error']}”: {first['count']}, {to_print(first['share'], Kind.PERCENT)} %."
         )
     if "confusion_characters" in of:
-        table = of["confusion_characters"]
-        wrong = [
-            (number, row[0], column.heading)
-            for row in table.rows
-            for at, (number, column) in enumerate(zip(row, table.columns, strict=True))
-            if at
-            and isinstance(number, int)
-            and number
-            and not table.is_right(row, at)
-            and column.heading != UNREAD
-        ]
+        wrong = [each for each in of["confusion_characters"].wrong() if each[2] != UNREAD]
         if wrong:
             most = max(number for number, *_ in wrong)
             alike = [(row, column) for number, row, column in wrong if number == most]

@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vbraille.errors import InputError
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    import pandas as pd
 
     from vbraille.analysis.schemas import ResultTable
     from vbraille.pictures.charts import Chart
@@ -19,11 +23,11 @@ class ReportFigure:
     Parameters
     ----------
     name
-        Of its files: "legibility".
+        Name of its files: "legibility".
     title
         What it shows, in a line.
     text
-        What is to be seen in it, in sentences, for who does not see it.
+        What is to be seen in it, in sentences, for somebody who does not see it.
     table
         Name of the table that has its numbers.
     chart
@@ -48,7 +52,7 @@ class Chapter:
     text
         What it is about: a sentence or two.
     tables, figures
-        In the order in which they are shown: a figure stands after the tables.
+        What it shows, in order: figures stand after the tables.
     """
 
     title: str
@@ -57,24 +61,28 @@ class Chapter:
     figures: tuple[ReportFigure, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Results:
     """All that is reported.
 
     Parameters
     ----------
     title
-        Of the report.
+        Heading of the report.
     about
         What was analysed, as pairs of a word and a sentence: data, sessions, versions, rules.
     warnings
         What the reader must know before all numbers: damage, what is simulated.
     chapters
-        In their order.
+        Tables and figures, in the order of the report.
     findings
         What was found, in sentences.
     main
         Name of the figure that is shown beside these; empty for none.
+    trials
+        The trials as they were analysed, with all columns that were given; None without any.
+    faults
+        What of the sessions is damaged, a clause each.
 
     Raises
     ------
@@ -88,17 +96,36 @@ class Results:
     chapters: tuple[Chapter, ...]
     findings: tuple[str, ...] = ()
     main: str = ""
+    trials: pd.DataFrame | None = None
+    faults: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.main and self.main not in {figure.name for figure in self.figures()}:
+        if self.main and self.main_figure() is None:
             raise ValueError(f"there is no figure {self.main} to stand first")
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """All tables as data frames, by name, in the order of the report."""
+        return {table.name: table.frame for table in self.result_tables()}
+
+    def table(self, name: str) -> pd.DataFrame:
+        """One table as a data frame: its columns are those that docs/analysis.md tells of.
+
+        Raises
+        ------
+        InputError
+            If there is no table of this name.
+        """
+        if name not in self.tables:
+            raise InputError(f"there is no table {name!r}; there are {', '.join(self.tables)}")
+        return self.tables[name]
 
     def main_figure(self) -> ReportFigure | None:
         """The figure that stands first; None if none does."""
         return next((figure for figure in self.figures() if figure.name == self.main), None)
 
-    def tables(self) -> Iterator[ResultTable]:
-        """All tables, in the order of the report."""
+    def result_tables(self) -> Iterator[ResultTable]:
+        """All tables with what is told of them, in the order of the report."""
         for chapter in self.chapters:
             yield from chapter.tables
 

@@ -1,14 +1,25 @@
-"""Tables of results: one description for the CSV, the JSON, the report and the document."""
+r"""Tables of results: one description for the CSV, the JSON, the report and the document.
+
+>>> who = Column("participant", "participant", "pseudonym")
+>>> share = Column("share", "share (%)", "right by answered", Kind.PERCENT)
+>>> schema = Schema("shares", "Shares", "", (who, share))
+>>> table = schema.fill([{"participant": "S1", "share": 0.5}])
+>>> table.frame.dtypes["share"]
+dtype('float64')
+>>> to_csv(table.frame)
+'participant,share\nS1,0.5\n'
+"""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import dataclass, replace
 from decimal import MAX_PREC, ROUND_HALF_UP, Context, Decimal
 from enum import Enum
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
 
 from vbraille.braille.spelling import UNREAD
 
@@ -23,13 +34,11 @@ _DIGITS = 12  # more than a measurement has, fewer than rounding in binary spoil
 
 
 class Kind(Enum):
-    """How a column's values are printed; its CSV and JSON have them in full.
-
-    The value is the number of decimals, after the factor of `_FACTORS`.
-    """
+    """What a column holds, and how the report prints it; its CSV and JSON have it in full."""
 
     TEXT = "text"
     COUNT = "count"
+    VALUE = "value"  # a number as short as it is: of a parameter that was varied
     PERCENT = "percent"
     SECONDS = "seconds"
     NUMBER = "number"
@@ -37,6 +46,8 @@ class Kind(Enum):
     P = "p"
 
 
+# Strings of Python: pandas may keep them in Arrow instead, which refuses undecodable file names.
+_DTYPES = {Kind.TEXT: pd.StringDtype("python", na_value=np.nan), Kind.COUNT: pd.Int64Dtype()}
 _FACTORS = {Kind.PERCENT: 100}
 _DECIMALS = {
     Kind.PERCENT: 1,
@@ -54,13 +65,13 @@ class Column:
     Parameters
     ----------
     name
-        In CSV and JSON, with the unit: "duration_s".
+        What CSV and JSON call it, with the unit: "duration_s".
     heading
-        In the report, with the unit that is printed: "legibility (%)".
+        What the report calls it, with the unit that is printed: "legibility (%)".
     meaning
         What it holds, for the document.
     kind
-        How its values are printed.
+        How its values are kept and printed.
     """
 
     name: str
@@ -68,74 +79,155 @@ class Column:
     meaning: str
     kind: Kind = Kind.TEXT
 
+    @property
+    def dtype(self) -> Any:
+        """Type of the column in a data frame; numbers other than counts are float64."""
+        return _DTYPES.get(self.kind, np.float64)
+
 
 # Where a value may be missing: why it is.
 NOTE_COLUMN = Column(NOTE, "note", "why a value is missing, or what to know of the row")
 
 
 @dataclass(frozen=True, slots=True)
-class ResultTable:
-    """Rows of one kind.
+class Schema:
+    """What a table has in every analysis: name, title and columns are known before any trial.
 
     Parameters
     ----------
     name
-        Of its CSV file and its key in the JSON: "legibility".
+        Name of the table's CSV file, and its key in the JSON: "legibility".
     title
-        What it shows, in a line.
+        What the table shows, in a line.
     about
         How its numbers were found, in sentences.
     columns
-        In their order.
-    rows
-        Values in the columns' order; numbers are finite, and None is a value that is not known.
-    notes
-        What cannot be said, with the reason; for a table without rows at least one.
-    marks
-        Of a confusion matrix, in ascending order: errors above each are marked in the report.
-        All columns of counts are answers then, but for the first column, what was presented.
-
-    Raises
-    ------
-    ValueError
-        If a row has another length, a number that is not finite or a missing value without
-        a word, or a table has neither rows nor notes.
+        Columns in their order.
+    grows
+        What the columns after these are, where that depends on the trials; else empty.
     """
 
     name: str
     title: str
     about: str
     columns: tuple[Column, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    grows: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns."""
+        return [column.name for column in self.columns]
+
+    def fill(
+        self,
+        rows: Sequence[Row] | pd.DataFrame,
+        notes: Sequence[str] = (),
+        more: Sequence[Column] = (),
+        marks: Sequence[int] = (),
+    ) -> ResultTable:
+        """Make a table.
+
+        Parameters
+        ----------
+        rows
+            Values by the columns' names; a name left out is a missing value.
+        notes, marks
+            As of `ResultTable`.
+        more
+            Columns after those of the schema.
+
+        Raises
+        ------
+        ValueError
+            If there is a column of another name, or `ResultTable` refuses the rows.
+        """
+        schema = replace(self, columns=(*self.columns, *more))
+        given = pd.DataFrame(rows)
+        if unknown := set(given) - set(schema.names):
+            raise ValueError(f"table {self.name} has no columns {unknown}")
+        if not isinstance(rows, pd.DataFrame):
+            _refuse_nan(self.name, rows)
+        given = given.reindex(columns=schema.names)
+        if NOTE in given:
+            given[NOTE] = given[NOTE].astype(object).fillna("")
+        frame = given.astype({column.name: column.dtype for column in schema.columns})
+        return ResultTable(schema, frame, tuple(notes), tuple(marks))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResultTable:
+    """Rows of one kind.
+
+    Parameters
+    ----------
+    schema
+        What the columns are.
+    frame
+        The rows, each column of its `Column.dtype`; numbers are finite or missing.
+    notes
+        What cannot be said, with the reason; for a table without rows at least one.
+    marks
+        Counts in ascending order, for a confusion matrix: errors above each are marked in the
+        report. All columns of counts are answers then, but for the first column, what was
+        presented.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or a value is missing without a word, or the table has neither
+        rows nor notes.
+    """
+
+    schema: Schema
+    frame: pd.DataFrame
     notes: tuple[str, ...] = ()
     marks: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        if not self.rows and not self.notes:
+        if self.frame.empty and not self.notes:
             raise ValueError(f"table {self.name} has no rows, and no note that says why")
-        noted = self.names.index(NOTE) if NOTE in self.names else None
-        for row in self.rows:
-            if len(row) != len(self.columns):
-                raise ValueError(f"table {self.name}: {row} has not {len(self.columns)} values")
-            if not math.isfinite(sum([value for value in row if isinstance(value, float)])):
-                raise ValueError(f"table {self.name}: {row} has a number that is not finite")
-            if None in row and (noted is None or not row[noted]):
-                raise ValueError(f"table {self.name}: {row} misses a value without a word")
+        endless = self.frame.select_dtypes("float64").abs().eq(math.inf).any(axis=1)
+        self._refuse(endless, "has a number that is not finite")
+        missing = self.frame.isna().any(axis=1)
+        if NOTE in self.frame:
+            missing &= self.frame[NOTE] == ""
+        self._refuse(missing, "misses a value without a word")
+
+    def _refuse(self, wrong: pd.Series, why: str) -> None:
+        if wrong.any():
+            row = tuple(self.frame[wrong].iloc[0])
+            raise ValueError(f"table {self.name}: {row} {why}")
+
+    def __len__(self) -> int:
+        return len(self.frame)
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """Of the columns."""
-        return tuple(column.name for column in self.columns)
+    def name(self) -> str:
+        """Name of the table, as of its `Schema`."""
+        return self.schema.name
 
-    def column(self, name: str) -> list[Value]:
-        """Values of a column."""
-        at = self.names.index(name)
-        return [row[at] for row in self.rows]
+    @property
+    def title(self) -> str:
+        """What the table shows."""
+        return self.schema.title
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """Columns in their order."""
+        return self.schema.columns
+
+    @property
+    def rows(self) -> tuple[tuple[Value, ...], ...]:
+        """Values in the columns' order; None where one is missing."""
+        return tuple(self._plain().itertuples(index=False, name=None))
 
     def records(self) -> list[Row]:
-        """Row by row, by the columns' names."""
-        names = self.names
+        """Row by row, by the columns' names; None where a value is missing."""
+        names = self.schema.names
         return [dict(zip(names, row, strict=True)) for row in self.rows]
+
+    def _plain(self) -> pd.DataFrame:
+        return self.frame.astype(object).where(self.frame.notna(), None)
 
     def is_right(self, row: Sequence[Value], at: int) -> bool:
         """Whether a column of a confusion matrix has a row's right answers."""
@@ -149,6 +241,15 @@ class ResultTable:
             return None
         return max((mark for mark in self.marks if count > mark), default=None)
 
+    def wrong(self) -> list[tuple[int, str, str]]:
+        """Wrong answers of a confusion matrix: how often, what was presented, what was answered."""
+        return [
+            (number, str(row[0]), column.heading)
+            for row in self.rows
+            for at, (number, column) in enumerate(zip(row, self.columns, strict=True))
+            if at and isinstance(number, int) and number and not self.is_right(row, at)
+        ]
+
     def gathered(self) -> ResultTable:
         """Confusion matrix as it is shown: rare answers that were never presented in one column.
 
@@ -158,96 +259,54 @@ class ResultTable:
         """
         if not self.marks:
             return self
-        known = {row[0] for row in self.rows} | {UNREAD}
+        known = {*self.frame.iloc[:, 0], UNREAD}
         rare = [
-            at
-            for at, column in enumerate(self.columns)
-            if at > 0
-            and column.heading not in known
-            and all(self.mark(row, at) is None for row in self.rows)
+            column
+            for column in self.columns[1:]
+            if column.heading not in known and not (self.frame[column.name] > self.marks[0]).any()
         ]
         if len(rare) < 2:
             return self
-        kept = [at for at in range(len(self.columns)) if at not in set(rare)]
-        names = ", ".join(self.columns[at].heading for at in rare)
         other = Column(f"answered {OTHER}", OTHER, "times answered otherwise", Kind.COUNT)
-        rows = tuple(
-            (*(row[at] for at in kept), sum(_count(row[at]) for at in rare)) for row in self.rows
-        )
+        kept = [column for column in self.columns if column not in rare]
         about = (
             f"Column {OTHER} gathers {len(rare)} answers that were never presented, and for none "
-            f"of the rows given more than {self.marks[0]} times: {names}."
+            f"of the rows given more than {self.marks[0]} times: "
+            f"{', '.join(column.heading for column in rare)}."
         )
         return replace(
             self,
-            about=f"{self.about} {about}".strip(),
-            columns=(*(self.columns[at] for at in kept), other),
-            rows=rows,
+            schema=replace(
+                self.schema, columns=(*kept, other), about=f"{self.schema.about} {about}".strip()
+            ),
+            frame=self.frame[[column.name for column in kept]].assign(
+                **{other.name: self.frame[[column.name for column in rare]].sum(axis=1)}
+            ),
         )
 
-    def to_csv(self) -> str:
-        """Text of its CSV: full precision, a missing value empty."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(self.names)
-        writer.writerows(
-            ["" if value is None else _plain(value) for value in row] for row in self.rows
-        )
-        return text.getvalue()
 
-
-@dataclass(frozen=True, slots=True)
-class Schema:
-    """What a table has in every analysis: name, title and columns are known before any trial.
-
-    Parameters
-    ----------
-    name, title, about, columns
-        As of `ResultTable`.
-    grows
-        What the columns after these are, where that depends on the trials; else empty.
-    """
-
-    name: str
-    title: str
-    about: str
-    columns: tuple[Column, ...]
-    grows: str = ""
-
-    def fill(
-        self,
-        rows: Sequence[Row],
-        notes: Sequence[str] = (),
-        more: Sequence[Column] = (),
-    ) -> ResultTable:
-        """Make a table of rows by the columns' names; a name left out is a missing value."""
-        columns = (*self.columns, *more)
-        names = [column.name for column in columns]
-        empty: Row = {name: "" if name == NOTE else None for name in names}
-        filled = []
-        for row in rows:
-            whole = empty | row
-            if len(whole) > len(names):
-                raise ValueError(f"table {self.name} has no columns {row.keys() - set(names)}")
-            filled.append(tuple(whole.values()))
-        return ResultTable(self.name, self.title, self.about, columns, tuple(filled), tuple(notes))
+def to_csv(frame: pd.DataFrame) -> str:
+    """Text of a table as CSV: full precision, a missing value empty."""
+    return frame.to_csv(index=False, lineterminator="\n")
 
 
 def to_print(value: Value, kind: Kind) -> str:
     """Text of a value in the report; numbers are rounded half up, which nothing else is.
 
     Half to even would print 86.25 % as 86.2, where Lévesque 2009, table 3.1, has 86.3.
+
+    >>> to_print(0.8625, Kind.PERCENT), to_print(2.0, Kind.VALUE), to_print(None, Kind.COUNT)
+    ('86.3', '2', 'not known')
     """
     if value is None:
         return "not known"
     if isinstance(value, str):
         return value
-    if kind in (Kind.TEXT, Kind.COUNT):
+    if kind not in _DECIMALS:
         return f"{value:g}" if isinstance(value, float) else str(value)
-    decimals = _DECIMALS[kind]
     if kind is Kind.P and value < 0.001:
         return "< 0.001"
-    return round_half_up(value * _FACTORS.get(kind, 1), decimals)
+    return round_half_up(value * _FACTORS.get(kind, 1), _DECIMALS[kind])
 
 
 def round_half_up(value: float, decimals: int) -> str:
@@ -257,9 +316,8 @@ def round_half_up(value: float, decimals: int) -> str:
     return f"{abs(rounded) if rounded == 0 else rounded}".replace("-", "−")
 
 
-def _count(value: Value) -> int:
-    return value if isinstance(value, int) else 0
-
-
-def _plain(value: Any) -> Any:
-    return repr(float(value)) if isinstance(value, float) else value
+def _refuse_nan(table: str, rows: Sequence[Row]) -> None:
+    """Raise ValueError for a number that could not be found: a missing value is None."""
+    for row in rows:
+        if any(isinstance(value, float) and math.isnan(value) for value in row.values()):
+            raise ValueError(f"table {table}: {row} has a number that is not finite")

@@ -1,13 +1,14 @@
 """Columns of text to trials: what is understood, what is left out, what is refused."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from tests.analysis.making import sheet
+from tests.analysis.making import levels, sheet
 from vbraille.analysis.input.fieldvalues import parse_cells
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import Sheet, from_rows, read_csv
-from vbraille.analysis.input.trials import LeftOut
+from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut
 from vbraille.errors import InputError
 
 NAMED = "participant condition session trial presented answered"
@@ -55,19 +56,19 @@ def test_a_trial_is_right_if_all_of_it_is():
         "P1 T0 ac AC", "P1 T0 ac ⠁⠉", "P1 T0 ac aa", "P1 T0 ac a?", "P1 T0 ac acc", "P1 T0 ac a"
     )
     assert trials.correct.tolist() == [True, True, False, False, False, False]
-    assert trials.presented.names() == ["⠁⠉"] * 6
-    assert trials.answered.names() == ["⠁⠉", "⠁⠉", "⠁⠁", "⠁?", "⠁⠉⠉", "⠁"]
+    assert trials["presented"].tolist() == ["⠁⠉"] * 6
+    assert trials["answered"].tolist() == ["⠁⠉", "⠁⠉", "⠁⠁", "⠁?", "⠁⠉⠉", "⠁"]
 
 
 def test_what_is_optional_is_filled_in():
     trials = trials_of("P2 T0 a a", "P1 T0 a a")
-    assert trials.participant.names() == ["P1", "P2"]
-    assert trials.session.levels == ("made",)
-    assert trials.protocol.levels == ("",)
+    assert trials["participant"].tolist() == ["P1", "P2"]
+    assert levels(trials.session) == ("made",)
+    assert levels(trials.protocol) == ("",)
     assert trials.block.tolist() == [0, 0]
     assert trials.trial.tolist() == [2, 1]
     assert np.isnan(trials.duration_s).all()
-    assert trials.others == {}
+    assert tuple(trials) == TRIAL_COLUMNS
 
 
 def test_all_columns_are_read_and_others_are_kept():
@@ -78,10 +79,10 @@ def test_all_columns_are_read_and_others_are_kept():
     )  # fmt: skip
     assert trials.trial.tolist() == [1, 2]
     assert trials.block.tolist() == [1, 1]
-    assert trials.condition.names() == ["T0", "T25"]
-    assert trials.protocol.levels == ("letters",)
+    assert trials["condition"].tolist() == ["T0", "T25"]
+    assert levels(trials.protocol) == ("letters",)
     np.testing.assert_array_equal(trials.duration_s, [np.nan, 4.5])
-    assert trials.others == {"hand": ["right", "left"]}
+    assert trials["hand"].tolist() == ["right", "left"]
     # As it is answered, whatever the table says of it.
     assert trials.correct.tolist() == [False, True]
 
@@ -94,8 +95,8 @@ def test_trials_are_in_the_order_of_participants_sessions_blocks_and_trials():
         columns=f"{NAMED} block",
     )
     found = zip(
-        trials.participant.names(),
-        trials.session.names(),
+        trials["participant"].tolist(),
+        trials["session"].tolist(),
         trials.block.tolist(),
         trials.trial.tolist(),
         strict=True,
@@ -213,14 +214,14 @@ def test_several_protocols_keep_their_conditions_apart():
     columns = f"{NEEDED} protocol"
     lines = ["P1 T0 a a letters", "P1 T0 a a words", "P1 T25 a a letters", "P1 all a a control"]
     trials = trials_of(*lines, columns=columns)
-    assert trials.condition.names() == ["letters T0", "words T0", "T25", "control"]
-    assert trials.protocol.names() == ["letters", "words", "letters", "control"]
+    assert trials["condition"].tolist() == ["letters T0", "words T0", "T25", "control"]
+    assert trials["protocol"].tolist() == ["letters", "words", "letters", "control"]
     # Of one protocol they are as they are.
-    assert trials_of(lines[0], lines[2], columns=columns).condition.levels == ("T0", "T25")
-    assert trials_of(lines[3], columns=columns).condition.levels == ("all",)
+    assert levels(trials_of(lines[0], lines[2], columns=columns).condition) == ("T0", "T25")
+    assert levels(trials_of(lines[3], columns=columns).condition) == ("all",)
     # A table without a protocol is one more.
     told = [sheet(lines[3], columns=columns), sheet("P1 all a a", "P2 T0 a a", columns=NEEDED)]
-    assert set(parse(told).trials.condition.levels) == {"control", "all", "T0"}
+    assert set(levels(parse(told).trials.condition)) == {"control", "all", "T0"}
 
 
 def test_other_columns_of_some_sheets():
@@ -228,7 +229,9 @@ def test_other_columns_of_some_sheets():
     two = sheet("P2 T0 a a index", columns=f"{NEEDED} finger", name="two")
     three = sheet("P3 T0 a a", columns=NEEDED, name="three")
     trials = parse([one, two, three]).trials
-    assert trials.others == {"hand": ["left", "", ""], "finger": ["", "index", ""]}
+    assert list(trials)[len(TRIAL_COLUMNS) :] == ["hand", "finger"]
+    assert trials["hand"].tolist() == ["left", "", ""]
+    assert trials["finger"].tolist() == ["", "index", ""]
 
 
 def test_comparisons_are_told_from_strings():
@@ -236,13 +239,12 @@ def test_comparisons_are_told_from_strings():
     assert found.comparisons.first.tolist() == [1.5, 2.0, 3.0]
     assert found.comparisons.second.tolist() == [2.0, 1.5, 0.5]
     assert found.comparisons.chosen.tolist() == [1, 0, 0]
-    assert found.comparisons.parameter.levels == ("value",)
-    assert found.comparisons.participant.levels == ("P1",)
+    assert levels(found.comparisons.parameter) == ("value",)
+    assert levels(found.comparisons.participant) == ("P1",)
     assert len(found.comparisons) == 3
-    assert found.trials.presented.levels == ("⠁⠉",)
-    assert len(found.comparisons[np.array([0])]) == 1
+    assert levels(found.trials.presented) == ("⠁⠉",)
     named = compared(("1.5 2", "2"), parameter="dot_width_mm")
-    assert named.comparisons.parameter.levels == ("dot_width_mm",)
+    assert levels(named.comparisons.parameter) == ("dot_width_mm",)
     assert named.trials is None
 
 
@@ -274,5 +276,5 @@ def test_what_is_no_comparison(presented, answered, more):
 
 
 def test_a_table_without_rows_has_nothing():
-    found = parse([Sheet("t", {name: [] for name in NEEDED.split()})])
+    found = parse([Sheet("t", pd.DataFrame(columns=NEEDED.split(), dtype=object))])
     assert (found.trials, found.comparisons, found.left_out) == (None, None, ())

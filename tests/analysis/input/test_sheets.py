@@ -1,5 +1,6 @@
 """CSV files as people have them, to columns of text."""
 
+import pandas as pd
 import pytest
 
 from vbraille.analysis.input.sheets import Sheet, from_rows, read_csv
@@ -24,51 +25,51 @@ def table(delimiter=",", end="\n"):
 def test_a_file_is_read_in_every_encoding_with_every_delimiter(tmp_path, encoding, delimiter):
     mark = "\ufeff" if encoding == "utf-16-be" else ""
     sheet = read_csv(written(tmp_path, mark + table(delimiter), encoding))
-    assert sheet.columns == COLUMNS
+    assert sheet.frame.to_dict("list") == COLUMNS
     assert sheet.decimal_comma == (delimiter == ";")
-    assert (sheet.name, len(sheet), list(sheet.lines)) == ("t.csv", 2, [2, 3])
+    assert (sheet.name, len(sheet), sheet.frame.index.tolist()) == ("t.csv", 2, [2, 3])
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_lines_end_in_every_way(tmp_path, end):
-    assert read_csv(written(tmp_path, table(end=end))).columns == COLUMNS
+    assert read_csv(written(tmp_path, table(end=end))).frame.to_dict("list") == COLUMNS
 
 
 def test_blank_lines_are_none_and_lines_keep_their_numbers(tmp_path):
     head, first, second = table(";").splitlines()
     text = "\n".join(["", " ", head, "", first, ";;", "  ", second, "", ""])
     sheet = read_csv(written(tmp_path, text))
-    assert sheet.columns == COLUMNS
-    assert sheet.lines == [5, 8]
-    assert sheet.place(1) == "t.csv line 8"
+    assert sheet.frame.to_dict("list") == COLUMNS
+    assert sheet.frame.index.tolist() == [5, 8]
+    assert sheet.place(8) == "t.csv line 8"
 
 
 def test_values_may_have_the_delimiter_in_quotes_and_names_spaces_around(tmp_path):
     sheet = read_csv(written(tmp_path, 'participant , note\nP1,"a, ""b"""\n'))
-    assert sheet.columns == {"participant": ["P1"], "note": ['a, "b"']}
+    assert sheet.frame.to_dict("list") == {"participant": ["P1"], "note": ['a, "b"']}
 
 
 def test_a_table_of_names_alone_has_no_rows(tmp_path):
     sheet = read_csv(written(tmp_path, "participant,condition\n"))
-    assert (len(sheet), list(sheet.columns)) == (0, ["participant", "condition"])
+    assert (len(sheet), list(sheet.frame)) == (0, ["participant", "condition"])
 
 
 def test_the_comma_is_a_decimal_point_beside_semicolons_only():
-    assert Sheet("t", {}, decimal_comma=True).number("4,5") == 4.5
-    assert Sheet("t", {}, decimal_comma=True).number("4.5") == 4.5
+    assert Sheet("t", pd.DataFrame(), decimal_comma=True).number("4,5") == 4.5
+    assert Sheet("t", pd.DataFrame(), decimal_comma=True).number("4.5") == 4.5
     with pytest.raises(ValueError, match="4,5"):
-        Sheet("t", {}).number("4,5")
+        Sheet("t", pd.DataFrame()).number("4,5")
 
 
-def test_rows_of_a_session_are_columns_of_text():
+def test_rows_of_a_session_keep_their_types():
     sheet = from_rows("P01", [{"participant": "P1", "trial": 1}, {"participant": "P1", "trial": 2}])
-    assert sheet.columns == {"participant": ["P1", "P1"], "trial": ["1", "2"]}
-    assert sheet.place(1) == "P01 row 2"
+    assert sheet.frame.to_dict("list") == {"participant": ["P1", "P1"], "trial": [1, 2]}
+    assert [sheet.place(row) for row in sheet.frame.index] == ["P01 row 1", "P01 row 2"]
     assert len(from_rows("P01", [])) == 0
 
 
 def test_missing_columns_are_named_with_the_nearest():
-    sheet = Sheet("t.csv", {"particpant": [], "Answer": [], "x": []})
+    sheet = Sheet("t.csv", pd.DataFrame(columns=["particpant", "Answer", "x"]))
     says = (
         r"^t\.csv needs columns participant, answered, x: there is no participant, the nearest is "
         r"particpant; there is no answered, the nearest is Answer; rename or add what is missing$"
@@ -77,7 +78,7 @@ def test_missing_columns_are_named_with_the_nearest():
         sheet.need(("participant", "answered", "x"))
     sheet.need(("x", "Answer"))
     with pytest.raises(InputError, match=r"^t needs columns a: there is no a; rename or add"):
-        Sheet("t", {}).need(("a",))
+        Sheet("t", pd.DataFrame()).need(("a",))
 
 
 @pytest.mark.parametrize(

@@ -5,14 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.analysis.making import made, record, sheet
+from tests.analysis.making import levels, made, record, sheet
 from tests.sessions.sittings import Session
-from vbraille.analysis.chapters import Options, analyse
+from vbraille.analysis.chapters import Options, analyse_study
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sources import distinct_names
-from vbraille.analysis.input.study import load_study, trials_file
+from vbraille.analysis.input.study import load_study
+from vbraille.analysis.input.trials import written
 from vbraille.analysis.measures.characters import strings
 from vbraille.analysis.measures.movement import correlations
+from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
@@ -36,7 +38,7 @@ trials = 0
 
 
 def tables(results):
-    return {table.name: table for table in results.tables()}
+    return {table.name: table for table in results.result_tables()}
 
 
 def session(folder, seed=1, who="P01"):
@@ -106,35 +108,35 @@ def test_a_table_tells_the_set_of_its_strings():
 
 def test_a_session_and_its_export_know_their_sets(sites, tmp_path):
     study = load_study(sites[:1])
-    table = tables(analyse(study, Options()))["strings"]
+    table = tables(analyse_study(study, Options()))["strings"]
     assert [(row["name"], row["presented"]) for row in table.records()] == [("abc", 6), ("def", 6)]
     exported = tmp_path / "exported.csv"
     exported.write_text(to_csv(rows(load(sites[0]))), encoding="utf-8")
-    assert tables(analyse(load_study([exported]), Options()))["strings"].rows == table.rows
+    assert tables(analyse_study(load_study([exported]), Options()))["strings"].rows == table.rows
     again = tmp_path / "again.csv"
-    again.write_bytes(trials_file(study)["trials.csv"])
-    assert tables(analyse(load_study([again]), Options()))["strings"].rows == table.rows
+    again.write_text(frame_to_csv(written(study.trials)))
+    assert tables(analyse_study(load_study([again]), Options()))["strings"].rows == table.rows
 
 
 def test_sessions_of_one_folder_name_are_told_apart(sites):
     study = load_study(sites)
-    assert study.trials.session.levels == ("x/P01-orders", "y/P01-orders")
+    assert levels(study.trials.session) == ("x/P01-orders", "y/P01-orders")
     assert len(study.trials) == 24
     assert [sitting.name for sitting in study.sittings] == ["x/P01-orders", "y/P01-orders"]
     assert {word for word, _ in study.about} >= {"Session x/P01-orders", "Session y/P01-orders"}
     (warning,) = [w for w in study.warnings if "told apart" in w]
     assert "x/P01-orders and y/P01-orders" in warning
     assert "P01 is taken for one person. If they are several, give --sites." in warning
-    slopes = tables(analyse(study, Options()))["slopes"]
+    slopes = tables(analyse_study(study, Options()))["slopes"]
     assert len(slopes.rows) == 2
 
 
 def test_sites_have_participants_of_their_own(sites):
     study = load_study(sites, sites=True)
-    assert study.trials.participant.levels == ("x/P01", "y/P01")
+    assert levels(study.trials.participant) == ("x/P01", "y/P01")
     assert not [w for w in study.warnings if "told apart" in w]
     left = load_study(sites, sites=True, exclude={"x/P01": "moved house"})
-    assert left.trials.participant.levels == ("y/P01",)
+    assert levels(left.trials.participant) == ("y/P01",)
     assert [sitting.name for sitting in left.sittings] == ["y/P01-orders"]
 
 
@@ -151,15 +153,15 @@ def exports(sites, tmp_path):
 def test_so_are_the_tables_of_two_sites(sites, tmp_path):
     paths = exports(sites, tmp_path)
     study = load_study(paths)
-    assert study.trials.session.levels == (
+    assert levels(study.trials.session) == (
         "x/trials.csv: P01-orders",
         "y/trials.csv: P01-orders",
     )
     assert len(study.trials) == 24
     assert any("taken for one person" in warning for warning in study.warnings)
     apart = load_study(paths, sites=True)
-    assert apart.trials.participant.levels == ("x/P01", "y/P01")
-    assert apart.trials.session.levels == ("x/P01-orders", "y/P01-orders")
+    assert levels(apart.trials.participant) == ("x/P01", "y/P01")
+    assert levels(apart.trials.session) == ("x/P01-orders", "y/P01-orders")
 
 
 def test_tables_without_sessions_are_their_files(tmp_path):
@@ -169,7 +171,7 @@ def test_tables_without_sessions_are_their_files(tmp_path):
             "participant,condition,presented,answered\nA,T0,ab,ab\n"
         )
     study = load_study([tmp_path / "x" / "t.csv", tmp_path / "y" / "t.csv"])
-    assert study.trials.session.levels == ("x/t.csv", "y/t.csv")
+    assert levels(study.trials.session) == ("x/t.csv", "y/t.csv")
 
 
 def test_a_copy_of_a_session_is_the_same_session(sites, tmp_path):

@@ -1,19 +1,23 @@
 """Trials as arrays: levels in order, cells by name, places side by side."""
 
-import numpy as np
 import pytest
 
-from tests.analysis.making import answers, made
+from tests.analysis.making import answers, levels, made
 from vbraille.analysis.input.trials import (
+    TRIAL_COLUMNS,
     UNREAD_MASK,
-    Factor,
     Places,
+    chosen,
+    comparable,
     count,
+    factor,
     masks_of,
     name_cell,
     name_string,
     natural,
+    written,
 )
+from vbraille.analysis.schemas import to_csv
 
 
 @pytest.mark.parametrize(
@@ -31,21 +35,14 @@ def test_names_with_numbers_come_in_the_order_of_the_numbers(names):
 
 
 def test_a_factor_has_its_levels_in_order():
-    factor = Factor.of(["T100", "T0", "T25", "T0"])
-    assert factor.levels == ("T0", "T25", "T100")
-    assert factor.codes.tolist() == [2, 0, 1, 0]
-    assert factor.names() == ["T100", "T0", "T25", "T0"]
-    assert len(factor) == 3
-
-
-def test_levels_that_nothing_has_any_more_are_gone():
-    part = Factor.of(["c", "a", "b", "c"])[np.array([True, False, False, True])]
-    assert (part.levels, part.codes.tolist()) == (("c",), [0, 0])
-    assert Factor.of(["c", "a", "b"])[np.array([2, 0])].names() == ["b", "c"]
+    found = factor(["T100", "T0", "T25", "T0"])
+    assert tuple(found.categories) == ("T0", "T25", "T100")
+    assert found.codes.tolist() == [2, 0, 1, 0]
+    assert factor([0.25, "", 0.5]).tolist() == ["0.25", "", "0.5"]
 
 
 def test_strings_are_sorted_by_code_point():
-    assert Factor.of_strings(["⠃", "?", "⠁"]).levels == ("?", "⠁", "⠃")
+    assert tuple(factor(["⠃", "?", "⠁"], None).categories) == ("?", "⠁", "⠃")
 
 
 @pytest.mark.parametrize(
@@ -89,34 +86,34 @@ def test_some_of_the_trials():
         "P2 T0 ca ca 4 right",
         columns="participant condition presented answered duration_s hand",
     )
-    part = trials[trials.participant.codes == 0]
+    part = chosen(trials, trials["participant"] == "P1")
     assert len(part) == 2
-    assert part.participant.levels == ("P1",)
-    assert part.presented.levels == ("⠁⠉",)
-    assert part.correct.tolist() == [True, False]
-    assert part.duration_s.tolist() == [2.0, 3.0]
-    assert part.others == {"hand": ["left", "left"]}
-    last = trials[np.array([2])]
-    assert (last.others, last.trial.tolist()) == ({"hand": ["right"]}, [3])
+    assert levels(part.participant) == ("P1",)
+    assert levels(part.presented) == ("⠁⠉",)
+    assert part["correct"].tolist() == [True, False]
+    assert part["duration_s"].tolist() == [2.0, 3.0]
+    assert part["hand"].tolist() == ["left", "left"]
+    last = chosen(trials, trials["hand"] == "right")
+    assert last[["hand", "trial"]].to_dict("list") == {"hand": ["right"], "trial": [3]}
 
 
-def test_a_row_a_trial():
+def test_trials_as_a_file_has_them():
     trials, _ = made(
         "P1 T0 ac a? - 3 left", "P2 T25 a A 1.5 - right",
         columns="participant condition presented answered duration_s block hand",
     )  # fmt: skip
-    assert trials.rows() == [
-        {
-            "participant": "P1", "session": "made", "protocol": "", "condition": "T0", "block": 3,
-            "trial": 1, "presented": "⠁⠉", "string_set": "", "answered": "⠁?", "correct": 0,
-            "duration_s": "", "hand": "left",
-        },
-        {
-            "participant": "P2", "session": "made", "protocol": "", "condition": "T25", "block": "",
-            "trial": 2, "presented": "⠁", "string_set": "", "answered": "⠁", "correct": 1,
-            "duration_s": 1.5, "hand": "right",
-        },
-    ]  # fmt: skip
+    assert to_csv(written(trials)).splitlines() == [
+        "participant,session,protocol,condition,block,trial,presented,string_set,answered,correct,"
+        "duration_s,hand",
+        "P1,made,,T0,3,1,⠁⠉,,⠁?,0,,left",
+        "P2,made,,T25,,2,⠁,,⠁,1,1.5,right",
+    ]
+
+
+def test_columns_have_their_types():
+    trials, _ = made("P1 T0 ac ac 2")
+    types = [str(kind) for kind in trials[list(TRIAL_COLUMNS)].dtypes]
+    assert types == [*["category"] * 4, *["int64"] * 2, *["category"] * 3, "bool", "float64"]
 
 
 def test_trials_are_compared_by_what_they_have():
@@ -125,27 +122,26 @@ def test_trials_are_compared_by_what_they_have():
         "P1 T25 a a 1 right",
         columns="participant condition presented answered block hand",
     )
-    assert trials.columns() == ("condition", "block", "session", "protocol", "hand")
-    assert trials.factor("condition") is trials.condition
-    assert trials.factor("session").levels == ("made",)
-    assert trials.factor("block").levels == ("1", "2")
-    assert sorted(trials.factor("hand").names()) == ["left", "right"]
+    assert comparable(trials) == ["condition", "block", "session", "protocol", "hand"]
 
 
 def test_places_are_those_of_answers_as_long_as_their_string():
     trials, places = answers("P1 T0 ac a?", "P1 T0 ca c", "P1 T0 a ca", "P1 T0 ⠈⠀c aca")
-    assert trials.correct.tolist() == [False] * 4
-    assert places.at.tolist() == [0, 0, 3, 3, 3]
-    assert places.presented.tolist() == [1, 9, 8, 0, 9]
-    assert places.answered.tolist() == [1, UNREAD_MASK, 1, 9, 1]
-    assert places.correct.tolist() == [True, False, False, False, False]
+    assert trials["correct"].tolist() == [False] * 4
+    assert places.frame.index.tolist() == [0, 0, 3, 3, 3]
+    assert places.frame["presented"].tolist() == [1, 9, 8, 0, 9]
+    assert places.frame["answered"].tolist() == [1, UNREAD_MASK, 1, 9, 1]
+    assert places.frame["correct"].tolist() == [True, False, False, False, False]
     assert (places.unequal, len(places)) == (2, 5)
-    wrong = places.where(~places.correct)
-    assert (wrong.at.tolist(), wrong.presented.tolist()) == ([0, 3, 3, 3], [9, 8, 0, 9])
+    wrong = places.where(~places.frame["correct"])
+    assert (wrong.frame.index.tolist(), wrong.frame["presented"].tolist()) == (
+        [0, 3, 3, 3],
+        [9, 8, 0, 9],
+    )
     assert (len(wrong), wrong.unequal) == (4, 2)
 
 
 def test_places_of_answers_of_other_lengths_are_none():
     trials, places = answers("P1 T0 ac a", "P1 T0 a ac")
     assert (len(places), places.unequal) == (0, 2)
-    assert len(Places.of(trials[np.array([0])])) == 0
+    assert len(Places.of(trials.head(1))) == 0

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from statistics import fmean
 
-import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,9 +23,9 @@ UNEQUAL = ["P1 T0 a a", "P1 T0 a a", "P1 T0 a a", "P1 T0 a c", "P1 T25 a ?", "P2
 def test_conditions_are_averaged_within_a_participant_first_then_participants(table):
     trials, places = answers(*UNEQUAL)
     found = {
-        "characters": characters(trials, places),
+        "characters": characters(places),
         "strings": strings(trials),
-        "dots": dots(trials, places),
+        "dots": dots(places),
     }[table]
     (row,) = found.records()
     assert row["legibility"] == fmean([fmean([3 / 4, 0]), 1])
@@ -41,7 +41,7 @@ def test_conditions_are_averaged_within_a_participant_first_then_participants(ta
 def test_the_interval_is_of_the_participants_means(of):
     # Pooled it would be Wilson's, as if all were one person's.
     lines = ["P1 T0 a a"] * 4 + ["P2 T0 a a", "P2 T0 a c", "P3 T0 a ?", "P3 T25 a a"]
-    (row,) = of(*answers(*lines)).records()
+    (row,) = of(answers(*lines)[1]).records()
     interval = mean_share([1, 0.5, 0.5], [4, 2, 2])
     assert row["legibility"] == fmean([1, 0.5, 0.5])
     assert (row["low"], row["high"]) == pytest.approx((interval.low, interval.high))
@@ -57,7 +57,8 @@ OBSERVED = st.lists(
 
 @given(OBSERVED)
 def test_means_are_those_taken_one_by_one(observed):
-    level, value, participant, condition = map(np.array, zip(*observed, strict=True))
+    frame = pd.DataFrame(observed, columns=["level", "correct", "participant", "condition"])
+    whose = {name: frame[name].astype("category") for name in ("participant", "condition")}
     of = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
     for what, right, who, when in observed:
         of[what][who][when].append(right)
@@ -65,7 +66,7 @@ def test_means_are_those_taken_one_by_one(observed):
         what: fmean(fmean(map(fmean, whens.values())) for whens in whos.values())
         for what, whos in of.items()
     }
-    levels, own, numbers = over_participants(level, value, participant, condition)
+    levels, own, numbers = over_participants(frame["level"].to_numpy(), frame.assign(**whose))
     assert levels.tolist() == sorted(means)
     assert [len(whos) for whos in own] == [len(of[what]) for what in sorted(means)]
     assert sum(int(number.sum()) for number in numbers) == len(observed)
@@ -75,12 +76,12 @@ def test_means_are_those_taken_one_by_one(observed):
 
 def test_equal_numbers_of_trials_make_means_and_pooled_the_same():
     lines = [f"P{who} T{t} a {answer}" for who in (1, 2) for t in (0, 25) for answer in "aac"]
-    (row,) = characters(*answers(*lines)).records()
+    (row,) = characters(answers(*lines)[1]).records()
     assert row["legibility"] == pytest.approx(row["pooled"]) == pytest.approx(2 / 3)
 
 
 def test_characters_are_told_by_name_braille_and_dots():
-    table = characters(*answers("P1 T0 ⠈⠀ca ⠈⠈cc", "P1 T0 Ca ca"))
+    table = characters(answers("P1 T0 ⠈⠀ca ⠈⠈cc", "P1 T0 Ca ca")[1])
     told = [
         (r["name"], r["braille"], r["dots"], r["presented"], r["correct"]) for r in table.records()
     ]
@@ -105,7 +106,7 @@ def test_strings_are_right_whole():
 
 
 def test_by_number_of_dots():
-    table = dots(*answers("P1 T0 ⠈a⠀ ⠈c⠁", "P1 T0 xc ??"))
+    table = dots(answers("P1 T0 ⠈a⠀ ⠈c⠁", "P1 T0 xc ??")[1])
     told = [(row["dots"], row["presented"], row["correct"]) for row in table.records()]
     assert told == [(0, 1, 0), (1, 2, 1), (2, 1, 0), (4, 1, 0)]
 
@@ -113,7 +114,7 @@ def test_by_number_of_dots():
 @pytest.mark.parametrize("of", [characters, dots])
 def test_answers_of_another_length_are_told(of):
     table = of(*answers("P1 T0 ac aa", "P1 T0 ac a"))
-    assert sum(table.column("presented")) == 2
+    assert sum(table.frame["presented"].tolist()) == 2
     assert table.notes[0].startswith("1 answer of another number of places")
     none = of(*answers("P1 T0 ac a"))
     assert none.rows == ()
@@ -122,7 +123,7 @@ def test_answers_of_another_length_are_told(of):
 
 
 def test_legibility_of_a_character_in_all_of_its_strings():
-    table = characters(*answers("P1 T0 ac aa", "P2 T0 ca ca"))
+    table = characters(answers("P1 T0 ac aa", "P2 T0 ca ca")[1])
     assert record(table, name="a")["legibility"] == 1
     assert record(table, name="c")["legibility"] == 0.5
 

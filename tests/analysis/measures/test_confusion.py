@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from tests.analysis.making import answers, record
 from vbraille.analysis.input.trials import name_string
 from vbraille.analysis.measures.confusion import (
+    CONFUSION_CHARACTERS,
+    CONFUSION_PAIRS,
     MARKS,
     of_characters,
     of_pairs,
@@ -23,47 +25,47 @@ TAKEN = ["P1 T0 ac ac", "P1 T0 ac a?", "P1 T25 ca aa", "P2 T25 ca cx", "P2 T25 c
 def test_characters_answered_for_each_that_was_presented():
     trials, places = answers(*TAKEN)
     found = of_characters(places)
-    assert (found.of, found.rows) == ("characters", ("a", "c"))
+    assert tuple(found.index) == ("a", "c")
     # The rows' own first, then what was never presented, at last what was not read.
-    assert found.columns == ("a", "c", "x", "dot 4", "?")
-    assert found.counts.tolist() == [[4, 0, 1, 0, 0], [1, 2, 0, 1, 1]]
-    table = to_table(found, places)
-    assert table.names == (
-        "presented",
-        *(f"answered {name}" for name in ("a", "c", "x", "dot 4", "?")),
-    )
+    assert tuple(found.columns) == ("a", "c", "x", "dot 4", "?")
+    assert found.to_numpy().tolist() == [[4, 0, 1, 0, 0], [1, 2, 0, 1, 1]]
+    table = to_table(CONFUSION_CHARACTERS, found, places)
+    answered = [f"answered {name}" for name in ("a", "c", "x", "dot 4", "?")]
+    assert table.schema.names == list(table.frame) == ["presented", *answered]
     assert table.rows == (("a", 4, 0, 1, 0, 0), ("c", 1, 2, 0, 1, 1))
     assert table.is_right(table.rows[0], 1)
     assert table.is_right(table.rows[1], 2)
-    assert len(trials) * 2 == found.counts.sum()
+    assert len(trials) * 2 == found.to_numpy().sum()
 
 
 def test_pairs_answered_for_each_that_was_presented():
     trials, places = answers(*TAKEN)
     found = of_pairs(trials)
-    assert (found.of, found.rows) == ("pairs", ("ac", "ca"))
-    assert found.columns == ("ac", "ca", "aa", "a?", "cx", "dot 4, a")
-    assert found.counts.tolist() == [[1, 0, 0, 1, 0, 0], [0, 0, 1, 0, 1, 1]]
-    assert to_table(found, places).name == "confusion_pairs"
+    assert tuple(found.index) == ("ac", "ca")
+    assert tuple(found.columns) == ("ac", "ca", "aa", "a?", "cx", "dot 4, a")
+    assert found.to_numpy().tolist() == [[1, 0, 0, 1, 0, 0], [0, 0, 1, 0, 1, 1]]
+    assert to_table(CONFUSION_PAIRS, found, places).name == "confusion_pairs"
 
 
 def test_pairs_take_answers_of_any_length_but_strings_of_two():
     trials, places = answers("P1 T0 ac acc", "P1 T0 ac a", "P1 T0 ac ac")
     found = of_pairs(trials)
-    assert found.columns == ("ac", "a", "acc")
-    assert found.counts.tolist() == [[1, 1, 1]]
-    assert to_table(found, places).notes[0].startswith("2 answers of another number")
+    assert tuple(found.columns) == ("ac", "a", "acc")
+    assert found.to_numpy().tolist() == [[1, 1, 1]]
+    assert (
+        to_table(CONFUSION_PAIRS, found, places).notes[0].startswith("2 answers of another number")
+    )
     assert of_pairs(answers("P1 T0 ac ac", "P1 T0 acc acc")[0]) is None
     assert of_characters(answers("P1 T0 ac a")[1]) is None
 
 
 def test_errors_above_the_marks_are_marked():
     trials, places = answers(*["P1 T0 a a"] * 12, *["P1 T0 a c"] * 5, *["P1 T0 c ?"] * 10)
-    table = to_table(of_characters(places), places)
+    table = to_table(CONFUSION_CHARACTERS, of_characters(places), places)
     assert table.marks == MARKS == (4, 9)
     marked = [[table.mark(row, at) for at in range(len(row))] for row in table.rows]
     assert marked == [[None, None, 4, None], [None, None, None, 9]]
-    other = to_table(of_characters(places), places, [11])
+    other = to_table(CONFUSION_CHARACTERS, of_characters(places), places, [11])
     assert {other.mark(row, at) for row in other.rows for at in range(len(row))} == {None}
     assert len(trials) == 27
 
@@ -75,12 +77,12 @@ CELLS = st.text("ac⠀⠈?", min_size=2, max_size=2)
 def test_every_answer_is_in_one_cell(pairs):
     trials, places = answers(*(f"P1 T0 {shown} {answer}" for shown, answer in pairs))
     found = of_characters(places)
-    assert found.counts.sum() == 2 * len(pairs)
-    assert np.trace(found.counts[:, : len(found.rows)]) == places.correct.sum()
+    assert found.to_numpy().sum() == 2 * len(pairs)
+    assert np.trace(found) == places.frame["correct"].sum()
     whole = of_pairs(trials)
-    shown = dict(zip(whole.rows, whole.counts.sum(axis=1).tolist(), strict=True))
-    assert shown == Counter(map(name_string, trials.presented.names()))
-    assert np.trace(whole.counts[:, : len(whole.rows)]) == trials.correct.sum()
+    shown = whole.sum(axis=1).to_dict()
+    assert shown == Counter(map(name_string, trials["presented"].tolist()))
+    assert np.trace(whole) == trials.correct.sum()
 
 
 def test_bits_and_agreement_of_all_and_of_each_condition():
@@ -118,7 +120,7 @@ def test_bits_and_agreement_of_all_and_of_each_condition():
 
 def test_one_condition_is_told_once():
     table = transmitted(*answers("P1 T0 ac ac", "P1 T0 ca ca"), seed=1)
-    assert table.column("condition") == ["all", "all"]
+    assert table.frame["condition"].tolist() == ["all", "all"]
 
 
 def test_pairs_of_one_condition_are_told_beside_other_strings_of_another():

@@ -1,6 +1,6 @@
 """Errors by dots added, removed and moved."""
 
-import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,8 +15,8 @@ def kinds(table):
 
 
 def of_masks(*pairs):
-    shown, answer = (np.array(column, np.int64) for column in zip(*pairs, strict=True))
-    return errors(Places(np.zeros(len(pairs), np.int64), shown, answer, 0))
+    frame = pd.DataFrame(pairs, columns=["presented", "answered"])
+    return errors(Places(frame.assign(correct=frame["presented"] == frame["answered"]), 0))
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_the_most_frequent_come_first_and_those_not_read_last():
         ("1 dot added", 1),
         ("not read", 3),
     ]
-    assert table.column("share") == [2 / 7, 1 / 7, 1 / 7, 3 / 7]
+    assert table.frame["share"].tolist() == [2 / 7, 1 / 7, 1 / 7, 3 / 7]
 
 
 def test_without_errors_it_is_said_so():
@@ -67,7 +67,7 @@ MASKS = st.integers(0, 255)
 def test_dots_add_up(pairs):
     table = of_masks(*pairs)
     wrong = [(shown, answer) for shown, answer in pairs if shown != answer]
-    assert sum(table.column("count")) == len(wrong)
+    assert sum(table.frame["count"].tolist()) == len(wrong)
     read = [(shown, answer) for shown, answer in wrong if answer != UNREAD_MASK]
     more = sum((row["added"] - row["removed"]) * row["count"] for row in table.records())
     assert more == sum(answer.bit_count() - shown.bit_count() for shown, answer in read)
@@ -77,7 +77,7 @@ def test_dots_add_up(pairs):
     assert changed == sum((shown ^ answer).bit_count() for shown, answer in read)
     assert all(row["added"] == 0 or row["removed"] == 0 for row in table.records())
     if wrong:
-        assert sum(table.column("share")) == pytest.approx(1)
+        assert sum(table.frame["share"].tolist()) == pytest.approx(1)
 
 
 @given(st.lists(st.tuples(MASKS, MASKS), min_size=1))

@@ -3,13 +3,14 @@
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from tests.analysis.making import answers, made, record
 from vbraille.analysis.input import scoretable
 from vbraille.analysis.input.scoretable import Scores, of_sheet, of_trials
 from vbraille.analysis.input.sheets import Sheet, read_csv
-from vbraille.analysis.input.trials import LeftOut
+from vbraille.analysis.input.trials import LeftOut, Places
 from vbraille.analysis.measures import levels
 from vbraille.analysis.measures.levels import analyses, level_means, t_tests
 from vbraille.analysis.statistics.anova import anova
@@ -83,8 +84,8 @@ def test_a_factor_is_a_column_of_few_levels():
     says = r"^item has 51 levels, more than can be compared; give a factor of a few, such as cond"
     with pytest.raises(InputError, match=says):
         of_trials(trials, places, ["item"])
-    few = trials[np.arange(scoretable.MOST_LEVELS)]
-    assert len(of_trials(few, places.where(places.at < 50), ["item"])[0].scores) == 50
+    few = trials.head(scoretable.MOST_LEVELS)
+    assert len(of_trials(few, Places.of(few), ["item"])[0].scores) == 50
 
 
 def test_a_table_of_scores(tmp_path):
@@ -122,12 +123,12 @@ def test_a_table_of_scores(tmp_path):
 )
 def test_what_is_no_table_of_scores(columns, says):
     with pytest.raises(InputError, match=says):
-        of_sheet(Sheet("t", columns))
+        of_sheet(Sheet("t", pd.DataFrame(columns, range(1, len(next(iter(columns.values()))) + 1))))
 
 
 def test_means_of_the_levels():
     table = level_means([THREE])
-    assert table.column("level") == ["T0", "T25", "T100"]
+    assert table.frame["level"].tolist() == ["T0", "T25", "T100"]
     row = record(table, level="T25")
     interval = mean_interval(T25)
     assert (row["measure"], row["factor"], row["participants"]) == ("score", "texture", 4)

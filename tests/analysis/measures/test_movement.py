@@ -96,10 +96,10 @@ def test_a_session_that_was_sat(tmp_path):
     session.sit()
     sat = read_sitting(session.folder)
     table = trajectories([sat])
-    assert table.column("trial") == [1, 2, 3, 4]
-    assert sorted(table.column("presented")) == ["a", "blank", "c", "dot 4"]
+    assert table.frame["trial"].tolist() == [1, 2, 3, 4]
+    assert sorted(table.frame["presented"].tolist()) == ["a", "blank", "c", "dot 4"]
     durations = [row["duration_s"] for row in sat.rows]
-    assert table.column("duration_s") == pytest.approx(durations, abs=1e-6)
+    assert table.frame["duration_s"].tolist() == pytest.approx(durations, abs=1e-6)
     row = record(patterns(table), participant="P1")
     assert (row["trials"], row["one_pass"], row["passes"]) == (4, 4, 1.0)
     assert row["speed_right_mm_s"] == pytest.approx(60, rel=0.01)

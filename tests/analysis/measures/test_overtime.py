@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from tests.analysis.making import made, record
-from vbraille.analysis.measures.overtime import PAST, over_time, series, slopes
+from vbraille.analysis.measures.overtime import PAST, over_time, slopes
 
 COLUMNS = "participant condition session trial presented answered"
 
@@ -48,9 +48,9 @@ def test_each_session_and_condition_begins_anew():
         **{("P1", "s1", "T25", n): 1.0 for n in (22, 23, 24)},
         **{("P1", "s2", "T0", n): 1.0 for n in (10, 11, 12)},
     }
-    whose = [" ".join(who.values()) for who, _ in series(trials)]
-    assert whose == ["P1 s1 T0", "P1 s1 T25", "P1 s2 T0", "P2 s1 T0"]
-    assert np.sort(np.concatenate([part for _, part in series(trials)])).tolist() == list(range(45))
+    whose = slopes(trials).frame[["participant", "session", "condition"]]
+    assert whose.agg(" ".join, axis=1).tolist() == ["P1 s1 T0", "P1 s1 T25", "P1 s2 T0", "P2 s1 T0"]
+    assert len(over_time(trials)) == 45
 
 
 def test_trials_are_taken_in_their_order_not_the_tables():

@@ -39,22 +39,22 @@ def nearest(values, liked, people=1, repeats=3, parameter="dot_width_mm"):
 
 def test_how_often_each_was_chosen():
     choices, _ = tuning(comparisons(*nearest(WIDTHS_MM[:4], 1.4)), seed=1)
-    assert choices.column("value") == [0.5, 1, 1.5, 2]
-    assert choices.column("presented") == [18] * 4
+    assert choices.frame["value"].tolist() == [0.5, 1, 1.5, 2]
+    assert choices.frame["presented"].tolist() == [18] * 4
     # 1.5 is the nearest, then 1, 2, 0.5: each wins 6 times over every one behind it.
-    assert choices.column("chosen") == [0, 12, 18, 6]
-    assert choices.column("share") == [times / 18 for times in (0, 12, 18, 6)]
-    assert set(choices.column("parameter")) == {"dot_width_mm"}
+    assert choices.frame["chosen"].tolist() == [0, 12, 18, 6]
+    assert choices.frame["share"].tolist() == [times / 18 for times in (0, 12, 18, 6)]
+    assert set(choices.frame["parameter"].tolist()) == {"dot_width_mm"}
 
 
 def test_the_scale_is_bradley_and_terrys():
     told = [("P1", 1, 2, 2), ("P1", 2, 1, 2), ("P2", 2, 3, 2), ("P1", 3, 1, 3), ("P2", 1, 2, 1)]
     choices, _ = tuning(comparisons(*told), seed=1)
     scale = bradley_terry([[0, 1, 0], [2, 0, 1], [1, 0, 0]])
-    assert choices.column("strength") == pytest.approx(scale.strengths)
-    assert choices.column("error") == pytest.approx(scale.errors)
-    assert choices.column("chosen") == [1, 3, 1]
-    assert sum(choices.column("strength")) == pytest.approx(0)
+    assert choices.frame["strength"].tolist() == pytest.approx(scale.strengths)
+    assert choices.frame["error"].tolist() == pytest.approx(scale.errors)
+    assert choices.frame["chosen"].tolist() == [1, 3, 1]
+    assert sum(choices.frame["strength"].tolist()) == pytest.approx(0)
 
 
 def test_the_preferred_value_is_found():
@@ -102,7 +102,7 @@ def test_the_side_that_was_favoured():
 def test_all_chosen_alike_leave_nothing_preferred():
     told = [("P1", a, b, a) for a, b in permutations([1, 2, 3], 2)]
     choices, liked = tuning(comparisons(*told), seed=1)
-    assert choices.column("strength") == pytest.approx([0, 0, 0])
+    assert choices.frame["strength"].tolist() == pytest.approx([0, 0, 0])
     (row,) = liked.records()
     assert row["preferred"] is row["low"] is row["how"] is None
     assert row["note"] == (
@@ -114,16 +114,16 @@ def test_all_chosen_alike_leave_nothing_preferred():
 def test_values_that_do_not_hang_together_have_no_scale():
     choices, liked = tuning(comparisons(("P1", 1, 2, 1), ("P1", 3, 4, 3)), seed=1)
     why = "some values were never compared with the others, even by way of a third"
-    assert set(choices.column("note")) == {f"no strength: {why}"}
-    assert set(choices.column("strength")) == {None}
-    assert choices.column("share") == [1, 0, 1, 0]
-    assert liked.column("note") == [f"no preferred value: {why}"]
+    assert set(choices.frame["note"].tolist()) == {f"no strength: {why}"}
+    assert choices.frame["strength"].isna().all()
+    assert choices.frame["share"].tolist() == [1, 0, 1, 0]
+    assert liked.frame["note"].tolist() == [f"no preferred value: {why}"]
 
 
 def test_the_same_seed_gives_the_same_interval():
     told = comparisons(*nearest([1, 2, 3, 4], 2.2, repeats=1))
     one, same, other = (tuning(told, seed=seed)[1] for seed in (4, 4, 5))
-    assert one == same
+    assert one.rows == same.rows
     assert one.records()[0]["low"] != other.records()[0]["low"]
 
 
@@ -135,8 +135,8 @@ PAIRS = st.lists(st.sampled_from([1, 2, 3, 4.5]), min_size=2, max_size=2, unique
 def test_of_any_comparisons_both_tables_are_made(told):
     made = comparisons(*((who, *pair, pair[second]) for who, pair, second in told))
     choices, liked = tuning(made, seed=1)
-    assert sum(choices.column("chosen")) == len(told) == liked.column("comparisons")[0]
-    assert sum(choices.column("presented")) == 2 * len(told)
+    assert sum(choices.frame["chosen"].tolist()) == len(told) == liked.frame["comparisons"].iloc[0]
+    assert sum(choices.frame["presented"].tolist()) == 2 * len(told)
     for row in liked.records():
         assert row["preferred"] is None or 1 <= row["preferred"] <= 4.5
         assert row["low"] is None or 1 <= row["low"] < row["high"] <= 4.5

@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+from tests.analysis.making import table_of
 from tests.pictures.charts import bars, matrix, runs
 from vbraille.analysis.results import Chapter, ReportFigure, Results
-from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, ResultTable
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind
 
 SCRIPT = "<script>alert('1')</script>"
 NASTY = (
@@ -14,11 +15,13 @@ NASTY = (
     "S4\n\n# 1. ~~x~~ $y$ \\ ]]> &amp; www.evil.example",
 )
 
-LEGIBILITY = ResultTable(
-    "legibility",
-    "Legibility, by participant & condition",
-    "Legibility is the share of strings that are right, <as in 3.4>.",
-    (
+LEGIBILITY = table_of(
+    told=(
+        "legibility",
+        "Legibility, by participant & condition",
+        "Legibility is the share of strings that are right, <as in 3.4>.",
+    ),
+    columns=(
         Column("participant", "participant", "pseudonym"),
         Column("condition", "condition", "as in the protocol"),
         Column("trials", "trials", "answered", Kind.COUNT),
@@ -27,7 +30,7 @@ LEGIBILITY = ResultTable(
         Column("p", "p", "of a test", Kind.P),
         NOTE_COLUMN,
     ),
-    tuple(
+    rows=tuple(
         row
         for number, name in enumerate(NASTY)
         for row in (
@@ -35,28 +38,30 @@ LEGIBILITY = ResultTable(
             (name, "textured", 0, None, None, None, f"no trials of {name}"),
         )
     ),
-    ("The order of conditions: all began with nominal.", f"Why {SCRIPT}?"),
+    notes=("The order of conditions: all began with nominal.", f"Why {SCRIPT}?"),
 )
-CONFUSIONS = ResultTable(
-    "confusions",
-    "Confusions of letters",
-    "",
-    (
+CONFUSIONS = table_of(
+    told=("confusions", "Confusions of letters", ""),
+    columns=(
         Column("presented", "presented", "letter presented"),
         *(Column(f"answered_{letter}", letter, "answered so", Kind.COUNT) for letter in "abc"),
     ),
-    (("a", 30, 5, 0), ("b", 10, 28, 4)),
+    rows=(("a", 30, 5, 0), ("b", 10, 28, 4)),
     marks=(4, 9),
 )
-TRIALS = ResultTable(
-    "trials",
-    "All trials",
-    "",
-    (Column("trial", "trial", "number", Kind.COUNT), Column("strain", "strain", "", Kind.NUMBER)),
-    tuple((number, number / 3) for number in range(1, 151)),
+TRIALS = table_of(
+    told=("trials", "All trials", ""),
+    columns=(
+        Column("trial", "trial", "number", Kind.COUNT),
+        Column("strain", "strain", "", Kind.NUMBER),
+    ),
+    rows=tuple((number, number / 3) for number in range(1, 151)),
 )
-NOTHING = ResultTable(
-    "patterns", "Reading patterns", "", (Column("a", "a", ""),), (), ("No traces were given.",)
+NOTHING = table_of(
+    (Column("a", "a", ""),),
+    (),
+    ("No traces were given.",),
+    told=("patterns", "Reading patterns", ""),
 )
 
 RESULTS = Results(

@@ -1,17 +1,29 @@
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 
 import html5lib
+import pandas as pd
 import pytest
 from PIL import Image
 
+from tests.analysis.making import table_of
 from tests.analysis.report.made import BARE, RESULTS
 from vbraille.analysis.report import write_report
+from vbraille.analysis.schemas import Column, to_csv
 from vbraille.errors import InputError, VbrailleError
 
-EXTRA = {"trials.csv": b"a,b\n1,2\n", "more files/notes.txt": b"\xff"}
+WITH_TRIALS = replace(RESULTS, trials=pd.DataFrame({"a": [1], "b": [2]}))
+EXTRA = {"trials.csv": b"a,b\n1,2\n"}
+
+
+def with_table(name):
+    """Results with a table of this name, which is that of its file too."""
+    (chapter,) = BARE.chapters
+    table = table_of((Column("a", "a", ""),), (("1",),), told=(name, "", ""))
+    return replace(BARE, chapters=(replace(chapter, tables=(table,)),))
 
 
 def contents(folder):
@@ -25,12 +37,12 @@ def contents(folder):
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report") / "new" / "out"
-    return folder, write_report(RESULTS, folder, EXTRA)
+    return folder, write_report(WITH_TRIALS, folder)
 
 
 def test_all_files_are_there(report):
     folder, files = report
-    tables = [f"tables/{table.name}.csv" for table in RESULTS.tables()]
+    tables = [f"tables/{table.name}.csv" for table in RESULTS.result_tables()]
     figures = [
         f"figures/{figure.name}.{kind}"
         for figure in RESULTS.figures()
@@ -46,9 +58,9 @@ def test_what_is_written_can_be_read(report):
     folder, _ = report
     json.loads((folder / "results.json").read_text("utf-8"))
     assert (folder / "trials.csv").read_bytes() == EXTRA["trials.csv"]
-    for table in RESULTS.tables():
+    for table in RESULTS.result_tables():
         text = (folder / "tables" / f"{table.name}.csv").read_text("utf-8")
-        assert text == table.to_csv().replace("\udc80", "\\udc80")
+        assert text == to_csv(table.frame).replace("\udc80", "\\udc80")
     for figure in RESULTS.figures():
         assert (folder / f"figures/{figure.name}.svg").read_bytes().startswith(b"<?xml")
         assert (folder / f"figures/{figure.name}.pdf").read_bytes().startswith(b"%PDF")
@@ -67,7 +79,7 @@ def test_every_link_of_the_page_has_its_file(report):
 
 @pytest.mark.no_cover
 def test_the_same_results_give_the_same_files(report, tmp_path):
-    write_report(RESULTS, tmp_path / "again", EXTRA)
+    write_report(WITH_TRIALS, tmp_path / "again")
     assert contents(tmp_path / "again") == contents(report[0])
 
 
@@ -99,14 +111,14 @@ def test_a_place_that_takes_no_directory_is_told_in_a_sentence(tmp_path):
 def test_nothing_is_left_when_a_file_cannot_be_written(tmp_path):
     # A name that no disk takes stands for a disk that is full.
     with pytest.raises(VbrailleError, match="cannot be written: File name too long") as caught:
-        write_report(BARE, tmp_path / "new" / "out", {"x" * 300: b""})
+        write_report(with_table("x" * 300), tmp_path / "new" / "out")
     assert not isinstance(caught.value, InputError)
     assert not list(tmp_path.iterdir())
 
 
 def test_nothing_is_left_when_something_else_goes_wrong(tmp_path):
-    with pytest.raises(TypeError):
-        write_report(BARE, tmp_path / "new" / "out", {"a": "no bytes"})  # type: ignore[dict-item]
+    with pytest.raises(ValueError, match="null byte"):
+        write_report(with_table("\0"), tmp_path / "new" / "out")
     assert not list(tmp_path.iterdir())
 
 

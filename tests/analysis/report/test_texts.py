@@ -10,6 +10,7 @@ from itertools import pairwise
 import html5lib
 import pytest
 
+from tests.analysis.making import table_of
 from tests.analysis.report.made import (
     BARE,
     CONFUSIONS,
@@ -24,7 +25,7 @@ from vbraille.analysis.report import shown, to_html, to_json, to_markdown
 from vbraille.analysis.report.tolines import to_lines
 from vbraille.analysis.report.tomarkdown import escape
 from vbraille.analysis.results import Chapter, Results
-from vbraille.analysis.schemas import Column, Kind
+from vbraille.analysis.schemas import Column, Kind, to_csv
 
 SVG = b"<svg xmlns='http://www.w3.org/2000/svg'/>"
 FIGURES = dict.fromkeys(("legibility", "confusions", "runs"), SVG)
@@ -129,18 +130,18 @@ def test_rare_answers_of_a_matrix_are_gathered():
         ),
     )
     rows = (("a", 9, 0, 0, 1, 4, 5, 2), ("b", 0, 9, 0, 0, 2, 0, 0), ("c", 0, 0, 9, 0, 0, 0, 0))
-    table = replace(CONFUSIONS, columns=columns, rows=rows)
+    table = table_of(columns, rows, marks=CONFUSIONS.marks)
     found = table.gathered()
     assert [column.heading for column in found.columns] == [
         "presented", *letters, "f", "?", "."
     ]  # fmt: skip
     assert [row[-1] for row in found.rows] == [5, 2, 0]
     assert sum(sum(row[1:]) for row in found.rows) == sum(sum(row[1:]) for row in rows)
-    assert "Column . gathers 2 answers that were never presented" in found.about
-    assert "more than 4 times: d, e." in found.about
+    assert "Column . gathers 2 answers that were never presented" in found.schema.about
+    assert "more than 4 times: d, e." in found.schema.about
     results = Results("Confusions", (), (), (Chapter("All", "", (table,)),))
     assert "| presented | a | b | c | f | ? | . |" in to_markdown(results)
-    assert "answered d" in table.to_csv()
+    assert "answered d" in to_csv(table.frame)
     assert CONFUSIONS.gathered() is CONFUSIONS
 
 
@@ -224,7 +225,7 @@ def test_links_within_the_page_have_a_target():
     assert not any(re.search(r"\s", each) for each in ids)
     inner = [link.get("href")[1:] for link in TREE.iter("a") if link.get("href")[0] == "#"]
     assert set(inner) <= set(ids)
-    assert {f"table-{each.name}" for each in RESULTS.tables()} <= set(inner)
+    assert {f"table-{each.name}" for each in RESULTS.result_tables()} <= set(inner)
     labelled = {each.get("aria-labelledby") for each in TREE.iter()} - {None}
     assert labelled == {"table-legibility", "table-confusions", "table-trials"}
     assert labelled <= set(ids)
@@ -255,8 +256,7 @@ def test_bare_results_have_a_page_too():
 
 def test_a_column_of_notes_is_left_out_where_there_are_none():
     """Every empty cell is one that a reader hears."""
-    rows = tuple((*row[:-1], "") for row in LEGIBILITY.rows if None not in row)
-    silent = replace(LEGIBILITY, rows=rows)
+    silent = replace(LEGIBILITY, frame=LEGIBILITY.frame.dropna().assign(note=""))
     results = replace(RESULTS, chapters=(Chapter("Legibility", "", (silent,)),), main="")
     for made in (to_html(results, {}), to_markdown(results)):
         assert "mean duration (s)" in made
@@ -272,10 +272,10 @@ def test_json_has_all_rows():
     ]  # fmt: skip
     assert content["findings"] == list(RESULTS.findings)
     assert content["main_figure"] == "legibility"
-    for each in RESULTS.tables():
+    for each in RESULTS.result_tables():
         found = content["tables"][each.name]
         assert found["rows"] == each.records()
-        assert list(found["columns"]) == list(each.names)
+        assert list(found["columns"]) == list(each.frame)
         assert found["notes"] == list(each.notes)
     assert list(content["figures"]) == ["legibility", "confusions", "runs"]
     assert content["figures"]["runs"]["table"] == "trials"

@@ -21,12 +21,7 @@ def confusion(table: ResultTable) -> ReportFigure:
     Of more rows than a page has room for the figure has those with the most errors.
     """
     shown = table.gathered()
-    errors = [
-        (int(count), str(row[0]), column.heading)
-        for row in table.rows
-        for at, (count, column) in enumerate(zip(row, table.columns, strict=True))
-        if at and count and not table.is_right(row, at)
-    ]
+    errors = table.wrong()
     text = "No answer was wrong."
     if errors:
         worst = sorted(errors, key=lambda error: -error[0])[:3]

@@ -1,13 +1,13 @@
-"""Columns of text to trials."""
+"""Sheets to trials: what each value means, and which rows count."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 
 from vbraille.analysis.input.fieldvalues import (
     is_pair,
@@ -18,30 +18,22 @@ from vbraille.analysis.input.fieldvalues import (
     parse_seconds,
     parse_whole,
 )
-from vbraille.analysis.input.sets import string_sets, tell_sessions_apart
-from vbraille.analysis.input.trials import (
-    Comparisons,
-    Factor,
-    LeftOut,
-    Trials,
-    count,
-    name_string,
-    natural,
-)
+from vbraille.analysis.input.sets import numbered, string_sets, tell_sessions_apart
+from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, count, factor, name_string
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.analysis.input.sheets import Sheet
 
 NEEDED = ("participant", "condition", "presented", "answered")
 # What is understood beside these, all optional.
-_KNOWN = {
+_KNOWN = [
     *NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct",
     "string_set",
-}  # fmt: skip
-_OPEN = {"", "n/a"}  # of a trial that was not answered
+]  # fmt: skip
+_OPEN = ("", "n/a")  # the answer to a trial that was not answered
 # Columns that say, if they are above 0, why a duration does not count.
 _UNTIMED = {
     "paused_s": "the trial was paused meanwhile",
@@ -57,15 +49,15 @@ class Parsed:
     Parameters
     ----------
     trials, comparisons
-        None if there are none.
+        By `vbraille.analysis.input.trials`; None if there are none.
     left_out
         Rows that are in neither.
     warnings
         What does not agree.
     """
 
-    trials: Trials | None
-    comparisons: Comparisons | None
+    trials: pd.DataFrame | None
+    comparisons: pd.DataFrame | None
     left_out: tuple[LeftOut, ...]
     warnings: tuple[str, ...]
 
@@ -78,260 +70,187 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
     InputError
         If columns are missing, something cannot be read, or a trial is there twice.
     """
-    strings, pairs = _Columns(), _Columns()
+    strings: dict[int, pd.DataFrame] = {}
+    pairs: dict[int, pd.DataFrame] = {}
     left_out: list[LeftOut] = []
     warnings: list[str] = []
-    for sheet in sheets:
+    for number, sheet in enumerate(sheets):
         sheet.need(NEEDED)
-        before = strings.size
-        unanswered = _take(sheet, strings, pairs)
+        answered = sheet.frame[~sheet.frame["answered"].str.strip().str.lower().isin(_OPEN)]
+        unanswered = len(sheet) - len(answered)
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
-        warnings += _scored_otherwise(sheet, strings, before)
-        for name, why in _UNTIMED.items():
-            untimed = _forget_durations(strings, before, name)
-            if untimed:
-                left_out.append(LeftOut(f"{count(untimed, 'duration')} of {sheet.name}", why))
-    for columns in (strings, pairs):
-        warnings += tell_sessions_apart(columns.values)
-        _check_once(columns)
-    return Parsed(_trials(strings), _comparisons(pairs), tuple(left_out), tuple(warnings))
+        paired = answered["presented"].map(is_pair).astype(bool)
+        if "parameter" in answered:
+            paired |= answered["parameter"].str.strip() != ""
+        if not paired.all():
+            rows = answered[~paired]
+            read = _strings(sheet, rows)
+            warnings += _scored_otherwise(sheet, rows, read)
+            left_out += _forget_durations(sheet, rows, read)
+            strings[number] = read.join(rows.drop(columns=_KNOWN, errors="ignore"))
+        if paired.any():
+            pairs[number] = _pairs(sheet, answered[paired])
+    joined = []
+    for parts in (strings, pairs):
+        whole = pd.concat(parts) if parts else None
+        if whole is not None:
+            warnings += tell_sessions_apart(whole, sheets)
+            _check_once(whole, sheets)
+        joined.append(whole)
+    return Parsed(_trials(joined[0]), _comparisons(joined[1]), tuple(left_out), tuple(warnings))
 
 
-@dataclass(slots=True)
-class _Columns:
-    """Trials of one kind, column by column, as sheet after sheet brings them."""
-
-    values: dict[str, list] = field(default_factory=dict)
-    others: dict[str, list[str]] = field(default_factory=dict)
-    size: int = 0
-
-    def add(self, sheet: Sheet, rows: list[int], values: dict[str, list]) -> None:
-        """Append rows of a sheet."""
-        for name, column in (values | {"sheet": [sheet] * len(rows), "row": rows}).items():
-            self.values.setdefault(name, []).extend(column)
-        given = {name: values for name, values in sheet.columns.items() if name not in _KNOWN}
-        for name in dict.fromkeys((*self.others, *given)):
-            known = self.others.setdefault(name, [""] * self.size)
-            column = given.get(name)
-            known.extend([""] * len(rows) if column is None else [column[row] for row in rows])
-        self.size += len(rows)
-
-
-def _take(sheet: Sheet, strings: _Columns, pairs: _Columns) -> int:
-    """Sort the rows of a sheet; how many of them have no answer."""
-    columns, size = sheet.columns, len(sheet)
-    answered = [row for row in range(size) if columns["answered"][row].strip().lower() not in _OPEN]
-    parameters = columns.get("parameter", [""] * size)
-    paired = {
-        row for row in answered if parameters[row].strip() or is_pair(columns["presented"][row])
-    }
-    rows = [row for row in answered if row not in paired]
-    if rows:
-        places = {
-            "presented": _each(sheet, "presented", rows, parse_presented),
-            "answered": _each(sheet, "answered", rows, parse_cells),
-            "string_set": _each(sheet, "string_set", rows, parse_cells, ""),
-            "duration_s": _seconds(sheet, "duration_s", rows, np.nan),
-            "paused_s": _seconds(sheet, "paused_s", rows, 0.0),
-            "early": _each(sheet, "early", rows, parse_whole, 0),
-        }
-        _check_sets(sheet, rows, places)
-        strings.add(sheet, rows, _who(sheet, rows) | places)
-    rows = sorted(paired)
-    if rows:
-        first, second, chosen = map(list, zip(*(_pair(sheet, row) for row in rows), strict=True))
-        compared = {
-            "first": first,
-            "second": second,
-            "chosen": chosen,
-            "parameter": [parameters[row].strip() or "value" for row in rows],
-        }
-        pairs.add(sheet, rows, _who(sheet, rows) | compared)
-    return size - len(answered)
-
-
-def _check_sets(sheet: Sheet, rows: list[int], places: dict[str, list]) -> None:
-    """Raise InputError if a string is no order of the set that it is said to be of."""
-    for row, cells, given in zip(rows, places["string_set"], places["presented"], strict=True):
-        if cells and sorted(cells) != sorted(given):
+def _strings(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
+    """What rows of strings say, typed."""
+    read = _who(sheet, rows).assign(
+        presented=_each(sheet, rows, "presented", parse_presented),
+        string_set=_each(sheet, rows, "string_set", parse_cells, ""),
+        answered=_each(sheet, rows, "answered", parse_cells),
+    )
+    read["correct"] = read["presented"] == read["answered"]
+    read["duration_s"] = _seconds(sheet, rows, "duration_s", np.nan)
+    listed = read[read["string_set"] != ""]
+    for row, cells, given in listed[["string_set", "presented"]].itertuples(name=None):
+        if sorted(cells) != sorted(given):
             raise InputError(
                 f"{sheet.place(row)}: string_set is {name_string(cells)!r}, and presented, "
                 f"{name_string(given)!r}, is no order of its cells; leave string_set empty where "
                 f"strings keep their order"
             )
+    return read
 
 
-def _who(sheet: Sheet, rows: list[int]) -> dict[str, list]:
+def _pairs(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
+    """What rows of comparisons say, typed."""
+    told = []
+    for row, presented, answered in rows[["presented", "answered"]].itertuples(name=None):
+        try:
+            told.append(parse_pair(presented, answered, number=sheet.number))
+        except ValueError as error:
+            raise InputError(f"{sheet.place(row)}: {error}") from None
+    pairs = pd.DataFrame(told, rows.index, ["first", "second", "chosen"])
+    named = _each(sheet, rows, "parameter", lambda text: text.strip() or "value", "value")
+    return _who(sheet, rows).join(pairs).assign(parameter=named)
+
+
+def _who(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
     """Whose trials, and which ones."""
-    told = "session" in sheet.columns and "trial" in sheet.columns
-    return {
-        "participant": _each(sheet, "participant", rows, parse_name),
-        "session": _each(sheet, "session", rows, parse_name, sheet.name),
-        "protocol": _each(sheet, "protocol", rows, str.strip, ""),
-        "condition": _each(sheet, "condition", rows, parse_name),
-        "block": _each(sheet, "block", rows, parse_whole, 0),
-        "trial": _each(sheet, "trial", rows, parse_whole)
-        if "trial" in sheet.columns
-        else [row + 1 for row in rows],
-        "told": [told] * len(rows),
-    }
+    numbers = pd.Series(range(1, len(sheet) + 1), sheet.frame.index)
+    return pd.DataFrame(
+        {
+            "participant": _each(sheet, rows, "participant", parse_name),
+            "session": _each(sheet, rows, "session", parse_name, sheet.name),
+            "protocol": _each(sheet, rows, "protocol", str.strip, ""),
+            "condition": _each(sheet, rows, "condition", parse_name),
+            "block": _each(sheet, rows, "block", parse_whole, 0),
+            "trial": _each(sheet, rows, "trial", parse_whole, numbers[rows.index]),
+        }
+    )
 
 
 def _each(
-    sheet: Sheet, column: str, rows: list[int], parse: Callable[[str], Any], absent: object = None
-) -> list:
-    """Values of some rows of a column; an InputError names the first that has none."""
-    if column not in sheet.columns:
-        return [absent] * len(rows)
-    texts = sheet.columns[column]
-    known: dict[str, Any] = {}
-    for row in rows:
-        if texts[row] not in known:
-            try:
-                known[texts[row]] = parse(texts[row])
-            except ValueError as error:
-                raise InputError(f"{sheet.place(row)}: {column} {error}") from None
-    return [known[texts[row]] for row in rows]
+    sheet: Sheet,
+    rows: pd.DataFrame,
+    column: str,
+    parse: Callable[[str], Any],
+    absent: Any = None,
+) -> pd.Series:
+    """Values of a column, text parsed; an InputError names the first row that has none.
+
+    Parameters
+    ----------
+    absent
+        Value, or a value a row, where there is no such column.
+    """
+    if column not in rows:
+        return pd.Series(absent, rows.index)
+    given = rows[column]
+    known = {}
+    for value in given.unique():
+        try:
+            known[value] = parse(value) if isinstance(value, str) else value
+        except ValueError as error:
+            row = given.index[given == value][0]
+            raise InputError(f"{sheet.place(row)}: {column} {error}") from None
+    return given.map(known)
 
 
-def _seconds(sheet: Sheet, column: str, rows: list[int], absent: float) -> list[float]:
-    return _each(sheet, column, rows, partial(parse_seconds, number=sheet.number), absent)
+def _seconds(sheet: Sheet, rows: pd.DataFrame, column: str, absent: float) -> pd.Series:
+    parsed = _each(sheet, rows, column, partial(parse_seconds, number=sheet.number), absent)
+    return parsed.astype(np.float64)
 
 
-def _pair(sheet: Sheet, row: int) -> tuple[float, float, int]:
-    presented, answered = (sheet.columns[name][row] for name in ("presented", "answered"))
-    try:
-        return parse_pair(presented, answered, number=sheet.number)
-    except ValueError as error:
-        raise InputError(f"{sheet.place(row)}: {error}") from None
-
-
-def _scored_otherwise(sheet: Sheet, strings: _Columns, before: int) -> list[str]:
+def _scored_otherwise(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> Iterator[str]:
     """What to say of a column ``correct`` that does not agree with the answers."""
-    if "correct" not in sheet.columns or strings.size == before:
-        return []
-    told = {"0": False, "1": True}
-    names = ("presented", "answered", "row")
-    rows = zip(*(strings.values[name][before:] for name in names), strict=True)
-    wrong = [
-        row
-        for presented, answered, row in rows
-        if told.get(sheet.columns["correct"][row].strip(), presented == answered)
-        != (presented == answered)
-    ]
-    if not wrong:
-        return []
-    return [
-        f"{sheet.name}: column correct says otherwise than the answers in "
-        f"{count(len(wrong), 'trial')}, first in {sheet.place(wrong[0])}; the answers count."
-    ]
+    if "correct" not in rows:
+        return
+    told = rows["correct"].astype(str).str.strip().map({"0": False, "1": True})
+    wrong = read.index[told.notna() & (told != read["correct"])]
+    if wrong.size:
+        yield (
+            f"{sheet.name}: column correct says otherwise than the answers in "
+            f"{count(wrong.size, 'trial')}, first in {sheet.place(wrong[0])}; the answers count."
+        )
 
 
-def _forget_durations(strings: _Columns, before: int, column: str) -> int:
+def _forget_durations(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> Iterator[LeftOut]:
     """Take durations away for which a column says so; how many."""
-    if strings.size == before:
-        return 0
-    durations, told = strings.values["duration_s"], strings.values[column]
-    timed = [n for n in range(before, strings.size) if told[n] > 0 and not math.isnan(durations[n])]
-    for n in timed:
-        durations[n] = np.nan
-    return len(timed)
+    for column, why in _UNTIMED.items():
+        if column == "early":
+            told = _each(sheet, rows, column, parse_whole, 0)
+        else:
+            told = _seconds(sheet, rows, column, 0.0)
+        untimed = (told > 0) & read["duration_s"].notna()
+        if untimed.any():
+            read.loc[untimed, "duration_s"] = np.nan
+            yield LeftOut(f"{count(int(untimed.sum()), 'duration')} of {sheet.name}", why)
 
 
-def _check_once(columns: _Columns) -> None:
+def _check_once(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> None:
     """Raise InputError if a trial is there twice: it would count twice in every figure.
 
     Those whose number or session is not given are not known to be the same.
     """
-    if not columns.size:
-        return
-    values = columns.values
-    names = ("participant", "session", "protocol", "condition", "block", "trial")
-    seen: set[tuple] = set()
-    told, sheets, rows = values["told"], values["sheet"], values["row"]
-    trials = zip(*(values[name] for name in names), told, sheets, rows, strict=True)
-    for *key, told, sheet, row in trials:
-        if told and key[5] and tuple(key) in seen:
-            raise InputError(
-                f"{sheet.place(row)}: trial {key[5]} of session {key[1]} is there a second time; "
-                f"give every trial once"
-            )
-        seen.add(tuple(key))
-
-
-def _order(columns: _Columns) -> list[int]:
-    """Rows in the order of participants, sessions, blocks and trials."""
-    values = columns.values
-    ranks = [
-        {name: rank for rank, name in enumerate(sorted(set(values[column]), key=natural))}
-        for column in ("participant", "session")
-    ]
-    keys = list(
-        zip(
-            [ranks[0][name] for name in values["participant"]],
-            [ranks[1][name] for name in values["session"]],
-            values["block"],
-            values["trial"],
-            strict=True,
+    names = ["participant", "session", "protocol", "condition", "block", "trial"]
+    again = whole[whole.duplicated(names) & numbered(whole, sheets)]
+    for (number, row), trial, session in again[["trial", "session"]].itertuples(name=None):
+        raise InputError(
+            f"{sheets[number].place(row)}: trial {trial} of session {session} is there a second "
+            f"time; give every trial once"
         )
-    )
-    return sorted(range(columns.size), key=keys.__getitem__)
 
 
-def _conditions(columns: _Columns) -> list[str]:
+def _conditions(whole: pd.DataFrame) -> pd.Series:
     """Condition of each trial, told apart from another protocol's of the same name."""
-    conditions, protocols = columns.values["condition"], columns.values["protocol"]
-    if len(set(protocols)) < 2:
-        return conditions
-    homes: dict[str, set[str]] = {}
-    for condition, protocol in zip(conditions, protocols, strict=True):
-        homes.setdefault(condition, set()).add(protocol)
-    return [
-        protocol
-        if condition == ALL and protocol
-        else f"{protocol} {condition}".strip()
-        if len(homes[condition]) > 1
-        else condition
-        for condition, protocol in zip(conditions, protocols, strict=True)
-    ]
+    condition, protocol = whole["condition"], whole["protocol"]
+    if protocol.nunique() < 2:
+        return condition
+    shared = protocol.groupby(condition).transform("nunique") > 1
+    told = condition.mask(shared, (protocol + " " + condition).str.strip())
+    return told.mask((condition == ALL) & (protocol != ""), protocol)
 
 
-def _trials(columns: _Columns) -> Trials | None:
-    if not columns.size:
+def _trials(whole: pd.DataFrame | None) -> pd.DataFrame | None:
+    if whole is None:
         return None
-    order = _order(columns)
-    values = {name: [column[n] for n in order] for name, column in columns.values.items()}
-    conditions = _conditions(columns)
-    values["condition"] = [conditions[n] for n in order]
-    pairs = zip(values["presented"], values["answered"], strict=True)
-    return Trials(
-        participant=Factor.of(values["participant"]),
-        condition=Factor.of(values["condition"]),
-        session=Factor.of(values["session"]),
-        protocol=Factor.of(values["protocol"]),
-        presented=Factor.of_strings(values["presented"]),
-        answered=Factor.of_strings(values["answered"]),
-        string_set=Factor.of_strings(string_sets(values)),
-        correct=np.fromiter((p == a for p, a in pairs), bool, columns.size),
-        block=np.array(values["block"], np.int64),
-        trial=np.array(values["trial"], np.int64),
-        duration_s=np.array(values["duration_s"], np.float64),
-        others={name: [column[n] for n in order] for name, column in columns.others.items()},
-    )
+    whole["string_set"] = string_sets(whole)
+    whole["condition"] = _conditions(whole)
+    strings = {name: factor(whole[name], None) for name in ("presented", "string_set", "answered")}
+    others = whole.columns.difference(list(TRIAL_COLUMNS))
+    whole[others] = whole[others].fillna("")  # of sheets that do not have them
+    return _sorted(whole.assign(**strings))
 
 
-def _comparisons(columns: _Columns) -> Comparisons | None:
-    if not columns.size:
+def _comparisons(whole: pd.DataFrame | None) -> pd.DataFrame | None:
+    if whole is None:
         return None
-    order = _order(columns)
-    values = {name: [column[n] for n in order] for name, column in columns.values.items()}
-    return Comparisons(
-        participant=Factor.of(values["participant"]),
-        session=Factor.of(values["session"]),
-        protocol=Factor.of(values["protocol"]),
-        parameter=Factor.of(values["parameter"]),
-        first=np.array(values["first"], np.float64),
-        second=np.array(values["second"], np.float64),
-        chosen=np.array(values["chosen"], np.int64),
-    )
+    return _sorted(whole.assign(parameter=factor(whole["parameter"])))
+
+
+def _sorted(whole: pd.DataFrame) -> pd.DataFrame:
+    """Rows in the order of participants, sessions, blocks and trials, levels in natural order."""
+    names = ("participant", "session", "protocol", "condition")
+    whole = whole.assign(**{name: factor(whole[name]) for name in names})
+    order = ["participant", "session", "block", "trial"]
+    return whole.sort_values(order, kind="stable", ignore_index=True)

@@ -7,18 +7,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
+from vbraille.analysis.input.fieldvalues import UNKNOWN
+from vbraille.analysis.input.trials import comparable, factor
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from vbraille.analysis.input.sheets import Sheet
-    from vbraille.analysis.input.trials import Places, Trials
+    from vbraille.analysis.input.trials import Places
 
 MOST_LEVELS = 50  # a factor of more was not varied by an experimenter
 MOST_CELLS = 1_000_000  # of all participants
-_MISSING = {"", "na", "n/a", "nan"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Scores:
     durations: bool = False
 
 
-def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Scores]:
+def of_trials(trials: pd.DataFrame, places: Places, factors: Sequence[str]) -> list[Scores]:
     """Means of each participant in each cell: legibility of strings, of characters, duration.
 
     Raises
@@ -57,43 +59,41 @@ def of_trials(trials: Trials, places: Places, factors: Sequence[str]) -> list[Sc
     InputError
         If the trials have no such column.
     """
+    found = [trials["participant"].cat]
     for name in factors:
-        if name not in trials.columns():
+        if name not in comparable(trials):
             raise InputError(
                 f"there is no column {name!r} to compare by; "
-                f"there are {', '.join(trials.columns())}"
+                f"there are {', '.join(comparable(trials))}"
             )
-    found = [trials.participant, *(trials.factor(name) for name in factors)]
-    for name, factor in zip(factors, found[1:], strict=True):
-        if len(factor) > MOST_LEVELS:
+        found.append(pd.Series(factor(trials[name])).cat)
+        if len(found[-1].categories) > MOST_LEVELS:
             raise InputError(
-                f"{name} has {len(factor)} levels, more than can be compared; "
+                f"{name} has {len(found[-1].categories)} levels, more than can be compared; "
                 f"give a factor of a few, such as condition"
             )
-    if math.prod(map(len, found)) > MOST_CELLS:
+    shape = tuple(len(levels.categories) for levels in found)
+    if math.prod(shape) > MOST_CELLS:
         raise InputError(f"{', '.join(factors)} have too many levels together; give fewer factors")
-    timed = ~np.isnan(trials.duration_s)
-    measures = [
-        ("legibility of strings", np.arange(len(trials)), trials.correct, True),
-        ("legibility of characters", places.at, places.correct, True),
-        ("duration (s)", np.flatnonzero(timed), trials.duration_s[timed], False),
+    cell = np.ravel_multi_index(tuple(levels.codes.to_numpy(np.int64) for levels in found), shape)
+    names = [
+        levels.categories[code].tolist()
+        for levels, code in zip(found, np.indices(shape).reshape(len(shape), -1), strict=True)
     ]
+    columns = dict(zip(factors, names[1:], strict=True))
+    timed = trials["duration_s"].dropna()
     scores = []
-    for measure, at, value, share in measures:
-        if not at.size:
-            continue
-        shape = tuple(len(factor) for factor in found)
-        cell = np.ravel_multi_index(tuple(factor.codes[at] for factor in found), shape)
-        counts = np.bincount(cell, minlength=math.prod(shape))
-        sums = np.bincount(cell, value, counts.size)
-        means = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
-        names = [
-            [factor.levels[code] for code in codes.tolist()]
-            for factor, codes in zip(found, np.indices(shape).reshape(len(shape), -1), strict=True)
-        ]
-        columns = dict(zip(factors, names[1:], strict=True))
-        of = counts.tolist() if share else None
-        scores.append(Scores(measure, names[0], columns, means.tolist(), of, not share))
+    for measure, value, share in (
+        ("legibility of strings", trials["correct"], True),
+        ("legibility of characters", places.frame["correct"], True),
+        ("duration (s)", timed, False),
+    ):
+        if value.size:
+            counts = np.bincount(cell[value.index], minlength=math.prod(shape))
+            sums = np.bincount(cell[value.index], value, counts.size)
+            means = np.divide(sums, counts, out=np.full(counts.size, np.nan), where=counts > 0)
+            of = counts.tolist() if share else None
+            scores.append(Scores(measure, names[0], columns, means.tolist(), of, not share))
     return scores
 
 
@@ -106,29 +106,29 @@ def of_sheet(sheet: Sheet) -> Scores:
         If it is no such table.
     """
     sheet.need(("participant", "score"))
-    names = [name for name in sheet.columns if name not in ("participant", "score")]
+    names = [str(name) for name in sheet.frame if name not in ("participant", "score")]
     if not names:
         raise InputError(
             f"{sheet.name} has no column but participant and score; add one for what was varied, "
             f"such as texture"
         )
-    for name in ("participant", *names):
-        for row, value in enumerate(sheet.columns[name]):
-            if not value.strip():
-                raise InputError(f"{sheet.place(row)}: {name} is empty; fill it in")
     if not len(sheet):
         raise InputError(f"{sheet.name} has no scores; add a line for each")
-    columns = {name: [v.strip() for v in values] for name, values in sheet.columns.items()}
+    frame = sheet.frame.map(str.strip)
+    for name in ("participant", *names):
+        empty = frame.index[frame[name] == ""]
+        if empty.size:
+            raise InputError(f"{sheet.place(empty[0])}: {name} is empty; fill it in")
     return Scores(
         "score",
-        columns["participant"],
-        {name: columns[name] for name in names},
-        [_score(sheet, row, text) for row, text in enumerate(columns["score"])],
+        frame["participant"].tolist(),
+        {name: frame[name].tolist() for name in names},
+        [_score(sheet, row, text) for row, text in frame["score"].items()],
     )
 
 
-def _score(sheet: Sheet, row: int, text: str) -> float:
-    if text.lower() in _MISSING:
+def _score(sheet: Sheet, row: object, text: str) -> float:
+    if text.lower() in UNKNOWN:
         return math.nan
     try:
         score = sheet.number(text)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
 
 from vbraille.braille.spelling import to_braille
 from vbraille.sessions.planning.design import StringList
@@ -14,9 +16,13 @@ from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from numpy.typing import NDArray
 
-def string_sets(values: Mapping[str, Sequence[str]]) -> list[str]:
-    """Of each trial the string whose cells it shows in this order or another.
+    from vbraille.analysis.input.sheets import Sheet
+
+
+def string_sets(whole: pd.DataFrame) -> list[str]:
+    """String of each trial whose cells it shows in this order or another.
 
     It is what column ``string_set`` says. Tables that were exported before there was one are
     told by their protocol: if that is one of ours which reorders strings, and all that it
@@ -24,64 +30,71 @@ def string_sets(values: Mapping[str, Sequence[str]]) -> list[str]:
 
     Parameters
     ----------
-    values
+    whole
         Columns ``protocol``, ``presented`` and ``string_set``, Unicode braille.
     """
-    of: defaultdict[str, set[str]] = defaultdict(set)
-    for protocol, presented in zip(values["protocol"], values["presented"], strict=True):
-        of[protocol].add(presented)
     known = {
         protocol: listed
-        for protocol, shown in of.items()
-        if (listed := _reordered(protocol)) and listed.keys() >= {_sorted(text) for text in shown}
+        for protocol, shown in whole.groupby("protocol")["presented"]
+        if (listed := _reordered(protocol)) and listed.keys() >= set(map(_sorted, shown))
     }
-    sets = []
-    columns = (values[name] for name in ("string_set", "protocol", "presented"))
-    for told, protocol, presented in zip(*columns, strict=True):
-        listed = known[protocol][_sorted(presented)] if protocol in known else presented
-        sets.append(told or listed)
-    return sets
+    rows = whole[["string_set", "protocol", "presented"]].itertuples(index=False, name=None)
+    return [
+        told or (known[protocol][_sorted(presented)] if protocol in known else presented)
+        for told, protocol, presented in rows
+    ]
 
 
-def tell_sessions_apart(values: dict[str, list]) -> list[str]:
+def numbered(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> NDArray[np.bool_]:
+    """Whether each trial's session and number are given, by which it can be there twice.
+
+    Parameters
+    ----------
+    whole
+        Trials, or comparisons, of all sheets; the index's first level is the sheet's number.
+    """
+    told = np.array([{"session", "trial"} <= set(sheet.frame) for sheet in sheets])
+    return told[whole.index.get_level_values(0)] & (whole["trial"] > 0).to_numpy()
+
+
+def tell_sessions_apart(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> list[str]:
     """Rename sessions of two tables that have one name and other answers; what to know of them.
 
     Where the answers are the same a trial is there twice, and that is not for us to mend.
 
     Parameters
     ----------
-    values
-        Columns of trials, or of comparisons; ``session`` changes.
+    whole
+        As of `numbered`; ``session`` changes.
     """
-    homes: defaultdict[tuple, set[int]] = defaultdict(set)
-    for n, session in enumerate(values.get("session", ())):
-        homes[values["participant"][n], session].add(id(values["sheet"][n]))
-    if all(len(sheets) == 1 for sheets in homes.values()):
+    number = pd.Series(whole.index.get_level_values(0), whole.index)
+    who = [whole["participant"], whole["session"]]
+    if (number.groupby(who).nunique() == 1).all():
         return []
-    of: defaultdict[tuple, dict[str, dict[tuple, tuple]]] = defaultdict(dict)
-    for n, session in enumerate(values.get("session", ())):
-        whose = values["participant"][n], session
-        trial = tuple(values[name][n] for name in ("protocol", "condition", "block", "trial"))
-        if values["told"][n] and values["trial"][n]:
-            of[whose].setdefault(values["sheet"][n].name, {})[trial] = _answer(values, n)
-    apart = {whose: list(of[whose]) for whose in of if _differ(list(of[whose].values()))}
-    if apart:
-        columns = (values[name] for name in ("participant", "session", "sheet"))
-        values["session"] = [
-            f"{sheet.name}: {session}" if (who, session) in apart else session
-            for who, session, sheet in zip(*columns, strict=True)
-        ]
-    return [
-        f"Session {session} is in {' and '.join(sheets)} with other answers: these are told apart "
-        f"as two sessions; their participant {who} is taken for one person. If they are several, "
-        f"give --sites."
-        for (who, session), sheets in apart.items()
-    ]
+    told = []
+    known: Any = whole[numbered(whole, sheets)].groupby(["participant", "session"], sort=False)
+    for (participant, session), part in known:
+        answers = {n: _answers(own) for n, own in part.groupby(level=0)}
+        if not _differ(list(answers.values())):
+            continue
+        alike = (whole["participant"] == participant) & (whole["session"] == session)
+        names = [f"{sheets[n].name}: {session}" for n in number[alike]]
+        whole.loc[alike, "session"] = names
+        told.append(
+            f"Session {session} is in {' and '.join(sheets[n].name for n in answers)} with other "
+            f"answers: these are told apart as two sessions; their participant {participant} is "
+            f"taken for one person. If they are several, give --sites."
+        )
+    return told
 
 
-def _answer(values: Mapping[str, list], n: int) -> tuple:
+def _answers(part: pd.DataFrame) -> dict[tuple, tuple]:
+    """What was shown and answered in each trial."""
     names = ("presented", "answered", "duration_s", "first", "second", "chosen")
-    return tuple(str(values[name][n]) for name in names if name in values)
+    known = part[[name for name in names if name in part]].map(str)
+    keys = part[["protocol", "condition", "block", "trial"]]
+    rows = (frame.itertuples(index=False, name=None) for frame in (keys, known))
+    return dict(zip(*rows, strict=True))
 
 
 def _differ(sheets: Sequence[Mapping[tuple, tuple]]) -> bool:

@@ -1,4 +1,8 @@
-"""Tables that people give: CSV files and sessions as columns of text."""
+"""Tables that people give: CSV files and sessions, column by column as they came.
+
+The standard library reads CSV files, as pandas tells neither the line of a row with too few
+values nor, after empty lines, that of any row.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,8 @@ import csv
 import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import pandas as pd
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.encodings import binary_kind, find_encoding
@@ -18,33 +24,34 @@ if TYPE_CHECKING:
 _DELIMITERS = ",;\t"  # spreadsheets write semicolons where the comma is the decimal point
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """Columns of text, all of one length.
+    """A table as it came.
 
     Parameters
     ----------
     name
-        Of the file or the session, as an error has it.
-    columns
-        Values by the columns' names.
-    lines
-        Where each row stands in the file; empty if it comes from no file.
+        Name of the file or the session, as an error has it.
+    frame
+        Values: text from a file, numbers and text from a session; empty text where there is
+        nothing. The index is the number of each row's line or, from a session, of the row.
+    unit
+        What the index counts.
     decimal_comma
-        Whether numbers may have a comma for a point.
+        Whether numbers in text may have a comma for a point.
     """
 
     name: str
-    columns: dict[str, list[str]]
-    lines: Sequence[int] = ()
+    frame: pd.DataFrame
+    unit: str = "row"
     decimal_comma: bool = False
 
     def __len__(self) -> int:
-        return len(next(iter(self.columns.values()), ()))
+        return len(self.frame)
 
-    def place(self, row: int) -> str:
+    def place(self, row: object) -> str:
         """Where a row is, for a sentence."""
-        return f"{self.name} line {self.lines[row]}" if self.lines else f"{self.name} row {row + 1}"
+        return f"{self.name} {self.unit} {row}"
 
     def need(self, names: Sequence[str]) -> None:
         """See that columns are there.
@@ -54,9 +61,9 @@ class Sheet:
         InputError
             If some are not: naming those that are nearest.
         """
-        missing = [name for name in names if name not in self.columns]
+        missing = [name for name in names if name not in self.frame]
         if missing:
-            others = [name for name in self.columns if name not in names]
+            others = [str(name) for name in self.frame if name not in names]
             said = "; ".join(_miss(name, others) for name in missing)
             raise InputError(
                 f"{self.name} needs columns {', '.join(names)}: {said}; "
@@ -95,22 +102,22 @@ def read_csv(path: Path) -> Sheet:
     delimiter = max(_DELIMITERS, key=first.count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
     try:
-        return _columns(reader, path.name, decimal_comma=delimiter == ";")
+        frame = _frame(reader, path.name)
     except csv.Error as error:
         raise InputError(f"{path.name} line {reader.line_num} is no CSV: {error}") from None
+    return Sheet(path.name, frame, "line", decimal_comma=delimiter == ";")
 
 
 def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:
-    """Sheet of a session's rows, as its export has them."""
-    names = list(rows[0]) if rows else []
-    return Sheet(name, {column: [str(row[column]) for row in rows] for column in names})
+    """Sheet of a session's rows, each value of the type that its export has."""
+    return Sheet(name, pd.DataFrame(rows, range(1, len(rows) + 1), dtype=object))
 
 
 def _miss(name: str, others: Sequence[str]) -> str:
     return f"there is no {name}" + (f", {nearest(name, others)}" if others else "")
 
 
-def _columns(reader: Any, name: str, *, decimal_comma: bool) -> Sheet:
+def _frame(reader: Any, name: str) -> pd.DataFrame:
     rows = (row for row in reader if "".join(row).strip())
     heads = [head.strip() for head in next(rows, [])]
     if not heads:
@@ -130,4 +137,4 @@ def _columns(reader: Any, name: str, *, decimal_comma: bool) -> Sheet:
         for column, value in zip(columns, row, strict=True):
             column.append(known.setdefault(value, value))
         lines.append(reader.line_num)
-    return Sheet(name, dict(zip(heads, columns, strict=True)), lines, decimal_comma)
+    return pd.DataFrame(dict(zip(heads, columns, strict=True)), lines, dtype=object)

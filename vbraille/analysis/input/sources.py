@@ -50,12 +50,11 @@ def named(sitting: SessionTrials, name: str, site: str = "") -> SessionTrials:
 
 def of_site(sheet: Sheet, site: str) -> Sheet:
     """Sheet with its participants and sessions under the name of a site."""
-    columns = {
-        name: [f"{site}/{value.strip()}" if value.strip() else value for value in values]
-        for name, values in sheet.columns.items()
-        if name in ("participant", "session")
-    }
-    return replace(sheet, columns=sheet.columns | columns)
+    frame = sheet.frame.copy()
+    for name in {"participant", "session"} & set(frame):
+        stripped = frame[name].str.strip()
+        frame[name] = frame[name].mask(stripped != "", f"{site}/" + stripped)
+    return replace(sheet, frame=frame)
 
 
 def check_copies(sittings: Iterable[SessionTrials]) -> None:

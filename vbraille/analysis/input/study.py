@@ -8,26 +8,24 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.sittings import read_sitting
 from vbraille.analysis.input.sources import check_copies, distinct_names, named, of_site, told_apart
-from vbraille.analysis.input.trials import LeftOut, count, natural
+from vbraille.analysis.input.trials import LeftOut, chosen, count, natural
 from vbraille.errors import InputError
-from vbraille.sessions.record.export import encode, to_csv
 from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    import pandas as pd
+
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
-    from vbraille.analysis.input.trials import Comparisons, Trials
 
 _TOLD_VERSIONS = ("numpy", "scipy", "statsmodels", "matplotlib")  # what numbers and bytes hang on
 
@@ -39,7 +37,7 @@ class Study:
     Parameters
     ----------
     trials, comparisons
-        None if there are none.
+        By `vbraille.analysis.input.trials`; None if there are none.
     sittings
         Sessions that were read, in the order of participants.
     left_out
@@ -52,8 +50,8 @@ class Study:
         What of the sessions is damaged, a clause each.
     """
 
-    trials: Trials | None
-    comparisons: Comparisons | None
+    trials: pd.DataFrame | None
+    comparisons: pd.DataFrame | None
     sittings: tuple[SessionTrials, ...]
     left_out: tuple[LeftOut, ...]
     about: tuple[tuple[str, str], ...]
@@ -141,13 +139,6 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
     return scores, about + _versions(())
 
 
-def trials_file(study: Study) -> dict[str, bytes]:
-    """The trials as they were analysed, with all columns that were given; by the file's name."""
-    if study.trials is None:
-        return {}
-    return {"trials.csv": encode(to_csv(study.trials.rows()))}
-
-
 @dataclass(frozen=True, slots=True)
 class _Rule:
     """Who or what is left out."""
@@ -159,10 +150,10 @@ class _Rule:
 
     def apply(
         self,
-        trials: Trials | None,
-        comparisons: Comparisons | None,
+        trials: pd.DataFrame | None,
+        comparisons: pd.DataFrame | None,
         sittings: Sequence[SessionTrials],
-    ) -> tuple[Trials | None, Comparisons | None, list[SessionTrials]]:
+    ) -> tuple[pd.DataFrame | None, pd.DataFrame | None, list[SessionTrials]]:
         """What is left.
 
         Raises
@@ -170,27 +161,25 @@ class _Rule:
         InputError
             If there is no such participant or protocol: it was misspelled.
         """
-        factors = [getattr(part, self.factor) for part in (trials, comparisons) if part is not None]
-        known = {level for factor in factors for level in factor.levels}
+        parts = [part[self.factor] for part in (trials, comparisons) if part is not None]
+        known = {level for part in parts for level in part.cat.categories}
         if self.level not in known:
             raise InputError(
                 f"there is no {self.factor} {self.level!r} with answered trials; there are "
                 f"{', '.join(sorted(known, key=natural)) or 'none'}"
             )
-        left = [
-            None if part is None else _some(part, self._kept(getattr(part, self.factor).names()))
-            for part in (trials, comparisons)
+        kept = [
+            sitting
+            for sitting in sittings
+            if (sitting.head[self.factor] == self.level) == self.keeps
         ]
-        kept = self._kept([sitting.head[self.factor] for sitting in sittings])
-        chosen = [sitting for sitting, keep in zip(sittings, kept, strict=True) if keep]
-        return left[0], left[1], chosen  # type: ignore[return-value]
+        return self._of(trials), self._of(comparisons), kept
 
-    def _kept(self, names: Sequence[str]) -> np.ndarray:
-        return np.array([(name == self.level) == self.keeps for name in names], bool)
-
-
-def _some(part: Trials | Comparisons, kept: np.ndarray) -> Trials | Comparisons | None:
-    return part[kept] if kept.any() else None
+    def _of(self, part: pd.DataFrame | None) -> pd.DataFrame | None:
+        if part is None:
+            return None
+        kept = (part[self.factor] == self.level) == self.keeps
+        return chosen(part, kept) if kept.any() else None
 
 
 def _rules(exclude: Mapping[str, str], protocol: str | None) -> list[_Rule]:
@@ -236,17 +225,19 @@ def _read(paths: Sequence[Path], *, sites: bool) -> tuple[list[SessionTrials], d
     return sittings, files
 
 
-def _describe(trials: Trials | None, comparisons: Comparisons | None) -> str:
+def _describe(trials: pd.DataFrame | None, comparisons: pd.DataFrame | None) -> str:
     parts = []
     if trials is not None:
+        conditions = trials["condition"].cat.categories
         parts.append(
-            f"{count(len(trials), 'trial')} of {count(len(trials.participant), 'participant')} in "
-            f"{count(len(trials.condition), 'condition')} ({', '.join(trials.condition.levels)})"
+            f"{count(len(trials), 'trial')} of "
+            f"{count(trials['participant'].nunique(), 'participant')} in "
+            f"{count(len(conditions), 'condition')} ({', '.join(conditions)})"
         )
     if comparisons is not None:
         parts.append(
             f"{count(len(comparisons), 'comparison')} of "
-            f"{count(len(comparisons.participant), 'participant')}"
+            f"{count(comparisons['participant'].nunique(), 'participant')}"
         )
     return "; ".join(parts)
 
@@ -280,7 +271,7 @@ def _sources(sheets: Sequence[Sheet]) -> list[str]:
     """What to know of answers that nobody typed."""
     simulated, scripted = [], []
     for sheet in sheets:
-        kinds = {source.partition(":")[0] for source in sheet.columns.get("answers_from", ())}
+        kinds = {source.partition(":")[0] for source in sheet.frame.get("answers_from", ())}
         if "simulated" in kinds:
             simulated.append(sheet.name)
         if kinds - {"simulated", "typed", ""}:
@@ -295,13 +286,13 @@ def _sources(sheets: Sequence[Sheet]) -> list[str]:
     return told
 
 
-def _warnings(trials: Trials | None, sittings: Sequence[SessionTrials]) -> list[str]:
+def _warnings(trials: pd.DataFrame | None, sittings: Sequence[SessionTrials]) -> list[str]:
     told = [
         f"Session {sitting.name} is not whole: {sitting.state}."
         for sitting in sittings
         if sitting.state != "ended"
     ]
-    protocols = trials.protocol.levels if trials is not None else ()
+    protocols = () if trials is None else trials["protocol"].cat.categories
     if len(protocols) > 1:
         told.append(
             f"Trials are of {len(protocols)} protocols, {', '.join(protocols)}; what is said of "

@@ -1,182 +1,56 @@
-"""Trials as arrays: what was presented, what was answered, by whom and when."""
+"""Trials, comparisons and places as data frames whose columns have their types.
+
+Trials are strings that were read and answered, a row each, in the order of participants,
+sessions, blocks and trials. Their columns are `TRIAL_COLUMNS`:
+
+- ``participant``, ``session``, ``protocol``, ``condition``: categories in natural order;
+- ``block``, ``trial``: int64 as given, 0 if not;
+- ``presented``, ``answered``: categories, Unicode braille with `UNREAD` for a place not read;
+- ``string_set``: categories, Unicode braille of the string whose cells are presented in this
+  order or another; where strings keep their order, of what is presented;
+- ``correct``: bool, whether all places are right;
+- ``duration_s``: float64, NaN if not known;
+
+and further columns as they were given. Comparisons are pairs of stimuli of which one was chosen.
+They have the columns up to ``trial``, and
+
+- ``first``, ``second``: float64, values in the order in which they were felt;
+- ``chosen``: int64, 0 if the first was chosen, 1 if the second;
+- ``parameter``: categories, what the stimuli differ in, with its unit: "dot_width_mm".
+"""
 
 from __future__ import annotations
 
-import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.braille.spelling import LETTERS, UNREAD
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterable, Iterator
+    from typing import Any
 
     from numpy.typing import NDArray
 
+TRIAL_COLUMNS = (
+    "participant", "session", "protocol", "condition", "block", "trial", "presented", "string_set",
+    "answered", "correct", "duration_s",
+)  # fmt: skip
 UNREAD_MASK = 0x100  # one more than masks of eight dots
 _LETTER_AT = {UNICODE_BLANK + mask: letter for letter, mask in LETTERS.items()}
 _LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Factor:
-    """Which of some levels each trial has.
-
-    Parameters
-    ----------
-    levels
-        Names, in natural order: T0, T25, T100.
-    codes : int64[n]
-        Index of the level of each trial.
-    """
-
-    levels: tuple[str, ...]
-    codes: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, names: Sequence[str]) -> Factor:
-        """Factor of each trial's level."""
-        return cls._sorted(names, sorted(set(names), key=natural))
-
-    @classmethod
-    def of_strings(cls, texts: Sequence[str]) -> Factor:
-        """Factor of each trial's Unicode braille, of which there may be as many as trials."""
-        return cls._sorted(texts, sorted(set(texts)))
-
-    @classmethod
-    def _sorted(cls, names: Sequence[str], levels: list[str]) -> Factor:
-        index = {name: code for code, name in enumerate(levels)}
-        codes = np.fromiter((index[name] for name in names), np.int64, len(names))
-        return cls(tuple(levels), codes)
-
-    def __len__(self) -> int:
-        return len(self.levels)
-
-    def names(self) -> list[str]:
-        """Level of each trial."""
-        return [self.levels[code] for code in self.codes.tolist()]
-
-    def __getitem__(self, chosen: NDArray) -> Factor:
-        """Those of some trials; levels that none of them has are gone."""
-        codes = self.codes[chosen]
-        left = np.unique(codes)
-        return Factor(tuple(self.levels[c] for c in left.tolist()), np.searchsorted(left, codes))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Trials:
-    """Strings that were read and answered.
-
-    Parameters
-    ----------
-    participant, condition, session, protocol
-        Of each trial.
-    presented, answered
-        Unicode braille; `UNREAD` for a place not read.
-    string_set
-        Unicode braille of the string whose cells are presented in this order or another; where
-        strings keep their order, of what is presented.
-    correct : bool[n]
-        Whether all places are right.
-    block, trial : int64[n]
-        As given; 0 if not. Trials are in the order of sessions, blocks and trials.
-    duration_s : float64[n]
-        NaN if not known.
-    others
-        Further columns, as they were given.
-    """
-
-    participant: Factor
-    condition: Factor
-    session: Factor
-    protocol: Factor
-    presented: Factor
-    answered: Factor
-    string_set: Factor
-    correct: NDArray[np.bool_]
-    block: NDArray[np.int64]
-    trial: NDArray[np.int64]
-    duration_s: NDArray[np.float64]
-    others: dict[str, list[str]]
-
-    def __len__(self) -> int:
-        return self.correct.size
-
-    def __getitem__(self, chosen: NDArray) -> Trials:
-        """Some of the trials: a mask or indices."""
-        index = np.arange(len(self))[chosen]
-        kept = {name: [values[n] for n in index.tolist()] for name, values in self.others.items()}
-        parts = {name: getattr(self, name)[chosen] for name in self.__slots__ if name != "others"}
-        return Trials(**parts, others=kept)
-
-    def columns(self) -> tuple[str, ...]:
-        """Names of what trials can be compared by."""
-        return ("condition", "block", "session", "protocol", *self.others)
-
-    def factor(self, name: str) -> Factor:
-        """One of `columns`."""
-        if name in ("condition", "session", "protocol"):
-            return getattr(self, name)
-        if name == "block":
-            return Factor.of([str(block) for block in self.block.tolist()])
-        return Factor.of(self.others[name])
-
-    def _listed(self) -> list[str]:
-        """Set of each trial's string; empty where it is the string itself."""
-        pairs = zip(self.string_set.names(), self.presented.names(), strict=True)
-        return ["" if listed == presented else listed for listed, presented in pairs]
-
-    def rows(self) -> list[dict[str, str | int | float]]:
-        """A row a trial, of all columns; what is not known is empty."""
-        known = ("participant", "session", "protocol", "condition")
-        columns = {name: getattr(self, name).names() for name in known} | {
-            "block": [block or "" for block in self.block.tolist()],
-            "trial": self.trial.tolist(),
-            "presented": self.presented.names(),
-            "string_set": self._listed(),
-            "answered": self.answered.names(),
-            "correct": self.correct.astype(int).tolist(),
-            "duration_s": ["" if math.isnan(s) else s for s in self.duration_s.tolist()],
-            **self.others,
-        }
-        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Comparisons:
-    """Pairs of stimuli of which one was chosen.
-
-    Parameters
-    ----------
-    participant, session, protocol
-        Of each.
-    parameter
-        What the stimuli differ in, with its unit: "dot_width_mm".
-    first, second : float64[n]
-        Values, in the order in which they were felt.
-    chosen : int64[n]
-        0 if the first was chosen, 1 if the second.
-    """
-
-    participant: Factor
-    session: Factor
-    protocol: Factor
-    parameter: Factor
-    first: NDArray[np.float64]
-    second: NDArray[np.float64]
-    chosen: NDArray[np.int64]
-
-    def __len__(self) -> int:
-        return self.chosen.size
-
-    def __getitem__(self, index: NDArray) -> Comparisons:
-        """Some of them: a mask or indices."""
-        return Comparisons(**{name: getattr(self, name)[index] for name in self.__slots__})
+def natural(name: str) -> list[tuple[int, float, str]]:
+    """Key by which T25 comes before T100."""
+    parts = re.split(r"(\d+(?:\.\d+)?)", name)
+    return [(0, float(p), p) if n % 2 else (1, 0.0, p) for n, p in enumerate(parts) if p]
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,49 +75,91 @@ class Places:
 
     Parameters
     ----------
-    at : int64[m]
-        Index of the trial of each place.
-    presented, answered : int64[m]
-        Dot masks; `UNREAD_MASK` for a place not read.
+    frame
+        A row a place: ``participant`` and ``condition`` of its trial, ``presented`` and
+        ``answered``, int64 dot masks with `UNREAD_MASK` for a place not read, and ``correct``.
+        The index is that of the trial.
     unequal : int
         Trials that are left out, since their answer has another number of places.
     """
 
-    at: NDArray[np.int64]
-    presented: NDArray[np.int64]
-    answered: NDArray[np.int64]
+    frame: pd.DataFrame
     unequal: int
 
     @classmethod
-    def of(cls, trials: Trials) -> Places:
+    def of(cls, trials: pd.DataFrame) -> Places:
         """Places of some trials."""
-        asked = _lengths(trials.presented.levels)[trials.presented.codes]
-        given = _lengths(trials.answered.levels)[trials.answered.codes]
+        asked, given = (_lengths(trials[name]) for name in ("presented", "answered"))
         equal = np.flatnonzero(asked == given)
-        return cls(
-            np.repeat(equal, asked[equal]),
-            _masks(trials.presented, equal),
-            _masks(trials.answered, equal),
-            len(trials) - equal.size,
-        )
+        frame = trials[["participant", "condition"]].take(np.repeat(equal, asked[equal]))
+        for name in ("presented", "answered"):
+            frame[name] = _masks(trials[name].iloc[equal])
+        frame["correct"] = frame["presented"] == frame["answered"]
+        return cls(frame, len(trials) - equal.size)
 
     def __len__(self) -> int:
-        return self.at.size
+        return len(self.frame)
 
-    @property
-    def correct(self) -> NDArray[np.bool_]:
-        """Whether each place is right."""
-        return self.presented == self.answered
-
-    def where(self, chosen: NDArray[np.bool_]) -> Places:
+    def where(self, chosen: pd.Series) -> Places:
         """Some of the places."""
-        return Places(self.at[chosen], self.presented[chosen], self.answered[chosen], self.unequal)
+        return replace(self, frame=self.frame[chosen])
 
 
-def natural(name: str) -> list[tuple[int, float, str]]:
-    """Key by which T25 comes before T100."""
-    parts = re.split(r"(\d+(?:\.\d+)?)", name)
-    return [(0, float(p), p) if n % 2 else (1, 0.0, p) for n, p in enumerate(parts) if p]
+def factor(
+    values: Iterable[object], key: Callable[[str], Any] | None = natural
+) -> pd.Categorical[str]:
+    """Levels of some values as text, in natural order: T0, T25, T100.
+
+    Parameters
+    ----------
+    key
+        Key by which the levels are sorted; None for the order of their characters.
+    """
+    names = [str(value) for value in values]
+    return pd.Categorical(names, sorted(set(names), key=key), ordered=True)
+
+
+def codes(levels: pd.Series) -> NDArray[np.int64]:
+    """Index of the level of each row of categories."""
+    return np.asarray(levels.cat.codes, np.int64)
+
+
+def chosen(frame: pd.DataFrame, rows: pd.Series) -> pd.DataFrame:
+    """Some rows of trials or comparisons; levels that none of them has are gone."""
+    part = frame[rows].reset_index(drop=True)
+    for name in part.select_dtypes("category"):
+        part[name] = part[name].cat.remove_unused_categories()
+    return part
+
+
+def groups(
+    frame: pd.DataFrame, *names: str, observed: bool = True
+) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
+    """Rows that have the same levels, in the order of the levels.
+
+    Parameters
+    ----------
+    observed
+        Whether levels that no row has together are left out.
+    """
+    grouped: Any = frame.groupby(list(names), observed=observed)
+    return iter(grouped)
+
+
+def written(trials: pd.DataFrame) -> pd.DataFrame:
+    """Trials as a file has them: what is not known is missing, and a string is its own set."""
+    presented, string_set = (trials[name].astype(object) for name in ("presented", "string_set"))
+    return trials.assign(
+        block=trials["block"].astype("Int64").mask(trials["block"] == 0),
+        string_set=string_set.mask(string_set == presented, ""),
+        correct=trials["correct"].astype(np.int64),
+    )
+
+
+def comparable(trials: pd.DataFrame) -> list[str]:
+    """Columns that trials can be compared by."""
+    given = [str(name) for name in trials if name not in TRIAL_COLUMNS]
+    return ["condition", "block", "session", "protocol", *given]
 
 
 @cache
@@ -282,12 +198,12 @@ def times(number: int) -> str:
     return "once" if number == 1 else f"{number} times"
 
 
-def _lengths(strings: Sequence[str]) -> NDArray[np.int64]:
-    return np.fromiter(map(len, strings), np.int64, len(strings))
+def _lengths(strings: pd.Series) -> NDArray[np.int64]:
+    """How many places each string has."""
+    return np.array([len(text) for text in strings.cat.categories])[codes(strings)]
 
 
-def _masks(strings: Factor, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Dot masks of all places of some trials, one after the other."""
-    text = "".join([strings.levels[code] for code in strings.codes[chosen].tolist()])
-    points = np.frombuffer(text.encode("utf-32-le"), "<u4").astype(np.int64)
+def _masks(strings: pd.Series) -> NDArray[np.int64]:
+    """Dot masks of all places of some strings, one after the other."""
+    points = np.frombuffer("".join(strings).encode("utf-32-le"), "<u4").astype(np.int64)
     return np.where(points == ord(UNREAD), UNREAD_MASK, points - UNICODE_BLANK)

@@ -6,22 +6,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.analysis.input.trials import codes
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
 
 def mean_or_none(values: Sequence[float]) -> float | None:
-    """Mean; None of nothing."""
+    """Mean of some values; None if there are none."""
     return float(np.mean(values)) if len(values) else None
 
 
 def over_participants(
-    level: NDArray[np.int64],
-    value: NDArray,
-    participant: NDArray[np.int64],
-    condition: NDArray[np.int64],
+    level: NDArray[np.int64], frame: pd.DataFrame
 ) -> tuple[NDArray[np.int64], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
     """Mean of each level over conditions within each participant.
 
@@ -31,8 +31,10 @@ def over_participants(
 
     Parameters
     ----------
-    level, value, participant, condition : [n]
-        Codes of each observation, and what was observed.
+    level : int64[n]
+        Level of each observation.
+    frame
+        Observations: whether each is ``correct``, its ``participant`` and ``condition``.
 
     Returns
     -------
@@ -43,20 +45,22 @@ def over_participants(
     numbers : list of int64[participants]
         How many observations each is of.
     """
+    participant, condition = codes(frame["participant"]), codes(frame["condition"])
     shape = (int(level.max()) + 1, int(participant.max()) + 1)
     cell = np.ravel_multi_index((level, participant), shape)
     numbers = np.unique(cell, return_counts=True)[1]
-    (level, participant, _), means = _means((level, participant, condition), value)
+    correct = frame["correct"].to_numpy()
+    (level, participant, _), means = _means((level, participant, condition), correct)
     (level, _), means = _means((level, participant), means)
     levels, starts = np.unique(level, return_index=True)
     return levels, np.split(means, starts[1:]), np.split(numbers, starts[1:])
 
 
 def _means(
-    codes: tuple[NDArray[np.int64], ...], value: NDArray
+    of: tuple[NDArray[np.int64], ...], value: NDArray
 ) -> tuple[tuple[NDArray[np.int64], ...], NDArray[np.float64]]:
     """Mean of the observations that have the same codes; the codes, in order."""
-    shape = tuple(int(code.max()) + 1 for code in codes)
-    cells, cell = np.unique(np.ravel_multi_index(codes, shape), return_inverse=True)
+    shape = tuple(int(code.max()) + 1 for code in of)
+    cells, cell = np.unique(np.ravel_multi_index(of, shape), return_inverse=True)
     sums = np.bincount(cell, value, cells.size)
     return np.unravel_index(cells, shape), sums / np.bincount(cell, minlength=cells.size)

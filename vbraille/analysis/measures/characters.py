@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.analysis.input.trials import name_cell, name_string
+from vbraille.analysis.input.trials import codes, groups, name_cell, name_string
 from vbraille.analysis.measures.averages import over_participants
 from vbraille.analysis.measures.legibility import unequal_notes
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
@@ -17,9 +17,10 @@ from vbraille.braille.cells import UNICODE_BLANK
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
-    from vbraille.analysis.input.trials import Places, Trials
+    from vbraille.analysis.input.trials import Places
     from vbraille.analysis.schemas import ResultTable, Row
 
 _ABOUT = (
@@ -82,59 +83,49 @@ DOTS_OWN = Schema(
 )
 
 
-def characters(trials: Trials, places: Places) -> ResultTable:
+def characters(places: Places) -> ResultTable:
     """Table 3.2, a row a character."""
     rows = [
         {"name": name_cell(mask), "braille": chr(UNICODE_BLANK + mask), "dots": mask.bit_count()}
         | counts
-        for mask, counts in _counts(trials, places, places.presented)
+        for mask, counts in _counts(places.frame["presented"].to_numpy(), places.frame)
     ]
     rows.sort(key=lambda row: cell_order(ord(row["braille"]) - UNICODE_BLANK))
     return CHARACTERS.fill(rows, _notes(rows, places))
 
 
-def strings(trials: Trials) -> ResultTable:
+def strings(trials: pd.DataFrame) -> ResultTable:
     """Table 3.3, a row a string."""
-    codes, names = trials.string_set.codes, trials.string_set.levels
-    shown = trials.presented
-    orders = np.bincount(np.unique(codes * len(shown) + shown.codes) // len(shown)).tolist()
-    found = _count(codes, trials.correct, trials.participant.codes, trials.condition.codes)
+    names = trials["string_set"].cat.categories
+    shown = trials[["string_set", "presented"]].drop_duplicates()
+    orders = shown["string_set"].value_counts(sort=False)
     rows = [
-        {"name": name_string(names[code]), "braille": names[code], "orders": orders[code]} | counts
-        for code, counts in found
+        {"name": name_string(name), "braille": name, "orders": number} | counts
+        for name, number, (_, counts) in zip(
+            names, orders, _counts(codes(trials["string_set"]), trials), strict=True
+        )
     ]
     return STRINGS.fill(sorted(rows, key=lambda row: row["name"]))
 
 
-def dots(trials: Trials, places: Places) -> ResultTable:
+def dots(places: Places) -> ResultTable:
     """Legibility by number of dots, a row a number."""
-    many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
-    rows = [{"dots": number} | counts for number, counts in _counts(trials, places, many)]
+    rows = [{"dots": number} | counts for number, counts in _counts(_dots(places), places.frame)]
     return DOTS.fill(rows, _notes(rows, places))
 
 
-def dots_of_participants(trials: Trials, places: Places) -> ResultTable:
+def dots_of_participants(places: Places) -> ResultTable:
     """Legibility by number of dots, a row a participant and number."""
-    many = np.array([mask.bit_count() for mask in range(256)])[places.presented]
-    who, condition = (factor.codes[places.at] for factor in (trials.participant, trials.condition))
-    rows: list[Row] = []
-    if len(places):
-        level = 9 * who + many  # a cell has eight dots at most
-        codes, own, _ = over_participants(level, places.correct, who, condition)
-        index = np.searchsorted(codes, level)
-        shown, right = np.bincount(index), np.bincount(index, places.correct).astype(np.int64)
-        rows = [
-            {
-                "participant": trials.participant.levels[code // 9],
-                "dots": code % 9,
-                "presented": presented,
-                "correct": correct,
-                "legibility": float(mean[0]),
-            }
-            for code, presented, correct, mean in zip(
-                codes.tolist(), shown.tolist(), right.tolist(), own, strict=True
-            )
-        ]
+    many = _dots(places)
+    rows: list[Row] = [
+        {
+            "participant": whose[0],
+            "dots": number,
+            **{name: counts[name] for name in ("presented", "correct", "legibility")},
+        }
+        for whose, own in groups(places.frame.assign(dots=many), "participant")
+        for number, counts in _counts(own["dots"].to_numpy(), own)
+    ]
     return DOTS_OWN.fill(rows, _notes(rows, places))
 
 
@@ -144,28 +135,20 @@ def cell_order(mask: int) -> tuple[bool, str, int]:
     return len(name) > 1 or not name.isalpha(), name if len(name) == 1 else "", mask
 
 
-def _counts(trials: Trials, places: Places, level: NDArray[np.int64]) -> list[tuple[int, Row]]:
-    participant, condition = (
-        factor.codes[places.at] for factor in (trials.participant, trials.condition)
-    )
-    return _count(level, places.correct, participant, condition)
+def _dots(places: Places) -> NDArray[np.int64]:
+    """How many dots each place has that was presented."""
+    return np.array([mask.bit_count() for mask in range(256)])[places.frame["presented"]]
 
 
-def _count(
-    level: NDArray[np.int64],
-    correct: NDArray[np.bool_],
-    participant: NDArray[np.int64],
-    condition: NDArray[np.int64],
-) -> list[tuple[int, Row]]:
-    """Each level, with the values of `_COUNTS`."""
+def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> list[tuple[int, Row]]:
+    """Each level with the values of `_COUNTS`; see `over_participants`."""
     if not level.size:
         return []
-    levels, own, numbers = over_participants(level, correct, participant, condition)
-    index = np.searchsorted(levels, level)
-    shown, right = np.bincount(index).tolist(), np.bincount(index, correct).astype(int).tolist()
+    levels, own, numbers = over_participants(level, frame)
+    right = frame["correct"].groupby(level).agg(["size", "sum"]).to_numpy().tolist()
     return [
         (code, {"presented": n, "correct": k, "pooled": k / n} | _share(means, of))
-        for code, n, k, means, of in zip(levels.tolist(), shown, right, own, numbers, strict=True)
+        for code, (n, k), means, of in zip(levels.tolist(), right, own, numbers, strict=True)
     ]
 
 

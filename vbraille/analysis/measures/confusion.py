@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from vbraille.analysis.input.trials import UNREAD_MASK, masks_of, name_cell, name_string
 from vbraille.analysis.measures.characters import cell_order
@@ -18,9 +15,11 @@ from vbraille.analysis.statistics.unanswerable import Unanswerable
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    import numpy as np
+    import pandas as pd
     from numpy.typing import NDArray
 
-    from vbraille.analysis.input.trials import Places, Trials
+    from vbraille.analysis.input.trials import Places
     from vbraille.analysis.schemas import ResultTable, Row
 
 MARKS = (4, 9)  # Lévesque 2009, table 4.1
@@ -67,71 +66,44 @@ INFORMATION = Schema(
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Confusion:
-    """Counts of answers.
+def of_characters(places: Places) -> pd.DataFrame | None:
+    """Counts of characters, by names: presented in rows, answered in columns; None without any.
 
-    Parameters
-    ----------
-    of
-        "characters" or "pairs".
-    rows
-        Names of what was presented.
-    columns
-        Names of what was answered: the rows' first, then others, at last `UNREAD`.
-    counts : int64[rows, columns]
+    The columns are the rows' names first, then others, at last `UNREAD`.
     """
-
-    of: str
-    rows: tuple[str, ...]
-    columns: tuple[str, ...]
-    counts: NDArray[np.int64]
+    return _confusion(places.frame, cell_order, name_cell)
 
 
-def of_characters(places: Places) -> Confusion | None:
-    """Counts of characters; None without any."""
-    return _confusion("characters", places.presented, places.answered, cell_order, name_cell)
-
-
-def of_pairs(trials: Trials, chosen: NDArray[np.bool_] | None = None) -> Confusion | None:
-    """Counts of pairs, of all trials or some; None unless every string of them has two places."""
-    shown = trials.presented
-    used = range(len(shown)) if chosen is None else np.unique(shown.codes[chosen]).tolist()
-    if any(len(shown.levels[code]) != 2 for code in used):
+def of_pairs(trials: pd.DataFrame) -> pd.DataFrame | None:
+    """Counts of pairs, as of `of_characters`; None unless every string has two places."""
+    strings = trials[["presented", "answered"]].astype(object)
+    if any(len(string) != 2 for string in strings["presented"].unique()):
         return None
-    strings = sorted({*trials.presented.levels, *trials.answered.levels}, key=_string_order)
-    code = {string: n for n, string in enumerate(strings)}
-    presented, answered = (
-        np.array([code[string] for string in factor.levels], np.int64)[
-            factor.codes if chosen is None else factor.codes[chosen]
-        ]
-        for factor in (trials.presented, trials.answered)
-    )
-    return _confusion("pairs", presented, answered, lambda n: n, lambda n: name_string(strings[n]))
+    return _confusion(strings, _string_order, name_string)
 
 
-def to_table(confusion: Confusion, places: Places, marks: Sequence[int] = MARKS) -> ResultTable:
+def to_table(
+    schema: Schema, counts: pd.DataFrame, places: Places, marks: Sequence[int] = MARKS
+) -> ResultTable:
     """Table of a matrix.
 
     Parameters
     ----------
+    schema
+        `CONFUSION_CHARACTERS` or `CONFUSION_PAIRS`.
     marks
         Errors above each of these are marked.
     """
-    schema = CONFUSION_CHARACTERS if confusion.of == "characters" else CONFUSION_PAIRS
     answers = [
         Column(f"answered {name}", name, f"times answered {name}", Kind.COUNT)
-        for name in confusion.columns
+        for name in counts.columns.tolist()
     ]
-    names = [column.name for column in answers]
-    rows: list[Row] = [
-        {"presented": name} | dict(zip(names, row, strict=True))
-        for name, row in zip(confusion.rows, confusion.counts.tolist(), strict=True)
-    ]
-    return replace(schema.fill(rows, unequal_notes(places), answers), marks=tuple(marks))
+    rows = counts.set_axis([column.name for column in answers], axis="columns")
+    rows.insert(0, "presented", counts.index)
+    return schema.fill(rows.reset_index(drop=True), unequal_notes(places), answers, marks)
 
 
-def transmitted(trials: Trials, places: Places, *, seed: int) -> ResultTable:
+def transmitted(trials: pd.DataFrame, places: Places, *, seed: int) -> ResultTable:
     """Accuracy, kappa and bits, of characters and pairs, of all trials and each condition.
 
     Parameters
@@ -139,23 +111,18 @@ def transmitted(trials: Trials, places: Places, *, seed: int) -> ResultTable:
     seed
         Of the draws that corrected bits come from.
     """
-    rows: list[Row] = []
-    for condition in (None, *range(len(trials.condition))):
-        if condition is not None and len(trials.condition) < 2:
-            break
-        chosen = np.full(len(trials), True)
-        if condition is not None:
-            chosen = trials.condition.codes == condition
-        for confusion in (
-            of_characters(places.where(chosen[places.at])),
-            of_pairs(trials, chosen),
-        ):
-            if confusion is not None:
-                name = "all" if condition is None else trials.condition.levels[condition]
-                rows.append(
-                    {"of": confusion.of, "condition": name} | _measures(confusion.counts, seed)
-                )
-    rows.sort(key=lambda row: row["of"])
+    characters, pairs = {"all": of_characters(places)}, {"all": of_pairs(trials)}
+    conditions = trials["condition"].cat.categories
+    for condition in conditions if len(conditions) > 1 else ():
+        own = places.frame["condition"] == condition
+        characters[condition] = of_characters(places.where(own))
+        pairs[condition] = of_pairs(trials[trials["condition"] == condition])
+    rows: list[Row] = [
+        {"of": of, "condition": condition} | _measures(counts.to_numpy(), seed)
+        for of, matrices in (("characters", characters), ("pairs", pairs))
+        for condition, counts in matrices.items()
+        if counts is not None
+    ]
     return INFORMATION.fill(rows, [] if rows else ["no answer has as many places as its string"])
 
 
@@ -182,28 +149,15 @@ def _measures(counts: NDArray[np.int64], seed: int) -> Row:
 
 
 def _confusion(
-    of: str,
-    presented: NDArray[np.int64],
-    answered: NDArray[np.int64],
-    order: Callable[[int], Any],
-    name: Callable[[int], str],
-) -> Confusion | None:
-    if not presented.size:
+    frame: pd.DataFrame, order: Callable[[Any], Any], name: Callable[[Any], str]
+) -> pd.DataFrame | None:
+    if frame.empty:
         return None
-    rows = sorted(np.unique(presented).tolist(), key=order)
-    others = set(np.unique(answered).tolist()) - set(rows)
-    columns = rows + sorted(others, key=order)
-    counts = np.zeros((len(rows), len(columns)), np.int64)
-    at = (_index(codes, known) for codes, known in ((presented, rows), (answered, columns)))
-    np.add.at(counts, tuple(at), 1)
-    return Confusion(of, tuple(map(name, rows)), tuple(map(name, columns)), counts)
-
-
-def _index(codes: NDArray[np.int64], known: list[int]) -> NDArray[np.int64]:
-    """Where each code stands among those known."""
-    place = np.zeros(max(known) + 1, np.int64)
-    place[known] = np.arange(len(known))
-    return place[codes]
+    counts = frame.groupby(["presented", "answered"]).size().unstack(fill_value=0)
+    rows = sorted(counts.index, key=order)
+    columns = rows + sorted(set(counts.columns) - set(rows), key=order)
+    counts = counts.reindex(index=rows, columns=columns, fill_value=0)
+    return counts.rename(index=name, columns=name)
 
 
 def _string_order(string: str) -> list[tuple]:

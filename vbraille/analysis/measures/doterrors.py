@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.analysis.input.trials import UNREAD_MASK, count
+from vbraille.analysis.input.trials import UNREAD_MASK, count, groups
 from vbraille.analysis.measures.legibility import unequal_notes
 from vbraille.analysis.schemas import Column, Kind, Schema
 
 if TYPE_CHECKING:
-    from vbraille.analysis.input.trials import Places, Trials
+    import pandas as pd
+
+    from vbraille.analysis.input.trials import Places
     from vbraille.analysis.schemas import ResultTable, Row
 
 ERRORS = Schema(
@@ -39,69 +42,53 @@ ERRORS_OWN = Schema(
         Column("share", "of own errors (%)", "their share of the wrong places", Kind.PERCENT),
     ),
 )
+UNREAD_ERROR = "not read"
 _BITS = np.array([mask.bit_count() for mask in range(256)])
 
 
 def errors(places: Places) -> ResultTable:
     """Kinds of errors, the most frequent first; places not read are a kind of their own."""
-    wrong = places.where(~places.correct)
-    read = wrong.where(wrong.answered != UNREAD_MASK)
-    added = _BITS[read.answered & ~read.presented]
-    removed = _BITS[read.presented & ~read.answered]
-    moved = np.minimum(added, removed)
-    shape = (9, 9, 9)  # a cell has eight dots
-    codes = np.ravel_multi_index((added - moved, removed - moved, moved), shape)
-    kinds, counts = np.unique(codes, return_counts=True)
-    found = [
-        (*kind, number)
-        for kind, number in zip(
-            np.transpose(np.unravel_index(kinds, shape)).tolist(), counts.tolist(), strict=True
-        )
-    ]
-    rows: list[Row] = [
-        {
-            "error": _name(more, fewer, elsewhere),
-            "added": more,
-            "removed": fewer,
-            "moved": elsewhere,
-            "count": number,
-            "share": number / len(wrong),
-        }
-        for more, fewer, elsewhere, number in sorted(found, key=lambda f: (-f[3], f[:3]))
-    ]
-    unread = len(wrong) - len(read)
-    if unread:
-        zeros = dict.fromkeys(("added", "removed", "moved"), 0)
-        rows.append({"error": "not read", **zeros, "count": unread, "share": unread / len(wrong)})
-    notes = unequal_notes(places)
-    if not rows:
-        notes.append("no place was answered wrongly")
-    return ERRORS.fill(rows, notes)
+    kinds = ["added", "removed", "moved"]
+    wrong = _wrong(places)
+    found = wrong.groupby(["error", *kinds], as_index=False).size()
+    found = found.rename(columns={"size": "count"}).assign(
+        share=found["size"] / len(wrong), unread=found["error"] == UNREAD_ERROR
+    )
+    order = ["unread", "count", *kinds]
+    found = found.sort_values(order, ascending=[True, False, True, True, True])
+    none = [] if len(wrong) else ["no place was answered wrongly"]
+    return ERRORS.fill(found.drop(columns="unread"), unequal_notes(places) + none)
 
 
-def of_participants(trials: Trials, places: Places) -> ResultTable:
+def of_participants(places: Places) -> ResultTable:
     """Kinds of errors of each participant, in the order of `errors`."""
-    kinds = [row["error"] for row in errors(places).records()]
-    who = trials.participant.codes[places.at]
-    rows: list[Row] = []
-    for code, participant in enumerate(trials.participant.levels):
-        own = places.where(who == code)
-        counts = {row["error"]: row["count"] for row in errors(own).records()}
-        total = sum(counts.values())
-        rows += [
-            {
-                "participant": participant,
-                "error": kind,
-                "count": counts.get(kind, 0),
-                "share": counts.get(kind, 0) / total,
-            }
-            for kind in kinds
-            if total
-        ]
+    kinds = errors(places).frame["error"]
+    rows: list[Row] = [
+        {"participant": whose[0], "error": kind, "count": number, "share": number / len(own)}
+        for whose, own in groups(_wrong(places), "participant")
+        for kind, number in own["error"].value_counts().reindex(kinds, fill_value=0).items()
+    ]
     return ERRORS_OWN.fill(rows, [] if rows else ["no place was answered wrongly"])
 
 
+def _wrong(places: Places) -> pd.DataFrame:
+    """Places answered wrongly, each with the name of its error and the dots it is made of."""
+    wrong = places.frame[~places.frame["correct"]]
+    presented, answered = (wrong[name].to_numpy() for name in ("presented", "answered"))
+    read = answered != UNREAD_MASK
+    added = np.where(read, _BITS[answered & ~presented & 0xFF], 0)
+    removed = np.where(read, _BITS[presented & ~answered], 0)
+    moved = np.minimum(added, removed)
+    wrong = wrong.assign(added=added - moved, removed=removed - moved, moved=moved)
+    dots = zip(wrong["added"], wrong["removed"], wrong["moved"], strict=True)
+    return wrong.assign(error=[_name(*each) for each in dots])
+
+
+@cache
 def _name(added: int, removed: int, moved: int) -> str:
-    """Words for an error: "1 dot moved, 2 dots added"."""
+    """Words for an error: "1 dot moved, 2 dots added"; nothing differs in what was not read."""
     named = ((moved, "moved"), (added, "added"), (removed, "removed"))
-    return ", ".join(f"{count(number, 'dot')} {what}" for number, what in named if number)
+    return (
+        ", ".join(f"{count(number, 'dot')} {what}" for number, what in named if number)
+        or UNREAD_ERROR
+    )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vbraille.analysis.input.trials import Places, count
+from vbraille.analysis.input.trials import Places, count, groups
 from vbraille.analysis.measures.averages import mean_or_none
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.intervals import wilson
@@ -14,9 +12,8 @@ from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    import pandas as pd
 
-    from vbraille.analysis.input.trials import Trials
     from vbraille.analysis.schemas import ResultTable, Row
 
 LEGIBILITY = Schema(
@@ -70,9 +67,15 @@ AVERAGES = Schema(
 )
 
 
-def legibility(trials: Trials, places: Places) -> ResultTable:
+def legibility(trials: pd.DataFrame, places: Places) -> ResultTable:
     """Table 3.1: one row a participant and condition, also where there are no trials."""
-    return LEGIBILITY.fill(list(_rows(trials, places)), unequal_notes(places))
+    whose = ("participant", "condition")
+    of_places = dict(groups(places.frame, *whose, observed=False))
+    rows = [
+        dict(zip(whose, key, strict=True)) | _row(part, of_places[key]["correct"])
+        for key, part in groups(trials, *whose, observed=False)
+    ]
+    return LEGIBILITY.fill(rows, unequal_notes(places))
 
 
 def averages(table: ResultTable) -> ResultTable:
@@ -83,24 +86,22 @@ def averages(table: ResultTable) -> ResultTable:
     table
         Of `legibility`.
     """
-    records = table.records()
     rows: list[Row] = []
-    for condition in dict.fromkeys(record["condition"] for record in records):
-        all_of = [record for record in records if record["condition"] == condition]
-        having = [record for record in all_of if record["trials"]]
+    for condition, part in table.frame.groupby("condition", sort=False):
+        having = part[part["trials"] > 0]
         own = {
-            name: [float(record[name]) for record in having if record[name] is not None]
+            name: having[name].dropna().tolist()
             for name in ("legibility", "character_legibility", "duration_mean_s")
         }
         notes = []
         row: Row = {
             "condition": condition,
             "participants": len(having),
-            "trials": float(np.mean([record["trials"] for record in all_of])),
+            "trials": float(part["trials"].mean()),
             **{name: mean_or_none(values) for name, values in own.items()},
         }
         try:
-            interval = mean_share(own["legibility"], [int(of["trials"]) for of in having])
+            interval = mean_share(own["legibility"], having["trials"].tolist())
             row |= {"low": interval.low, "high": interval.high}
         except Unanswerable as reason:
             notes.append(f"no interval: {reason}")
@@ -124,38 +125,35 @@ def unequal_notes(places: Places) -> list[str]:
     ]
 
 
-def _rows(trials: Trials, places: Places) -> Iterator[Row]:
-    who, what = trials.participant, trials.condition
-    for p, participant in enumerate(who.levels):
-        for c, condition in enumerate(what.levels):
-            chosen = (who.codes == p) & (what.codes == c)
-            correct = trials.correct[chosen]
-            row: Row = {
-                "participant": participant,
-                "condition": condition,
-                "trials": correct.size,
-                "correct": int(correct.sum()),
-            }
-            if not correct.size:
-                row |= {"characters": 0, "characters_correct": 0, "timed": 0}
-                yield row | {"note": "no trials in this condition"}
-                continue
-            interval = wilson(int(correct.sum()), correct.size)
-            row |= {"legibility": float(correct.mean()), "low": interval.low, "high": interval.high}
-            right = places.correct[chosen[places.at]]
-            row |= {"characters": right.size, "characters_correct": int(right.sum())}
-            notes = []
-            if right.size:
-                row["character_legibility"] = float(right.mean())
-            else:
-                notes.append("no answer has as many places as its string")
-            durations = trials.duration_s[chosen]
-            durations = durations[~np.isnan(durations)]
-            row["timed"] = durations.size
-            if durations.size:
-                row["duration_mean_s"] = float(durations.mean())
-            if durations.size > 1:
-                row["duration_sd_s"] = float(durations.std(ddof=1))
-            else:
-                notes.append("one duration: no SD" if durations.size else "no duration is known")
-            yield row | {"note": "; ".join(notes)}
+def _row(trials: pd.DataFrame, right: pd.Series) -> Row:
+    """Values of one participant in one condition.
+
+    Parameters
+    ----------
+    right
+        Whether each place is right, of the strings whose answer has as many.
+    """
+    correct, durations = trials["correct"], trials["duration_s"].dropna().to_numpy()
+    row: Row = {
+        "trials": correct.size,
+        "correct": int(correct.sum()),
+        "characters": right.size,
+        "characters_correct": int(right.sum()),
+        "timed": durations.size,
+    }
+    if not correct.size:
+        return row | {"note": "no trials in this condition"}
+    interval = wilson(row["correct"], correct.size)
+    row |= {"legibility": correct.mean(), "low": interval.low, "high": interval.high}
+    notes = []
+    if right.size:
+        row["character_legibility"] = right.mean()
+    else:
+        notes.append("no answer has as many places as its string")
+    if durations.size:
+        row["duration_mean_s"] = durations.mean()
+    if durations.size > 1:
+        row["duration_sd_s"] = durations.std(ddof=1)
+    else:
+        notes.append("one duration: no SD" if durations.size else "no duration is known")
+    return row | {"note": "; ".join(notes)}

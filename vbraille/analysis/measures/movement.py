@@ -8,19 +8,19 @@ import numpy as np
 from scipy import stats
 
 from vbraille.analysis.input.strokes import PATTERN_RULE, PATTERNS, SPEED_RULE, Reading
-from vbraille.analysis.input.trials import count, name_string, natural
+from vbraille.analysis.input.trials import chosen, codes, count, factor, groups, name_string
 from vbraille.analysis.measures.averages import mean_or_none
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema, to_print
 from vbraille.analysis.statistics.correlation import correlation_interval
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.sittings import SessionTrials
-    from vbraille.analysis.input.trials import Trials
     from vbraille.analysis.schemas import ResultTable, Row
 
 _WHOSE = (
@@ -85,7 +85,9 @@ CORRELATIONS = Schema(
 )
 
 
-def trajectories(sittings: Iterable[SessionTrials], trials: Trials | None = None) -> ResultTable:
+def trajectories(
+    sittings: Iterable[SessionTrials], trials: pd.DataFrame | None = None
+) -> ResultTable:
     """Row a trial of strings on a device, by participant, session and trial.
 
     Parameters
@@ -95,10 +97,9 @@ def trajectories(sittings: Iterable[SessionTrials], trials: Trials | None = None
     trials
         Whose conditions' names count, where several protocols have one of the same name.
     """
-    named: dict[tuple[str, int], str] = {}
+    named: dict[Any, str] = {}
     if trials is not None:
-        columns = (trials.session.names(), trials.trial.tolist(), trials.condition.names())
-        named = {(session, n): condition for session, n, condition in zip(*columns, strict=True)}
+        named = trials.set_index(["session", "trial"])["condition"].to_dict()
     rows: list[Row] = []
     for sitting in sittings:
         of = {row["trial"]: row for row in sitting.rows}
@@ -127,49 +128,41 @@ def patterns(table: ResultTable) -> ResultTable:
     table
         Of `trajectories`.
     """
-    of: dict[tuple[str, str], list[Row]] = {}
-    for record in table.records():
-        if record["pattern"] is not None:
-            whose = str(record["participant"]), str(record["condition"])
-            of.setdefault(whose, []).append(record)
+    known = table.frame[table.frame["pattern"].notna()]
+    whose = [column.name for column in _WHOSE]
+    known = known.assign(**{name: factor(known[name]) for name in whose})
     rows: list[Row] = []
-    for whose in sorted(of, key=lambda key: tuple(map(natural, key))):
-        seen = of[whose]
-        row: Row = {
-            "participant": whose[0],
-            "condition": whose[1],
+    for key, seen in groups(known, *whose):
+        row: Row = dict(zip(whose, key, strict=True)) | {
             "trials": len(seen),
-            "passes": mean_or_none(_known(seen, "passes")),
+            "passes": seen["passes"].mean(),
         }
         for column, pattern in zip(READING_PATTERNS.columns[3:], PATTERNS, strict=False):
-            row[column.name] = sum(record["pattern"] == pattern for record in seen)
+            row[column.name] = (seen["pattern"] == pattern).sum()
         notes = []
         for column, way in zip(_SPEEDS, ("right", "left"), strict=True):
-            row[column.name] = mean_or_none(_known(seen, column.name))
+            row[column.name] = mean_or_none(seen[column.name].dropna().to_numpy())
             if row[column.name] is None:
                 notes.append(f"no stroke to the {way}")
         rows.append(row | {"note": "; ".join(notes)})
     return READING_PATTERNS.fill(rows, [] if rows else ["no trial has a trajectory"])
 
 
-def correlations(trials: Trials) -> ResultTable:
+def correlations(trials: pd.DataFrame) -> ResultTable:
     """Duration against legibility, of trials, strings and participants."""
-    timed = trials[~np.isnan(trials.duration_s)]
-    if not len(timed):
+    timed = chosen(trials, trials["duration_s"].notna())
+    if timed.empty:
         return CORRELATIONS.fill([], ["no duration is known"])
-    rows: list[Row] = []
-    for p, participant in enumerate(timed.participant.levels):
-        for c, condition in enumerate(timed.condition.levels):
-            chosen = (timed.participant.codes == p) & (timed.condition.codes == c)
-            if chosen.any():
-                found = correlation(timed.duration_s[chosen], timed.correct[chosen], "trials")
-                whose = {"of": "trials", "participant": participant, "condition": condition}
-                rows.append(whose | found)
-    for of, factor in (("strings", timed.string_set), ("participants", timed.participant)):
-        counts = np.bincount(factor.codes)
+    rows: list[Row] = [
+        {"of": "trials", "participant": participant, "condition": condition}
+        | correlation(part["duration_s"].to_numpy(), part["correct"].to_numpy(), "trials")
+        for (participant, condition), part in groups(timed, "participant", "condition")
+    ]
+    for of, name in (("strings", "string_set"), ("participants", "participant")):
+        level = codes(timed[name])
         duration, correct = (
-            np.bincount(factor.codes, values) / counts
-            for values in (timed.duration_s, timed.correct)
+            np.bincount(level, timed[value]) / np.bincount(level)
+            for value in ("duration_s", "correct")
         )
         whose = {"of": of, "participant": "all", "condition": "all"}
         rows.append(whose | correlation(duration, correct, of))
@@ -189,10 +182,6 @@ def _described(reading: Reading) -> Row:
     }
     ways = {"right": reading.speed_right_mm_s, "left": reading.speed_left_mm_s}
     return row | {"note": "; ".join(f"no stroke to the {w}" for w, v in ways.items() if v is None)}
-
-
-def _known(records: Sequence[Row], name: str) -> list[float]:
-    return [float(record[name]) for record in records if record[name] is not None]
 
 
 def correlation(duration: NDArray, correct: NDArray, what: str) -> Row:

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 from scipy import stats
 
-from vbraille.analysis.input.trials import count
+from vbraille.analysis.input.trials import count, groups
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.intervals import LEVEL
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
-    from vbraille.analysis.input.trials import Trials
     from vbraille.analysis.schemas import ResultTable, Row
 
 PAST = 10  # trials that the moving average is over
@@ -58,41 +56,29 @@ SLOPES = Schema(
 )
 
 
-def over_time(trials: Trials) -> ResultTable:
+def over_time(trials: pd.DataFrame) -> ResultTable:
     """Moving average of every trial, in the order of the sessions."""
-    rows: list[Row] = []
-    for whose, chosen in series(trials):
-        correct = trials.correct[chosen]
-        sums = np.cumsum(np.concatenate(([0], correct)))
-        averages = (sums[PAST:] - sums[:-PAST]) / PAST if correct.size >= PAST else np.zeros(0)
-        numbers = trials.trial[chosen].tolist()
-        for n, (number, right) in enumerate(zip(numbers, correct.tolist(), strict=True)):
-            row = whose | {"number": n + 1, "trial": number, "correct": int(right)}
-            if n + 1 < PAST:
-                row["note"] = f"fewer than {PAST} trials yet"
-            else:
-                row["average"] = float(averages[n + 1 - PAST])
-            rows.append(row)
-    return OVER_TIME.fill(rows)
+    names = [column.name for column in _WHOSE]
+    frame = trials.sort_values(names, kind="stable")[[*names, "trial", "correct"]]
+    by = [frame[name] for name in names]
+    correct = frame["correct"].astype(np.int64)
+    number = correct.groupby(by, observed=True).cumcount() + 1
+    right = correct.groupby(by, observed=True).cumsum()
+    before = right.groupby(by, observed=True).shift(PAST, fill_value=0)
+    average = ((right - before) / PAST).where(number >= PAST)
+    note = pd.Series("", frame.index).mask(number < PAST, f"fewer than {PAST} trials yet")
+    return OVER_TIME.fill(frame.assign(number=number, correct=correct, average=average, note=note))
 
 
-def slopes(trials: Trials) -> ResultTable:
+def slopes(trials: pd.DataFrame) -> ResultTable:
     """Slope of every session and condition."""
-    return SLOPES.fill([whose | slope(trials.correct[chosen]) for whose, chosen in series(trials)])
-
-
-def series(trials: Trials) -> Iterator[tuple[Row, NDArray[np.int64]]]:
-    """Trials of each participant, session and condition, in their order."""
-    factors = (trials.participant, trials.session, trials.condition)
-    shape = tuple(len(factor) for factor in factors)
-    cell = np.ravel_multi_index(tuple(factor.codes for factor in factors), shape)
-    order = np.argsort(cell, kind="stable")
-    cells, starts = np.unique(cell[order], return_index=True)
-    parts = np.split(order, starts[1:])
-    for code, part in zip(cells.tolist(), parts, strict=True):
-        codes = np.unravel_index(code, shape)
-        names = [factor.levels[int(at)] for factor, at in zip(factors, codes, strict=True)]
-        yield dict(zip(("participant", "session", "condition"), names, strict=True)), part
+    names = [column.name for column in _WHOSE]
+    return SLOPES.fill(
+        [
+            dict(zip(names, whose, strict=True)) | slope(part["correct"].to_numpy())
+            for whose, part in groups(trials, *names)
+        ]
+    )
 
 
 def slope(correct: NDArray[np.bool_]) -> Row:

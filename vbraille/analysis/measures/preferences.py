@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
+from vbraille.analysis.input.trials import chosen, codes
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.bradleyterry import bradley_terry, position_bias, preferred
 from vbraille.analysis.statistics.intervals import too_few
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
-    from vbraille.analysis.input.trials import Comparisons
+    from numpy.typing import NDArray
+
     from vbraille.analysis.schemas import ResultTable, Row
 
 CHOICES = Schema(
@@ -22,7 +25,7 @@ CHOICES = Schema(
     "over another with odds of e to the difference of their strengths.",
     (
         Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
-        Column("value", "value", "of the parameter", Kind.COUNT),
+        Column("value", "value", "of the parameter", Kind.VALUE),
         Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
         Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
         Column("share", "chosen (%)", "chosen by presented", Kind.PERCENT),
@@ -38,7 +41,7 @@ CHOICES_OWN = Schema(
     (
         Column("parameter", "parameter", "what the stimuli differ in, with its unit"),
         Column("participant", "participant", "pseudonym"),
-        Column("value", "value", "of the parameter", Kind.COUNT),
+        Column("value", "value", "of the parameter", Kind.VALUE),
         Column("presented", "presented", "comparisons that it was part of", Kind.COUNT),
         Column("chosen", "chosen", "comparisons in which it was chosen", Kind.COUNT),
         Column("share", "chosen (%)", "chosen by presented", Kind.PERCENT),
@@ -68,7 +71,7 @@ PREFERRED = Schema(
 )
 
 
-def tuning(comparisons: Comparisons, *, seed: int) -> tuple[ResultTable, ResultTable]:
+def tuning(comparisons: pd.DataFrame, *, seed: int) -> tuple[ResultTable, ResultTable]:
     """Choices and preferred value of each parameter.
 
     Parameters
@@ -78,27 +81,28 @@ def tuning(comparisons: Comparisons, *, seed: int) -> tuple[ResultTable, ResultT
     """
     rows: list[Row] = []
     liked: list[Row] = []
-    for code, parameter in enumerate(comparisons.parameter.levels):
-        part = comparisons[comparisons.parameter.codes == code]
-        values, at = np.unique(np.concatenate((part.first, part.second)), return_inverse=True)
-        first, second = np.split(at, 2)
-        rows += _choices(parameter, values, first, second, part)
+    for parameter in comparisons["parameter"].cat.categories:
+        part = chosen(comparisons, comparisons["parameter"] == parameter)
+        values, at = np.unique(part[["first", "second"]], return_inverse=True)
+        first, second = at.T
+        choice, who = part["chosen"].to_numpy(), codes(part["participant"])
+        rows += _choices(parameter, values, first, second, choice)
         row: Row = {
             "parameter": parameter,
-            "participants": len(part.participant),
+            "participants": part["participant"].nunique(),
             "comparisons": len(part),
         }
-        bias = position_bias(part.chosen, part.participant.codes)
+        bias = position_bias(choice, who)
         row |= {"first_share": bias.share_first, "first_p": bias.p}
         notes = []
         if bias.interval is not None:
             row |= {"first_low": bias.interval.low, "first_high": bias.interval.high}
         else:
-            notes.append(f"no interval of first chosen: {too_few(len(part.participant))}")
+            notes.append(f"no interval of first chosen: {too_few(row['participants'])}")
         if bias.interval is not None and bias.p is None:
             notes.append("no p: all participants chose the first as often")
         try:
-            found = preferred(values, first, second, part.chosen, part.participant.codes, seed=seed)
+            found = preferred(values, first, second, choice, who, seed=seed)
         except Unanswerable as reason:
             notes.insert(0, f"no preferred value: {reason}")
         else:
@@ -111,37 +115,23 @@ def tuning(comparisons: Comparisons, *, seed: int) -> tuple[ResultTable, ResultT
     return CHOICES.fill(rows), PREFERRED.fill(liked)
 
 
-def choices_of_participants(comparisons: Comparisons) -> ResultTable:
+def choices_of_participants(comparisons: pd.DataFrame) -> ResultTable:
     """Choices of each participant, a row a parameter, participant and value."""
-    rows: list[Row] = []
-    for code, parameter in enumerate(comparisons.parameter.levels):
-        part = comparisons[comparisons.parameter.codes == code]
-        won = np.where(part.chosen == 0, part.first, part.second)
-        for who, participant in enumerate(part.participant.levels):
-            own = part.participant.codes == who
-            for value in np.unique(np.concatenate((part.first, part.second))).tolist():
-                shown = int(((part.first == value) | (part.second == value))[own].sum())
-                chosen = int((won == value)[own].sum())
-                if shown:
-                    rows.append(
-                        {
-                            "parameter": parameter,
-                            "participant": participant,
-                            "value": value,
-                            "presented": shown,
-                            "chosen": chosen,
-                            "share": chosen / shown,
-                        }
-                    )
-    return CHOICES_OWN.fill(rows)
+    won = comparisons["first"].where(comparisons["chosen"] == 0, comparisons["second"])
+    shown = [comparisons.assign(value=comparisons[name]) for name in ("first", "second")]
+    whose = ["parameter", "participant", "value"]
+    each = pd.concat(shown).assign(chosen=lambda shown: shown["value"] == won[shown.index])
+    rows = each.groupby(whose, observed=True)["chosen"].agg(["size", "sum"]).reset_index()
+    rows = rows.rename(columns={"size": "presented", "sum": "chosen"})
+    return CHOICES_OWN.fill(rows.assign(share=rows["chosen"] / rows["presented"]))
 
 
 def _choices(
-    parameter: str, values: np.ndarray, first: np.ndarray, second: np.ndarray, part: Comparisons
+    parameter: str, values: NDArray, first: NDArray, second: NDArray, choice: NDArray
 ) -> list[Row]:
     """One row a value."""
-    won = np.where(part.chosen == 0, first, second)
-    lost = np.where(part.chosen == 0, second, first)
+    won = np.where(choice == 0, first, second)
+    lost = np.where(choice == 0, second, first)
     wins = np.zeros((values.size, values.size), np.int64)
     np.add.at(wins, (won, lost), 1)
     try:
@@ -152,7 +142,7 @@ def _choices(
         ]
     except Unanswerable as reason:
         strengths = [{"note": f"no strength: {reason}"}] * values.size
-    chosen, presented = wins.sum(axis=1), wins.sum(axis=1) + wins.sum(axis=0)
+    often, presented = wins.sum(axis=1), wins.sum(axis=1) + wins.sum(axis=0)
     return [
         {
             "parameter": parameter,
@@ -163,6 +153,6 @@ def _choices(
         }
         | strength
         for value, shown, times, strength in zip(
-            values.tolist(), presented.tolist(), chosen.tolist(), strengths, strict=True
+            values.tolist(), presented.tolist(), often.tolist(), strengths, strict=True
         )
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from vbraille.analysis.input.trials import count
 from vbraille.analysis.schemas import NOTE, Kind, to_print
 
 if TYPE_CHECKING:
@@ -31,26 +32,26 @@ def in_report(table: ResultTable) -> ResultTable:
     Of a confusion matrix rare answers are gathered.
     """
     table = table.gathered()
-    if not table.rows or table.columns[-1].name != NOTE or any(row[-1] for row in table.rows):
+    if not len(table) or table.columns[-1].name != NOTE or table.frame[NOTE].any():
         return table
-    kept = tuple(row[:-1] for row in table.rows)
-    return replace(table, columns=table.columns[:-1], rows=kept)
+    schema = replace(table.schema, columns=table.columns[:-1])
+    return replace(table, schema=schema, frame=table.frame.drop(columns=NOTE))
 
 
 def rows(table: ResultTable) -> Sequence[tuple[Value, ...]]:
     """Rows that are shown."""
-    return table.rows[:ROWS]
+    return replace(table, frame=table.frame.head(ROWS)).rows
 
 
 def caption(table: ResultTable) -> str:
     """Title of a table, and how many rows it has."""
-    return f"{table.title}: {_count(table)}"
+    return f"{table.title}: {_how_many(table)}"
 
 
 def numbers(table: ResultTable) -> str:
     """Where all of a table is, before the name of its file."""
-    if len(table.rows) > ROWS:
-        return f"Shown are {_count(table)}. All rows, in full precision:"
+    if len(table) > ROWS:
+        return f"Shown are {_how_many(table)}. All rows, in full precision:"
     return "In full precision:"
 
 
@@ -93,10 +94,10 @@ def figure_name(figure: ReportFigure, kind: str) -> str:
 
 
 def _tell_apart(table: ResultTable, columns: int) -> bool:
-    return len({row[:columns] for row in table.rows}) == len(table.rows)
+    return not table.frame.iloc[:, :columns].duplicated().any()
 
 
-def _count(table: ResultTable) -> str:
-    if len(table.rows) > ROWS:
-        return f"the first {ROWS} of {len(table.rows)} rows"
-    return "1 row" if len(table.rows) == 1 else f"{len(table.rows)} rows"
+def _how_many(table: ResultTable) -> str:
+    if len(table) > ROWS:
+        return f"the first {ROWS} of {len(table)} rows"
+    return count(len(table), "row")

@@ -76,7 +76,7 @@ def to_html(results: Results, drawings: Mapping[str, bytes], beside: Sequence[st
     beside
         Names of other files in the report's directory, which the page links to.
     """
-    titles = {table.name: table.title for table in results.tables()}
+    titles = {table.name: table.title for table in results.result_tables()}
     main = _e("main", id="results", tabindex="-1")
     main.extend(_findings(results, titles, drawings))
     main.extend(_about(results))
@@ -171,9 +171,9 @@ def _chapter(
 def _table(table: ResultTable) -> Iterator[Element]:
     table = shown.in_report(table)
     yield _e("h3", table.title, id=f"table-{table.name}")
-    for text in filter(None, (table.about, shown.marking(table))):
+    for text in filter(None, (table.schema.about, shown.marking(table))):
         yield _e("p", text)
-    if table.rows:
+    if len(table):
         heads = shown.heads(table)
         names = _e("tr")
         for column in table.columns:

@@ -29,7 +29,7 @@ def to_json(results: Results) -> Iterator[str]:
         },
     }
     yield f'{_ENCODE(head)[:-1]},\n"tables": {{'
-    for number, table in enumerate(results.tables()):
+    for number, table in enumerate(results.result_tables()):
         yield f"{',' * bool(number)}\n{_ENCODE(table.name)}: "
         yield _ENCODE(_table(table))
     yield "}}\n"
@@ -38,7 +38,7 @@ def to_json(results: Results) -> Iterator[str]:
 def _table(table: ResultTable) -> dict[str, Any]:
     return {
         "title": table.title,
-        "about": table.about,
+        "about": table.schema.about,
         "columns": {column.name: column.meaning for column in table.columns},
         "notes": table.notes,
         "rows": table.records(),

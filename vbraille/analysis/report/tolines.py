@@ -39,8 +39,8 @@ def to_lines(results: Results) -> Iterator[str]:
 
 
 def _rows(table: ResultTable) -> Iterator[str]:
-    if len(table.rows) > ROWS:
-        yield f"{len(table.rows)} rows; {setting('out')} writes them"
+    if len(table) > ROWS:
+        yield f"{len(table)} rows; {setting('out')} writes them"
         return
     for row in table.rows:
         said = (

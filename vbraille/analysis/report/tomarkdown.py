@@ -29,7 +29,7 @@ def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
     beside
         Names of other files in the report's directory.
     """
-    titles = {table.name: table.title for table in results.tables()}
+    titles = {table.name: table.title for table in results.result_tables()}
     parts = [f"# {escape(results.title)}"]
     if results.warnings:
         parts += [f"## {shown.WARNINGS}", _items(map(escape, results.warnings))]
@@ -64,9 +64,9 @@ def escape(text: str) -> str:
 def _table(table: ResultTable) -> Iterator[str]:
     table = shown.in_report(table)
     yield f"### {escape(table.title)}"
-    yield escape(table.about)
+    yield escape(table.schema.about)
     yield escape(shown.marking(table))
-    if table.rows:
+    if len(table):
         sides = ["---" if column.kind is Kind.TEXT else "---:" for column in table.columns]
         lines = [[escape(column.heading) for column in table.columns], sides]
         lines += [_row(table, row) for row in shown.rows(table)]
