@@ -1,9 +1,10 @@
 """Characters that a table does not know: marked, named, numbered or dropped, in six dots."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.tiers import examples
 from tests.translate.test_liblouis import sample_of_unicode
 from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
 from vbraille.translate.scripts import script_of
@@ -70,7 +71,7 @@ class TestSpelling:
         assert list(likenesses("\u201c")) == ['"']
         assert list(likenesses("a")) == []
 
-    @settings(max_examples=60)
+    @examples(60)
     @given(st.text(st.sampled_from("abc \U0001f600\u0434\u4e2d\x01,"), min_size=1, max_size=20))
     def test_maps_hold_in_every_manner(self, text):
         for how in Undefined:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render import kernels, work
+from vbraille.render import work
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -26,7 +26,8 @@ class Program:
     """What a picture compiles to. Nothing of it changes once made.
 
     Whoever shows it needs not know what it is of: it is a kind and plain arrays, which go through
-    memory and files as they are.
+    memory and files as they are. The kernels, and numba with them, are loaded when frames are asked
+    for: a program that leaves those to a host is half a second sooner at work.
 
     Parameters
     ----------
@@ -86,6 +87,8 @@ class Program:
 
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
         """Which part belongs under an array whose centre is at y, after another one or none."""
+        from vbraille.render import kernels
+
         return kernels.part_of(self.numbers, y_mm, before)
 
     def frame(
@@ -119,6 +122,8 @@ class Program:
         ValueError
             If ``out`` has not the shape of the array.
         """
+        from vbraille.render import kernels
+
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         kernels.frame(self.numbers, self.table, self._scratch, part, at, out)
@@ -145,6 +150,8 @@ class Program:
         ValueError
             If ``out`` has not that shape, or the picture is no line.
         """
+        from vbraille.render import kernels
+
         if self.kind is not ProgramKind.LINE:
             raise ValueError(f"a {self.kind.name.lower()} has no frames along a line")
         x_mm = np.ascontiguousarray(x_mm, np.float64)
@@ -175,6 +182,8 @@ class Program:
             The part that belongs under the array, and deflections, 0 … 1. Nothing fades where one
             part follows another: that is the engine's, which knows how much time goes by.
         """
+        from vbraille.render import kernels
+
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
         parts = np.zeros(x_mm.size, np.int64)

@@ -12,10 +12,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
+from tests.tiers import examples
 from tests.translate.model import Piece, pieces_of
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate import Document, Paragraph
@@ -294,7 +295,7 @@ class TestSource:
         for encoding in ("utf-8-sig", "utf-16", "utf-32"):
             assert pieces(document("one".encode(encoding))) == [Piece("one", [0, 1, 2], False)]
 
-    @settings(max_examples=120)
+    @examples(120)
     @given(st.binary(min_size=1, max_size=120), st.booleans())
     def test_any_bytes_are_a_text_or_refused(self, raw, keep_lines):
         try:
