@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.tiers import examples
+from tests.tiers import examples, heavy
 from tests.translate.test_liblouis import sample_of_unicode
 from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
 from vbraille.translate.scripts import script_of
@@ -53,7 +53,10 @@ class TestSpelling:
             assert translate(BrailleTable("bh.tbl", how), "\U0001f600").to_brf() == "==="
 
     @pytest.mark.parametrize("how", Undefined)
-    @pytest.mark.parametrize("name", SIX_DOT_TABLES)
+    @pytest.mark.parametrize(
+        "name",
+        [SIX_DOT_TABLES[0], *(pytest.param(name, marks=heavy) for name in SIX_DOT_TABLES[1:])],
+    )
     def test_six_dots_are_enough_for_every_kind_of_character(self, name, how):
         table = BrailleTable(name, how)
         for c in sample_of_unicode():

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
-from tests.tiers import examples
+from tests.tiers import examples, heavy
 from tests.translate.model import Piece, pieces_of
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate import Document, Paragraph
@@ -163,8 +163,15 @@ class TestBlocks:
             np.concatenate([p.source for p in plain]) + shift,
         )
 
-    @pytest.mark.parametrize("keep_lines", [False, True])
-    @pytest.mark.parametrize("blank", ["\n", " ", "\r\n", " \t\n", "\f", "\ufeff", "\xad"])
+    @pytest.mark.parametrize(
+        ("blank", "keep_lines"),
+        [
+            *((blank, False) for blank in ("\n", " ", "\r\n", " \t\n", "\f", "\ufeff", "\xad")),
+            *((blank, True) for blank in ("\n", "\ufeff", "\xad")),
+            # Kept lines of these take as long as that of "\n", which ends lines as they do.
+            *(pytest.param(blank, True, marks=heavy) for blank in (" ", "\r\n", " \t\n", "\f")),
+        ],
+    )
     def test_long_stretches_of_nothing(self, blank, keep_lines):
         nothing = blank * (2 * BLOCK_BYTES // len(blank.encode()) + 1)
         text = f"\n{nothing}  one{nothing}  two  {nothing}"
