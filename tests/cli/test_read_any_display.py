@@ -92,10 +92,10 @@ def test_a_text_is_read_on_eight_rows_of_eight(tmp_path):
         (2, ("--mapping", "paired"), "the array has 2 rows of actuators; --dot-row chooses dots"),
     ],
 )
-def test_what_a_display_cannot_show_is_one_sentence(tmp_path, rows, options, sentence):
+def test_what_a_display_cannot_show_is_one_sentence(call, tmp_path, rows, options, sentence):
     (tmp_path / "text.txt").write_text("no\n")
     with device_of(array_of(rows, 8, 1.2, 1.6125)) as (spec, _):
-        done = program.run("read", tmp_path / "text.txt", "--device", spec, *options)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert sentence in done.stderr
-    assert len(done.stderr.splitlines()) == 1
+        done = call("read", tmp_path / "text.txt", "--device", spec, *options)
+    assert (done.code, done.out) == (2, "")
+    assert sentence in done.err
+    assert len(done.err.splitlines()) == 1

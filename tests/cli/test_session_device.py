@@ -108,7 +108,7 @@ def test_a_carriage_too_short_for_the_strings_is_said_before_anything_is_begun(t
 
 
 def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_path, mini):
-    options = ("--model", "vbd", "--hand", "sweep:60", "--travel", "60")
+    options = ("--model", "vbd", "--hand", "sweep:100", "--travel", "60")
     with simulated(tmp_path, *options) as (spec, device):
         arguments = session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
         process = program.start(*arguments, text=True)
@@ -164,7 +164,7 @@ def test_a_host_that_dies_is_started_again_and_its_trial_repeated(tmp_path, mini
 
 def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
     mini.write_text(mini.read_text().replace('["a", "0"]', '["a", "c", "4", "0"]'))
-    options = ("--answers", "simulated:0.3", "--hand", "sweep:80")
+    options = ("--answers", "simulated:0.3", "--hand", "sweep:160")
     for name, more in (("real", ()), ("fast", ("--fast",))):
         done = program.run(*session(mini, tmp_path / name, *options, *more))
         assert done.returncode == 0, done.stderr

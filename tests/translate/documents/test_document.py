@@ -173,7 +173,9 @@ class TestBlocks:
         ],
     )
     def test_long_stretches_of_nothing(self, blank, keep_lines):
-        nothing = blank * (2 * BLOCK_BYTES // len(blank.encode()) + 1)
+        # Each kept line is compared, which takes long: a block of them, in place of two.
+        size = BLOCK_BYTES if keep_lines else 2 * BLOCK_BYTES
+        nothing = blank * (size // len(blank.encode()) + 1)
         text = f"\n{nothing}  one{nothing}  two  {nothing}"
         found = pieces(document(text.encode(), keep_lines=keep_lines))
         assert found == pieces_of(text, keep_lines=keep_lines)
