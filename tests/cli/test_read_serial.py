@@ -128,7 +128,6 @@ def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text)
         assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
         for options, sentence in (
             (("--travel", "300"), "goes 60 mm and --travel asks for 300 mm; leave --travel out"),
-            (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
             (("--rate", "2000"), "choose --rate 1000 or less"),
         ):
             done = call("read", text, "--device", spec, *options)

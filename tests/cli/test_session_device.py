@@ -14,6 +14,7 @@ from tests.cli import program
 from tests.cli.program import Terminal
 from tests.cli.test_read_serial import simulated
 from tests.sessions.sittings import MINI
+from tests.tiers import heavy
 from vbraille.sessions.record import export
 from vbraille.sessions.record.check import check
 from vbraille.sessions.record.folder import load
@@ -128,7 +129,7 @@ def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_pa
     assert whole(tmp_path / "s")
 
 
-@pytest.mark.parametrize("repeats", [True, False])
+@pytest.mark.parametrize("repeats", [True, pytest.param(False, marks=heavy)])
 def test_a_trial_in_which_the_array_rested_is_marked(tmp_path, mini, repeats):
     mini.write_text(mini.read_text() + f"[faults]\nrepeat = {str(repeats).lower()}\n")
     # It takes no frames and says nothing for 80 ms of each second: too short to be silence.
