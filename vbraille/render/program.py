@@ -26,8 +26,7 @@ class Program:
     """What a picture compiles to. Nothing of it changes once made.
 
     Whoever shows it needs not know what it is of: it is a kind and plain arrays, which go through
-    memory and files as they are. The kernels, and numba with them, are loaded when frames are asked
-    for: a program that leaves those to a host is half a second sooner at work.
+    memory and files as they are.
 
     Parameters
     ----------
@@ -87,6 +86,7 @@ class Program:
 
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
         """Which part belongs under an array whose centre is at y, after another one or none."""
+        # Kernels, and numba with them, are loaded by who makes frames, not by who has a host do it.
         from vbraille.render import kernels
 
         return kernels.part_of(self.numbers, y_mm, before)
