@@ -12,26 +12,42 @@ NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: read test lint tests bench format setup clean sound
+.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound
 
 read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
 	  --lines 1-5 --echo both </dev/null
 
-# The checks of the text beside the tests: those wait for processes some of the time.
+# Everything that a change can break. Some tests wait for processes and for hands that move in real
+# time: hence more workers than processors, and the checks of the text beside them.
+WORKERS := $(shell expr $$(nproc) + 1)
+PYTEST  := $(BIN)/pytest -n $(WORKERS) --dist worksteal
+
 test: .venv/tests
 	@$(MAKE) --no-print-directory -j2 lint tests
+
+tests: .venv/tests .venv/compiled
+	$(PYTEST)
+
+# What is heavier than a change's every trial should be: more of each law, coverage by branch, and
+# the kernels as plain Python.
+test-all: .venv/tests
+	@$(MAKE) --no-print-directory -j2 lint all-tests
+
+all-tests: .venv/tests .venv/compiled
+	TESTS=all $(PYTEST) --cov --cov-branch --cov-report=term
+	TESTS=all NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/wire/test_packing.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
+
+# Hours: hundreds of killed sessions, laws and fuzzing fifty times as long, runs of ten minutes.
+soak: .venv/tests .venv/compiled
+	TESTS=soak $(PYTEST) --durations=20
+	$(BIN)/python -m tests.benchmarks tick faults jumps sessions
 
 lint: .venv/tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --warnings
-
-tests: .venv/tests .venv/compiled
-	$(BIN)/pytest -n 2 --dist worksteal --cov --cov-branch --cov-report=term
-	@# The kernels once more, as plain Python.
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/render tests/devices/wire/test_packing.py tests/devices/wire/test_wirekernels.py tests/devices/serial/test_steady.py
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \

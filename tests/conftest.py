@@ -6,15 +6,24 @@ import numpy as np
 import pytest
 from hypothesis import is_hypothesis_test, settings
 
+from tests.tiers import TIER, by_tier
+
 SEED = 20090618
 TEXTS = Path(__file__).parent.parent / "texts"
 
-settings.register_profile("vbraille", derandomize=True, deadline=None, database=None)
+EXAMPLES = by_tier(30, 100, 5000)  # of a law that does not say how many it needs
+
+settings.register_profile(
+    "vbraille", derandomize=True, deadline=None, database=None, max_examples=EXAMPLES
+)
 settings.load_profile("vbraille")
 
 
 def pytest_report_header() -> str:
-    return f"seed of the tests: {SEED}; hypothesis derives its own from each test"
+    return (
+        f"tier of the tests: {TIER.name.lower()}; "
+        f"seed: {SEED}; hypothesis derives its own from each test"
+    )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

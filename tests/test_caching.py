@@ -11,6 +11,7 @@ import h5py
 import pytest
 
 import vbraille
+from tests.tiers import heavy
 
 # Nobody can make anything here, not even root.
 NOWHERE = "/proc/none"
@@ -48,6 +49,7 @@ def run(sealed, temporary, *arguments):
     )
 
 
+@heavy  # kernels are compiled anew
 def test_without_a_home_kernels_are_kept_in_a_private_temporary_folder(sealed, tmp_path):
     (tmp_path / "text.txt").write_text("one two three\n")
     done = run(sealed, tmp_path, *VBRAILLE, "render", "text.txt", "--out", "frames.h5")

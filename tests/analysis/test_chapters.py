@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session
+from tests.tiers import heavy
 from vbraille.analysis import analyse, analyse_scores
 from vbraille.analysis.chapters import Options, analyse_study, compare_scores
 from vbraille.analysis.input.study import load_scores, load_study
@@ -293,6 +294,7 @@ def test_options_check_themselves():
         replace(Options(), correction="bonferoni")
 
 
+@heavy  # all of two reports; that tables and figures are the same again is tested of each
 @pytest.mark.no_cover
 def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
     """Here, and in a process whose sets have another order, with the sessions given in another."""

@@ -1,4 +1,4 @@
-"""Thousands of arbitrary files and options: every run ends with a code of its own."""
+"""Arbitrary files and options, by the tier: every run ends with a code of its own."""
 
 import encodings.aliases
 import re
@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from tests.conftest import SEED
+from tests.tiers import by_tier
 from vbraille.translate import list_tables
 
 # Coverage would double their time, and others cover what these do.
 pytestmark = pytest.mark.no_cover
 
-PARTS = range(4)
+PARTS = range(by_tier(1, 4, 200))
 PATIENCE_S = 10.0
 CONTROLS = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f]")
 MARKS = [b"\xff\xfe", b"\xfe\xff", b"\xef\xbb\xbf", b"\xff\xfe\0\0", b"\0\0\xfe\xff"]
@@ -186,10 +187,9 @@ def test_any_bytes_as_a_recorded_hand(call, tmp_path, text, rng):
 
 
 def test_every_table_writes_any_text(call, text, rng):
-    """A quarter of the tables each; what a table does not know it spells."""
+    """Some of the tables each; what a table does not know it spells."""
     text.write_text(characters(rng, 30), "utf-8", "surrogatepass")
-    tables = list_tables()
-    for table in tables[rng.integers(len(PARTS)) :: 8 * len(PARTS)]:
+    for table in list_tables()[rng.integers(32) :: 32]:
         said = check(call, "page", text, "--table", table.name)
         assert said.code == 0
         assert said.out.strip("\n")

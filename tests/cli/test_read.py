@@ -6,6 +6,7 @@ import signal
 import pytest
 
 from tests.cli import program
+from tests.tiers import heavy
 from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS, Context
 from vbraille.reading.commands import commands_of
@@ -50,9 +51,9 @@ def test_without_a_terminal_it_runs_through_and_says_each_line(text):
     ("echo", "labels"),
     [
         ("none", ()),
-        ("text", ("line", "text")),
+        pytest.param("text", ("line", "text"), marks=heavy),
         ("cells", ("line", "cells")),
-        ("both", ("line", "cells", "text")),
+        pytest.param("both", ("line", "cells", "text"), marks=heavy),
     ],
 )
 def test_echo(call, text, echo, labels):
@@ -91,9 +92,10 @@ def test_a_hand_that_is_at_the_end_between_two_ticks_goes_on(call, text):
 
 
 def test_nothing_in_a_text_moves_the_cursor(call, text):
-    text.write_bytes(b"red \x1b[31m\n")
-    said = call("read", text, *FAST)
-    assert "text: red <escape>[31m\n" in said.out
+    text.write_bytes(b"\x1b[31m\n")
+    said = call("read", text, *FAST, "--travel", "18", "--lines", "1")
+    assert said.err.startswith("line width: 1 cell, table en-ueb-g2.ctb\n")
+    assert "text: <escape>" in said.out
     assert "\x1b" not in said.out
 
 
@@ -203,11 +205,6 @@ def test_standard_input_is_read_without_a_terminal_too(text):
         done = program.run(command, "-")
         assert (done.returncode, done.stdout) == (2, "")
         assert done.stderr == "vbraille: standard input is empty; give a text file\n"
-
-
-def test_a_line_of_one_cell_is_said_in_the_singular(call, text):
-    done = call("read", text, *FAST, "--travel", "18", "--lines", "1")
-    assert done.err == "line width: 1 cell, table en-ueb-g2.ctb\n"
 
 
 def test_help_says_the_keys_and_how_a_slow_hand_is_called():

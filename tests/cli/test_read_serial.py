@@ -6,21 +6,11 @@ import signal
 from contextlib import contextmanager
 from pathlib import Path
 
-import pytest
-
 from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
+from tests.tiers import heavy
 from vbraille import __version__
-
-TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
-
-
-@pytest.fixture
-def text(tmp_path):
-    path = tmp_path / "text.txt"
-    path.write_text(TEXT)
-    return path
 
 
 @contextmanager
@@ -47,8 +37,8 @@ def host_of(terminal):
     return int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
 
 
-def test_a_text_is_read_to_its_end(tmp_path, text):
-    with simulated(tmp_path) as (spec, device):
+def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path, text):
+    with simulated(tmp_path, "--encoder", "index") as (spec, device):
         done = program.run("read", text, "--device", spec, "--lines", "1-2")
         assert done.returncode == 0, done.stderr
         assert lines(done.stdout) == ["line: 1", "line: 2"]
@@ -60,54 +50,41 @@ def test_a_text_is_read_to_its_end(tmp_path, text):
     assert "Traceback" not in done.stderr
 
 
-def test_an_unplugged_device_is_read_on_in_place_when_it_is_back(tmp_path, text):
+def test_an_unplugged_device_is_read_on_in_place_when_it_is_back(call, tmp_path, text):
     with simulated(tmp_path, "--unplug-every", "1s") as (spec, device):
-        done = program.run("read", text, "--device", spec)
-        assert done.returncode == 0, done.stderr
-        assert lines(done.stdout) == ["line: 1", "line: 2", "line: 3"]
+        done = call("read", text, "--device", spec)
+        assert done.code == 0, done.err
+        assert lines(done.out) == ["line: 1", "line: 2", "line: 3"]
         device.send_signal(signal.SIGTERM)
         told = device.communicate()[0]
     assert "plugged in again" in told
-    assert "device: unplugged; plug it in again and reading goes on" in done.stdout
-    assert "device: back" in done.stdout
-    assert "Traceback" not in done.stderr
+    assert "device: unplugged; plug it in again and reading goes on" in done.out
+    assert "device: back" in done.out
+    assert "Traceback" not in done.err
 
 
-def test_what_was_lost_on_the_line_is_said_at_the_end(tmp_path, text):
+def test_what_was_lost_on_the_line_is_said_at_the_end(call, tmp_path, text):
     with simulated(tmp_path, "--drop", "0.05", "--corrupt", "0.05") as (spec, _):
-        done = program.run("read", text, "--device", spec, "--lines", "1")
-    assert done.returncode == 0, done.stderr
-    said = done.stdout.splitlines()
+        done = call("read", text, "--device", spec, "--lines", "1")
+    assert done.code == 0, done.err
+    said = done.out.splitlines()
     assert said[-1].startswith("summary: lines 1,")
     assert re.fullmatch(r"device: (frames not sent \d+, )?states missed \d+, .*bad .*", said[-2])
 
 
-def test_a_device_is_shown_its_left_stop_by_a_key(tmp_path, text):
-    with (
-        simulated(tmp_path, "--encoder", "incremental") as (spec, _),
-        Terminal("read", text, "--device", spec, "--echo", "text") as terminal,
-    ):
-        terminal.until("place: move left to the stop, then press a key")
-        terminal.type("x")
-        terminal.until("place: known")
-        terminal.until("line: 2")
-        terminal.type("q")
-        assert terminal.end() == 0
-
-
-def test_a_device_that_has_passed_its_mark_is_read_on(tmp_path, text):
-    with simulated(tmp_path, "--encoder", "index") as (spec, _):
-        done = program.run("read", text, "--device", spec, "--lines", "1-2")
-    assert done.returncode == 0
-    assert lines(done.stdout) == ["line: 1", "line: 2"]
-
-
-def test_without_a_terminal_nobody_can_show_the_left_stop(tmp_path, text):
+def test_a_device_is_shown_its_left_stop_by_a_key_of_a_terminal(call, tmp_path, text):
     with simulated(tmp_path, "--encoder", "incremental") as (spec, _):
-        done = program.run("read", text, "--device", spec)
-    assert done.returncode == 2
-    assert "left stop" in done.stderr
-    assert "read at a terminal" in done.stderr
+        done = call("read", text, "--device", spec)
+        assert done.code == 2
+        assert "left stop" in done.err
+        assert "read at a terminal" in done.err
+        with Terminal("read", text, "--device", spec, "--echo", "text") as terminal:
+            terminal.until("place: move left to the stop, then press a key")
+            terminal.type("x")
+            terminal.until("place: known")
+            terminal.until("line: 2")
+            terminal.type("q")
+            assert terminal.end() == 0
 
 
 def test_a_host_that_dies_is_said_and_begun_again_when_asked(text):
@@ -139,47 +116,40 @@ def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     )
 
 
-def test_the_page_is_laid_out_for_the_travel_that_there_is(tmp_path, text):
+def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text):
     with simulated(tmp_path, "--travel", "60") as (spec, _):
-        done = program.run("read", text, "--device", spec)
-        assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 4 cells, table en-ueb-g2.ctb\n"
-        said = [line for line in done.stdout.splitlines() if line.startswith("text: ")]
+        done = call("read", text, "--device", spec)
+        assert done.code == 0, done.err
+        assert done.err == "line width: 4 cells, table en-ueb-g2.ctb\n"
+        said = [line for line in done.out.splitlines() if line.startswith("text: ")]
         assert " ".join(line.removeprefix("text: ") for line in said[:3]) == "one two three"
-        narrower = program.run("read", text, "--device", spec, "--travel", "50", "--lines", "1")
-        assert narrower.returncode == 0, narrower.stderr
-        assert narrower.stderr == "line width: 3 cells, table en-ueb-g2.ctb\n"
-
-
-def test_the_page_is_laid_out_for_the_actuators_that_there_are(tmp_path, text):
-    with simulated(tmp_path, "--model", "vbd") as (spec, _):
-        done = program.run("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
-        assert done.returncode == 0, done.stderr
-        assert done.stderr == "line width: 28 cells, table en-ueb-g2.ctb\n"
-        other = program.run("read", text, "--device", spec, "--mapping", "paired")
-        assert other.returncode == 2
-        assert other.stderr == (
-            "vbraille: the VBD has one row of actuators; --dot-row chooses dots\n"
-        )
-
-
-def test_a_device_that_does_not_fit_the_page(tmp_path, text):
-    with simulated(tmp_path, "--travel", "200") as (spec, _):
+        narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
+        assert narrower.code == 0, narrower.err
+        assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
         for options, sentence in (
-            (("--travel", "300"), "goes 200 mm and --travel asks for 300 mm; leave --travel out"),
-            (("--model", "vbd"), "6 × 10 actuators and the page is for 1 × 12"),
+            (("--travel", "300"), "goes 60 mm and --travel asks for 300 mm; leave --travel out"),
             (("--rate", "2000"), "choose --rate 1000 or less"),
         ):
-            done = program.run("read", text, "--device", spec, *options)
-            assert done.returncode == 2
-            assert sentence in done.stderr
-            assert len(done.stderr.splitlines()) == 1
+            done = call("read", text, "--device", spec, *options)
+            assert done.code == 2
+            assert sentence in done.err
+            assert len(done.err.splitlines()) == 1
 
 
-def test_a_port_that_is_not_there(text):
-    done = program.run("read", text, "--device", "serial:/dev/nothing")
-    assert done.returncode == 2
-    assert "there is no port /dev/nothing" in done.stderr
+def test_the_page_is_laid_out_for_the_actuators_that_there_are(call, tmp_path, text):
+    with simulated(tmp_path, "--model", "vbd") as (spec, _):
+        done = call("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
+        assert done.code == 0, done.err
+        assert done.err == "line width: 28 cells, table en-ueb-g2.ctb\n"
+        other = call("read", text, "--device", spec, "--mapping", "paired")
+        assert other.code == 2
+        assert other.err == "vbraille: the VBD has one row of actuators; --dot-row chooses dots\n"
+
+
+def test_a_port_that_is_not_there(call, text):
+    done = call("read", text, "--device", "serial:/dev/nothing")
+    assert done.code == 2
+    assert "there is no port /dev/nothing" in done.err
 
 
 # Its carriage goes no further than 60 mm, whatever it says; its hand tries four times.
@@ -248,11 +218,11 @@ def test_a_device_that_takes_nothing_is_not_read_on(tmp_path, text):
     ]
 
 
-def test_device_info_and_check(tmp_path):
+def test_device_info_and_check(call, tmp_path):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
-        told = program.run("device", "info", spec)
-        assert told.returncode == 0
-        assert told.stdout.splitlines() == [
+        told = call("device", "info", spec)
+        assert told.code == 0
+        assert told.out.splitlines() == [
             "name: simulated VBD",
             "actuators: 1 row of 12",
             "pitch: 0.7 mm along the line, 0.7 mm across",
@@ -266,8 +236,7 @@ def test_device_info_and_check(tmp_path):
             "disabled actuators: none",
             "inverted actuators: none",
         ]
-        other = program.run("device", "info", spec, "--model", "stress2")
-        assert other.returncode == 2
+        assert call("device", "info", spec, "--model", "stress2").code == 2
         checked = program.run("device", "check", spec)
     said = checked.stdout.splitlines()
     swung = [line for line in said if line.startswith("actuator: ")]
@@ -286,6 +255,7 @@ def test_device_info_and_check(tmp_path):
     assert checked.returncode == (0 if said[-1] == "verdict: fit to be read on" else 1)
 
 
+@heavy  # verdicts are tested on a clock of their own; here all of a check goes by in real time
 def test_a_device_without_a_watchdog_is_not_fit_to_be_read_on(tmp_path):
     with simulated(tmp_path, "--model", "vbd", "--defect", "no-watchdog") as (spec, _):
         checked = program.run("device", "check", spec)
@@ -295,11 +265,11 @@ def test_a_device_without_a_watchdog_is_not_fit_to_be_read_on(tmp_path):
     assert (checked.returncode, checked.stderr) == (1, "")
 
 
-def test_device_list_and_a_simulated_device_without_a_model():
-    listed = program.run("device", "list")
-    assert listed.returncode == 0
-    assert all(line.startswith("port: ") for line in listed.stdout.splitlines())
-    assert listed.stdout
-    done = program.run("device", "info", "sim")
-    assert done.returncode == 2
-    assert "--model" in done.stderr
+def test_device_list_and_a_simulated_device_without_a_model(call):
+    listed = call("device", "list")
+    assert listed.code == 0
+    assert all(line.startswith("port: ") for line in listed.out.splitlines())
+    assert listed.out
+    done = call("device", "info", "sim")
+    assert done.code == 2
+    assert "--model" in done.err

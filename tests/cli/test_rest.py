@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests import drivers
+from tests.tiers import heavy
 
 
 @pytest.fixture
@@ -32,9 +33,9 @@ def read(driver, texts: Path, log: Path, fault: str, *options: str):
     ("fault", "code", "said"),
     [
         ("", 0, []),
-        (str(int(signal.SIGINT)), 1, ["vbraille: stopped"]),
+        pytest.param(str(int(signal.SIGINT)), 1, ["vbraille: stopped"], marks=heavy),
         (str(int(signal.SIGTERM)), 1, ["vbraille: stopped"]),
-        (str(int(signal.SIGHUP)), 1, ["vbraille: stopped"]),
+        pytest.param(str(int(signal.SIGHUP)), 1, ["vbraille: stopped"], marks=heavy),
     ],
 )
 def test_an_end_and_a_signal(driver, texts, tmp_path, fault, code, said):

@@ -96,16 +96,16 @@ def test_a_seed_that_was_drawn_is_said_and_makes_the_plan_again(call):
     assert other.out != drawn.out
 
 
-def test_participants_have_hands_of_their_own(tmp_path):
+def test_participants_have_hands_of_their_own(call, tmp_path):
     (tmp_path / "mini.toml").write_text(MINI)
     places = []
     for name, who in (("a", "P01"), ("b", "P02"), ("c", "P01")):
         how = ("--seed", "1", "--answers", "simulated", "--hand", "fluent", "--fast")
-        run = program.run(
+        run = call(
             "session", "run", tmp_path / "mini.toml", "--participant", who, *how,
             "--out", tmp_path / name,
         )  # fmt: skip
-        assert run.returncode == 0, run.stderr
+        assert run.code == 0, run.err
         places.append(read_trace(tmp_path / name / "trace-001.gz").ticks["x_mm"])
     assert (places[0] == places[2]).all()
     assert not np.array_equal(places[0], places[1])

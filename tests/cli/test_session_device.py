@@ -14,6 +14,7 @@ from tests.cli import program
 from tests.cli.program import Terminal
 from tests.cli.test_read_serial import simulated
 from tests.sessions.sittings import MINI
+from tests.tiers import heavy
 from vbraille.sessions.record import export
 from vbraille.sessions.record.check import check
 from vbraille.sessions.record.folder import load
@@ -108,7 +109,7 @@ def test_a_carriage_too_short_for_the_strings_is_said_before_anything_is_begun(t
 
 
 def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_path, mini):
-    options = ("--model", "vbd", "--hand", "sweep:60", "--travel", "60")
+    options = ("--model", "vbd", "--hand", "sweep:100", "--travel", "60")
     with simulated(tmp_path, *options) as (spec, device):
         arguments = session(mini, tmp_path / "s", "--device", spec, "--answers", "simulated")
         process = program.start(*arguments, text=True)
@@ -128,7 +129,7 @@ def test_a_trial_in_which_the_device_was_unplugged_is_marked_and_repeated(tmp_pa
     assert whole(tmp_path / "s")
 
 
-@pytest.mark.parametrize("repeats", [True, False])
+@pytest.mark.parametrize("repeats", [True, pytest.param(False, marks=heavy)])
 def test_a_trial_in_which_the_array_rested_is_marked(tmp_path, mini, repeats):
     mini.write_text(mini.read_text() + f"[faults]\nrepeat = {str(repeats).lower()}\n")
     # It takes no frames and says nothing for 80 ms of each second: too short to be silence.
@@ -164,7 +165,7 @@ def test_a_host_that_dies_is_started_again_and_its_trial_repeated(tmp_path, mini
 
 def test_fast_and_in_real_time_the_answers_are_the_same(tmp_path, mini):
     mini.write_text(mini.read_text().replace('["a", "0"]', '["a", "c", "4", "0"]'))
-    options = ("--answers", "simulated:0.3", "--hand", "sweep:80")
+    options = ("--answers", "simulated:0.3", "--hand", "sweep:160")
     for name, more in (("real", ()), ("fast", ("--fast",))):
         done = program.run(*session(mini, tmp_path / name, *options, *more))
         assert done.returncode == 0, done.stderr

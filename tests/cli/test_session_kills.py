@@ -2,8 +2,9 @@
 
 from tests.benchmarks.killing import kill_often
 from tests.conftest import SEED
+from tests.tiers import by_tier
 
-KILLS = 20
+KILLS = by_tier(6, 20, 300)
 
 
 def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
@@ -12,6 +13,6 @@ def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
     assert (tally.lost, tally.skipped, tally.others) == ([], [], [])
     assert tally.kills == KILLS
     assert tally.starting
-    assert tally.torn
+    assert tally.torn or KILLS < 20
     assert tally.acknowledged >= KILLS
     assert tally.most_attempts > 1

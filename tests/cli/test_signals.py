@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from tests.cli import program
+from tests.tiers import TIER, Tier, by_tier
 
 # Sends the process SIGINT at the nth event of the interpreter (a call or a return) after `main`
 # was called: a Ctrl-C at a moment that is the same in every run.
@@ -45,7 +46,7 @@ def stopped_at(moment, *arguments):
 
 
 # Some of them are in imports, in liblouis, in what is printed; 400,000 is about the run's end.
-PAGE = [2, 5, 11, 30, 3_000, 30_000, *range(60_000, 420_000, 30_000)]
+PAGE = [2, 5, 11, 30, 3_000, 30_000, *range(60_000, 420_000, 30_000)][:: by_tier(3, 1, 1)]
 
 
 def test_ctrl_c_while_a_page_is_printed(text, rng):
@@ -60,7 +61,9 @@ def test_ctrl_c_while_a_page_is_printed(text, rng):
 
 
 # numba is imported up to event 800,000, loads its kernels up to 1,500,000, then HDF5 writes.
-RENDER = [200_000, 700_000, 800_000, 1_000_000, 1_200_000, 1_400_000, 1_500_000, 1_550_000]
+RENDER = [700_000, 1_400_000, 1_550_000]
+if TIER > Tier.TEST:
+    RENDER += [200_000, 800_000, 1_000_000, 1_200_000, 1_500_000]
 
 
 def test_ctrl_c_while_a_file_is_written(tmp_path, text, rng):

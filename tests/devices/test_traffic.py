@@ -7,6 +7,7 @@ import pytest
 
 from tests.devices.bench import DOWN_BYTES, HALF, REST, Bench, shown
 from tests.devices.serial.test_transitions import AFTER_THE_START, ROWS, watched
+from tests.tiers import by_tier
 from vbraille.devices.serial.transitions import Stage
 from vbraille.devices.wire.codec import Levels, encode, enframe
 from vbraille.devices.wire.messages import PLACED, RESTING, Error, Frame, Hello, State, Watchdog
@@ -111,7 +112,7 @@ class Traffic:
 @pytest.mark.no_cover
 def test_nothing_else_happens_in_random_traffic():
     seen = set()
-    for seed in range(40):
+    for seed in range(by_tier(25, 40, 4000)):
         traffic = Traffic(seed)
         for _ in range(150):
             before = traffic.device.conversation

@@ -3,16 +3,18 @@
 import pytest
 
 from tests.controllers import ControllerOf20261121
+from tests.tiers import by_tier
 from tests.wired import reading
 from vbraille.devices.serial.conversation import Conversation
 from vbraille.simulation.firmware import Controller
 
-BLOCK = 20
-BLOCKS = pytest.mark.parametrize("block", range(5))
+BLOCK = 15
+BLOCKS = pytest.mark.parametrize("block", range(by_tier(1, 7, 200)))
 
 
 def breaches(seeds, kind, *made):
-    return [(seed, breach) for seed in seeds for breach in reading(seed, kind, *made).breaches]
+    """What is against the law in readings with these troubles, as it is found."""
+    return ((seed, breach) for seed in seeds for breach in reading(seed, kind, *made).breaches)
 
 
 @BLOCKS
@@ -22,7 +24,7 @@ def breaches(seeds, kind, *made):
     [("host", Controller), ("host", ControllerOf20261121), ("line", Controller)],
 )
 def test_no_actuator_moves_faster_than_fade_slew_and_hand_ask_for(block, kind, controller):
-    assert breaches(range(block * BLOCK, (block + 1) * BLOCK), kind, controller) == []
+    assert list(breaches(range(block * BLOCK, (block + 1) * BLOCK), kind, controller)) == []
 
 
 @pytest.mark.no_cover
@@ -42,8 +44,7 @@ class Heedless(Conversation):
 
 @pytest.mark.no_cover
 def test_the_law_misses_a_host_that_does_not_mind_that_it_was_stopped():
-    found = breaches(range(40), "host", ControllerOf20261121, Heedless)
-    assert found
+    assert any(breaches(range(40), "host", ControllerOf20261121, Heedless))
 
 
 @pytest.mark.no_cover

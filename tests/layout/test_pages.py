@@ -8,11 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
 from tests.laid import cuts_inside, laid_out, rebuilt
+from tests.tiers import examples
 from vbraille.braille.geometry import PRESETS, STRESS2, VBD
 from vbraille.layout.pages import Layout, Line, locate, place_of
 from vbraille.layout.wrapping import wrap
@@ -102,7 +103,7 @@ class TestWrap:
         assert wrap(b"aa\0bb\0cc\0dd", 6, 2, 1) == [(0, 2, 2), (3, 8, 1), (9, 11, 1)]
         assert wrap(b"aa\0bb\0cc", 6, 0, 4) == [(0, 5, 0), (6, 8, 4)]
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(runs_of_cells | st.binary(max_size=60), st.integers(1, 14), st.data())
     def test_laws(self, breaks, width, data):
         indent = data.draw(st.integers(0, width - 1))
@@ -128,7 +129,7 @@ class TestWrap:
                 assert not breaks[stop:following].strip(b"\0")
                 assert following + len(word) - start > width - i
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(runs_of_cells, st.integers(1, 14), st.data())
     def test_as_its_twin(self, breaks, width, data):
         indent = data.draw(st.integers(0, width - 1))
@@ -230,7 +231,7 @@ cached_table = cache(BrailleTable)
 class TestText:
     """The lines' texts together are the text that was laid out."""
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(mixed_texts, st.sampled_from(MIXED_TABLES), st.integers(1, 40), st.booleans())
     def test_nothing_is_lost_or_doubled(self, text, table, width, keep_lines):
         layout = lay_out(text, cached_table(table), width, keep_lines=keep_lines)

@@ -1,5 +1,6 @@
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from vbraille.errors import InputError
 from vbraille.pictures import draw, mapping, profile, strain
 from vbraille.render import MAPPINGS, STRESS2, VBD, Tuning
 
+drawn = cache(draw.draw)  # for who only looks at it
 KINDS = pytest.mark.parametrize("table", TABLES, ids=lambda table: table.kind)
 PROFILE = TABLES[0]
 
@@ -31,7 +33,7 @@ def curves(axes):
 @pytest.mark.no_cover
 @KINDS
 def test_every_axis_is_labelled_with_its_unit(table):
-    figure = draw.draw(table)
+    figure = drawn(table)
     assert figure.get_suptitle() == table.title
     words = " ".join(texts(figure))
     assert "(mm)" in words
@@ -44,7 +46,7 @@ def test_every_axis_is_labelled_with_its_unit(table):
 @pytest.mark.no_cover
 @KINDS
 def test_pictures_are_grey(table):
-    figure = draw.draw(table)
+    figure = drawn(table)
     colours = [line.get_color() for axes in figure.axes for line in axes.get_lines()]
     for axes in figure.axes:
         for collection in axes.collections:
@@ -62,7 +64,7 @@ def test_profile_draws_a_panel_a_level():
 
 
 def test_mapping_draws_six_rows_a_method():
-    figure = draw.draw(TABLES[1])
+    figure = drawn(TABLES[1])
     panels = [axes for axes in figure.axes if axes.axison]
     assert [axes.get_title() for axes in panels] == list(MAPPINGS)
     for axes in panels:
@@ -79,7 +81,7 @@ def test_mapping_draws_one_method_too():
 
 
 def test_wave_draws_twelve_curves_and_the_array_at_four_positions():
-    *snapshots, wave = draw.draw(TABLES[2]).axes
+    *snapshots, wave = drawn(TABLES[2]).axes
     assert len(curves(wave)) == 12
     assert len(snapshots) == 4
     # the dot wanders from the right end of the array to the left one
@@ -90,7 +92,7 @@ def test_wave_draws_twelve_curves_and_the_array_at_four_positions():
 
 
 def test_strain_tells_the_two_neighbours_apart_by_line_style():
-    figure = draw.draw(TABLES[3])
+    figure = drawn(TABLES[3])
     upper, lower = figure.axes[:3], figure.axes[3:]
     titles = [axes.get_title() for axes in upper]
     assert titles == ["W = 0.5 mm < ε", "W = 1 mm > ε", "W = 2 mm > 2ε"]
@@ -105,7 +107,7 @@ def test_strain_of_a_dot_as_wide_as_the_pitch_is_named_so():
 
 def test_page_fills_each_actuator_up_to_its_deflection():
     table = TABLES[4]
-    close = draw.draw(table).axes[1]
+    close = drawn(table).axes[1]
     boxes, fills = close.collections[-2:]
     filled, whole = (
         np.array([np.ptp(path.vertices[:, 1]) for path in patches.get_paths()])
@@ -117,7 +119,7 @@ def test_page_fills_each_actuator_up_to_its_deflection():
 
 
 def test_page_draws_the_raised_dots_and_numbers_the_lines():
-    whole = draw.draw(TABLES[4]).axes[0]
+    whole = drawn(TABLES[4]).axes[0]
     rings, raised = whole.collections[:2]
     assert len(raised.get_paths()) == 4 + 1 + 2  # z, a, b
     assert len(rings.get_paths()) == 18 - 7
@@ -134,7 +136,7 @@ def test_pages_of_any_length_have_a_bounded_size(lines):
 @pytest.mark.no_cover
 @KINDS
 def test_svg_parses_and_its_text_stays_text(table, tmp_path):
-    draw.save(draw.draw(table), tmp_path / "a.SVG")
+    draw.save(drawn(table), tmp_path / "a.SVG")
     content = (tmp_path / "a.SVG").read_text("utf-8")
     assert ET.fromstring(content).tag == "{http://www.w3.org/2000/svg}svg"
     assert content.count(table.title) >= 2  # as text and as the file's title

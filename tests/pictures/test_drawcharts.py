@@ -5,6 +5,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -14,10 +15,12 @@ from matplotlib.text import Text
 from PIL import Image
 
 from tests.pictures.charts import CHARTS, bars, matrix, path, runs
+from tests.tiers import heavy
 from vbraille.pictures.charts import Bars, Paths, Runs, Series
 from vbraille.pictures.drawcharts import draw_chart
 from vbraille.pictures.figurefiles import to_bytes
 
+drawn = cache(draw_chart)  # for who only looks at it
 KINDS = pytest.mark.parametrize("chart", CHARTS, ids=lambda chart: type(chart).__name__)
 DIGESTS = """
 import hashlib
@@ -62,7 +65,7 @@ def overlaps(figure):
 @pytest.mark.no_cover
 @KINDS
 def test_charts_are_grey(chart):
-    red, green, blue = Image.open(io.BytesIO(to_bytes(draw_chart(chart), "png", 30))).split()[:3]
+    red, green, blue = Image.open(io.BytesIO(to_bytes(drawn(chart), "png", 30))).split()[:3]
     assert red.tobytes() == green.tobytes() == blue.tobytes()
     assert len(red.getcolors()) > 2
 
@@ -70,7 +73,7 @@ def test_charts_are_grey(chart):
 @pytest.mark.no_cover
 @KINDS
 def test_every_axis_is_labelled(chart):
-    figure = draw_chart(chart)
+    figure = drawn(chart)
     assert figure.get_suptitle() == chart.title
     assert figure.axes[-1].get_xlabel()
     assert all(axes.get_ylabel() or figure.get_supylabel() for axes in figure.axes)
@@ -229,6 +232,7 @@ def test_a_matrix_of_letters_is_legible():
     assert len(to_bytes(figure, "svg")) < 200_000
 
 
+@heavy  # as many texts as a matrix of letters, which is tested in every run
 def test_large_counts_have_room_in_their_cells():
     counts = tuple((15_387,) * 26 for _ in range(26))
     (axes,) = draw_chart(matrix(counts, tuple(range(26)))).axes
@@ -295,7 +299,7 @@ def test_a_pdf_has_no_date_and_is_the_same_again(chart):
 @pytest.mark.no_cover
 @KINDS
 def test_figures_fit_upon_a4(chart):
-    width, height = draw_chart(chart).get_size_inches()
+    width, height = drawn(chart).get_size_inches()
     assert min(width, height) <= 7.2
     assert max(width, height) <= 10.1
 

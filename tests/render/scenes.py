@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-from hypothesis import settings
 from hypothesis import strategies as st
 
+from tests import tiers
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left, twin
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.display import Display
@@ -37,8 +37,8 @@ DOT_PLACES = {
 
 
 def examples(count):
-    """So many examples of a law; fewer where the kernels are not compiled."""
-    return settings(max_examples=count if JIT else max(count // 5, 10))
+    """Try a law on so many examples, by tier; on fewer where the kernels are not compiled."""
+    return tiers.examples(count if JIT else max(count // 5, 10))
 
 
 def cell(*dots):

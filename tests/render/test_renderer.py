@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
+from tests.tiers import heavy
 from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
 from vbraille.render import (
@@ -204,6 +205,7 @@ def test_a_frame_in_single_and_in_double_precision():
         np.testing.assert_allclose(single, double, rtol=0, atol=1e-7)
 
 
+@heavy  # its kind of array is compiled for
 def test_a_frame_may_be_a_part_of_something_larger():
     scene = models(line(63, 63))["stress2"]
     renderer = scene.renderer()

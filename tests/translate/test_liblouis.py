@@ -8,10 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
+from tests.tiers import examples
 from vbraille.errors import InputError
 from vbraille.translate import BrailleTable, Cells, Document
 
@@ -172,7 +173,7 @@ class TestNothingLost:
         assert translate(table, "ﬁ").to_brf() == translate(table, "fi").to_brf()
         assert translate(table, "ｆ").to_brf() == translate(table, "f").to_brf()
 
-    @settings(max_examples=100)
+    @examples(100)
     @given(st.text(likely, min_size=1, max_size=20))
     def test_maps_hold_for_any_text(self, text):
         table = BrailleTable("en-ueb-g2.ctb")

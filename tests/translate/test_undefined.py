@@ -1,9 +1,10 @@
 """Characters that a table does not know: marked, named, numbered or dropped, in six dots."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.tiers import examples, heavy
 from tests.translate.test_liblouis import sample_of_unicode
 from vbraille.translate import BrailleTable, Cells, Document, Undefined, find_table, list_tables
 from vbraille.translate.languages import foreign_note
@@ -53,7 +54,10 @@ class TestSpelling:
             assert translate(BrailleTable("bh.tbl", how), "\U0001f600").to_brf() == "==="
 
     @pytest.mark.parametrize("how", Undefined)
-    @pytest.mark.parametrize("name", SIX_DOT_TABLES)
+    @pytest.mark.parametrize(
+        "name",
+        [SIX_DOT_TABLES[0], *(pytest.param(name, marks=heavy) for name in SIX_DOT_TABLES[1:])],
+    )
     def test_six_dots_are_enough_for_every_kind_of_character(self, name, how):
         table = BrailleTable(name, how)
         for c in sample_of_unicode():
@@ -71,7 +75,7 @@ class TestSpelling:
         assert list(likenesses("\u201c")) == ['"']
         assert list(likenesses("a")) == []
 
-    @settings(max_examples=60)
+    @examples(60)
     @given(st.text(st.sampled_from("abc \U0001f600\u0434\u4e2d\x01,"), min_size=1, max_size=20))
     def test_maps_hold_in_every_manner(self, text):
         for how in Undefined:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render import kernels, work
+from vbraille.render import work
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -86,6 +86,9 @@ class Program:
 
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
         """Tell which part is under an array with its centre at y, after ``before`` was there."""
+        # Kernels, and numba with them, are loaded by who makes frames, not by who has a host do it.
+        from vbraille.render import kernels
+
         return kernels.part_of(self.numbers, y_mm, before)
 
     def frame(
@@ -119,6 +122,8 @@ class Program:
         ValueError
             If ``out`` has not the shape of the array.
         """
+        from vbraille.render import kernels
+
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         kernels.frame(self.numbers, self.table, self._scratch, part, at, out)
@@ -145,6 +150,8 @@ class Program:
         ValueError
             If ``out`` has not that shape, or the picture is no line.
         """
+        from vbraille.render import kernels
+
         if self.kind is not ProgramKind.LINE:
             raise ValueError(f"a {self.kind.name.lower()} has no frames along a line")
         x_mm = np.ascontiguousarray(x_mm, np.float64)
@@ -175,6 +182,8 @@ class Program:
             The part that belongs under the array, and deflections, 0 … 1. Where one part follows
             another nothing fades: fades take time, and are left to the engine.
         """
+        from vbraille.render import kernels
+
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
         parts = np.zeros(x_mm.size, np.int64)

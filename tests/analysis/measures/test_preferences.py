@@ -4,10 +4,11 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.analysis.making import record
+from tests.tiers import examples
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.measures.preferences import tuning
@@ -130,7 +131,7 @@ def test_the_same_seed_gives_the_same_interval():
 PAIRS = st.lists(st.sampled_from([1, 2, 3, 4.5]), min_size=2, max_size=2, unique=True)
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(st.lists(st.tuples(st.sampled_from(["P1", "P2"]), PAIRS, st.booleans()), min_size=1))
 def test_of_any_comparisons_both_tables_are_made(told):
     made = comparisons(*((who, *pair, pair[second]) for who, pair, second in told))

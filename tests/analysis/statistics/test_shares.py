@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import expit
 from scipy.stats import binom, norm
 
 from tests.benchmarks.coverage_people import shares
+from tests.tiers import examples
 from vbraille.analysis.statistics.shares import (
     MEANS,
     SPREADS,
@@ -55,7 +56,7 @@ def test_it_is_the_same_of_right_and_wrong():
     assert (right.low, right.high) == pytest.approx((1 - wrong.high, 1 - wrong.low), abs=1e-4)
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(9, 12)), min_size=3, max_size=6))
 def test_it_stays_in_its_range_and_has_a_width(answers):
     found = mean_share([right / of for right, of in answers], [of for _, of in answers])

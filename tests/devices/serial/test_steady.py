@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.controllers import ControllerOf20261121
+from tests.tiers import by_tier
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
 from vbraille.devices.lent import Actuators
@@ -143,7 +144,7 @@ def test_undisturbed_nothing_is_left_to_python_once_frames_are_taken():
 
 @pytest.mark.parametrize("controller", [Controller, ControllerOf20261121])
 @pytest.mark.parametrize("kind", ["host", "line"])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(by_tier(2, 8, 400)))
 def test_beside_python_over_traffic_with_troubles(seed, kind, controller):
     talk = reading(seed, kind, controller, Beside).device.conversation
     assert talk.steady_reads > 20

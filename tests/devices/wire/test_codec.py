@@ -7,9 +7,10 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
+from tests.tiers import examples
 from vbraille.devices.wire.codec import (
     DELIMITER,
     MOST_FRAME_BYTES,
@@ -144,7 +145,7 @@ def only(kind, times=1):
 
 
 @EVERY_MESSAGE
-@settings(max_examples=50)  # of each of seven messages
+@examples(50)  # of each of seven messages
 @given(choice=st.data())
 def test_what_is_encoded_is_decoded(kind, choice):
     message = choice.draw(messages_of(kind))
@@ -442,7 +443,7 @@ def packed_by_hand(levels, bits):
 
 
 @pytest.mark.parametrize("bits", range(1, 17))
-@settings(max_examples=30)  # of each of sixteen widths
+@examples(30)  # of each of sixteen widths
 @given(choice=st.data())
 def test_levels_of_any_width(bits, choice):
     top_level = choice.draw(st.integers(1 << (bits - 1), (1 << bits) - 1))

@@ -7,6 +7,7 @@ import pytest
 
 from tests.cli import program
 from tests.sessions.sittings import MINI, Session, crash
+from tests.tiers import by_tier
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.check import check, check_folder
@@ -166,14 +167,15 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
     ends = [n + 1 for n, byte in enumerate(whole) if byte == ord("\n")]
     least = max(len(whole) - 4096, ends[0])
     kept = {trace.name: trace.read_bytes() for trace in folder.glob("trace-*.gz")}
-    for cut in range(least, len(whole)):
+    cuts = {*range(least, len(whole), by_tier(6, 1, 1)), *ends}
+    for cut in sorted(cut for cut in cuts if least <= cut < len(whole)):
         told = decode(whole[:cut])
         assert told.events == record.told.events[: sum(end <= cut for end in ends)], cut
         assert told.damage is None
         progress = Progress(record.plan, told.events)
         answers = sum(e["event"] == "answer" for e in told.events)
         assert progress.done == answers
-        if cut % 48 and cut not in ends:
+        if (cut - least) % by_tier(192, 48, 1) and cut not in ends:
             continue
         for name, trace in kept.items():
             (folder / name).write_bytes(trace)

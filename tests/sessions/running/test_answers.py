@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import MINI, Session, of
+from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
@@ -14,7 +15,9 @@ from vbraille.sessions.simulated.skin import Exploration
 pytestmark = pytest.mark.no_cover
 
 
-@pytest.mark.parametrize("name", ["legibility", "letters", "words"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("legibility", marks=heavy), pytest.param("letters", marks=heavy), "words"]
+)
 def test_without_noise_every_string_of_every_protocol_is_read_right(tmp_path, name):
     sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:200").sit()
     for trial in sat.record.plan.trials:
@@ -22,7 +25,7 @@ def test_without_noise_every_string_of_every_protocol_is_read_right(tmp_path, na
     assert sat.progress.ended
 
 
-@pytest.mark.parametrize("name", ["tuning-width", "tuning-spacing"])
+@pytest.mark.parametrize("name", ["tuning-width", pytest.param("tuning-spacing", marks=heavy)])
 def test_without_noise_the_nearer_to_nominal_is_chosen_of_every_pair(tmp_path, name):
     sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:200").sit()
     for trial in sat.record.plan.trials:
@@ -36,7 +39,9 @@ def test_without_noise_the_nearer_to_nominal_is_chosen_of_every_pair(tmp_path, n
 def test_with_noise_it_errs_and_the_same_seed_errs_in_the_same_way(tmp_path):
     answers = []
     for n, noise in enumerate((0.4, 0.4, 0.0)):
-        session = Session(tmp_path / str(n), MINI + "repeats = 10\n", hand="sweep:150")
+        session = Session(
+            tmp_path / str(n), MINI + f"repeats = {by_tier(5, 10, 100)}\n", hand="sweep:150"
+        )
         sat = session.sit(noise=noise)
         answers.append([event["answer"] for event in of(sat.events, "answer")])
         right = [trial.presented for trial in session.plan.trials]

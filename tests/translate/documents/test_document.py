@@ -12,10 +12,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
+from tests.tiers import examples, heavy
 from tests.translate.model import Piece, pieces_of
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate import Block, Document, Kind
@@ -162,10 +163,19 @@ class TestChunks:
             np.concatenate([p.text.places for p in plain]) + shift,
         )
 
-    @pytest.mark.parametrize("keep_lines", [False, True])
-    @pytest.mark.parametrize("blank", ["\n", " ", "\r\n", " \t\n", "\f", "\ufeff", "\xad"])
+    @pytest.mark.parametrize(
+        ("blank", "keep_lines"),
+        [
+            *((blank, False) for blank in ("\n", " ", "\r\n", " \t\n", "\f", "\ufeff", "\xad")),
+            *((blank, True) for blank in ("\n", "\ufeff", "\xad")),
+            # Kept lines of these take as long as that of "\n", which ends lines as they do.
+            *(pytest.param(blank, True, marks=heavy) for blank in (" ", "\r\n", " \t\n", "\f")),
+        ],
+    )
     def test_long_stretches_of_nothing(self, blank, keep_lines):
-        nothing = blank * (2 * CHUNK_BYTES // len(blank.encode()) + 1)
+        # Each kept line is compared, which takes long: a chunk of them, in place of two.
+        size = CHUNK_BYTES if keep_lines else 2 * CHUNK_BYTES
+        nothing = blank * (size // len(blank.encode()) + 1)
         text = f"\n{nothing}  one{nothing}  two  {nothing}"
         found = pieces(document(text.encode(), keep_lines=keep_lines))
         assert found == pieces_of(text, keep_lines=keep_lines)
@@ -299,7 +309,7 @@ class TestSource:
         for encoding in ("utf-8-sig", "utf-16", "utf-32"):
             assert pieces(document("one".encode(encoding))) == [Piece("one", [0, 1, 2], False)]
 
-    @settings(max_examples=120)
+    @examples(120)
     @given(st.binary(min_size=1, max_size=120), st.booleans())
     def test_any_bytes_are_a_text_or_refused(self, raw, keep_lines):
         try:

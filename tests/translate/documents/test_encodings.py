@@ -10,10 +10,11 @@ import random
 import zipfile
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
+from tests.tiers import examples
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
     Encoding,
@@ -111,7 +112,7 @@ class TestFindEncoding:
         sample[500] = 0xFF
         assert find_encoding(bytes(sample)) == Encoding("utf-8")
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(st.binary(min_size=1, max_size=60))
     def test_always_one_that_exists(self, sample):
         encoding = find_encoding(sample)

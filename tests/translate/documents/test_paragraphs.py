@@ -5,10 +5,11 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.conftest import SEED
+from tests.tiers import examples
 from tests.translate.model import Piece, pieces_of
 from vbraille.translate.documents.codepoints import (
     LONGEST_BLANK,
@@ -155,7 +156,7 @@ class TestProse:
         ]
         assert [b.text.end for b in found] == [112, 126]
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(awkward_texts)
     def test_as_the_model(self, text):
         assert pieces(split_paragraphs(at(text)).blocks) == pieces_of(text)
@@ -180,7 +181,7 @@ class TestLinesKept:
     def test_lines_and_their_blanks(self, text, lines):
         assert split(text, keep_lines=True) == lines
 
-    @settings(max_examples=150)
+    @examples(150)
     @given(awkward_texts)
     def test_as_the_model(self, text):
         found = split_paragraphs(at(text), keep_lines=True).blocks
@@ -188,7 +189,7 @@ class TestLinesKept:
 
 
 class TestInParts:
-    @settings(max_examples=150)
+    @examples(150)
     @given(awkward_texts, st.data(), st.booleans())
     def test_reading_on_later_gives_the_same(self, text, data, keep_lines):
         codes = to_codes(text)
