@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
+from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.unknown import Unknown
@@ -86,7 +87,7 @@ class Page:
         """Say at the end how many characters the table does not know, if there were any."""
         sentence = self.unknown.sentence
         if sentence is not None:
-            print(printable(spelled(sentence)), file=sys.stderr, flush=True)
+            say_line(spelled(sentence), aside=True)
 
 
 def build_lengths(

@@ -139,7 +139,7 @@ def check_travel(display: Display, travel_mm: float) -> None:
         )
 
 
-def _check_rate(info: Display, rate_hz: float) -> None:
+def _check_fast_enough(info: Display, rate_hz: float) -> None:
     """Raise InputError if a device is too slow for the loop."""
     if info.rate_hz < rate_hz:
         raise InputError(

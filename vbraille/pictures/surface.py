@@ -89,10 +89,10 @@ def page(
 
 def _dots(line: Line, top_mm: float, geometry: Geometry, six: bool) -> dict[str, NDArray]:
     """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
-    dot = np.arange(6 if six else 8)
-    dot_row = np.where(dot < 6, dot % 3, 3)
-    right = (dot == 7) | ((dot >= 3) & (dot < 6))
-    cell = np.repeat(np.arange(len(line)), dot.size)
+    dots = list(PLACES)[: 6 if six else 8]
+    bits = [mask_of([dot]) for dot in dots]
+    right, dot_row = np.array([PLACES[dot] for dot in dots]).T
+    cell = np.repeat(np.arange(len(line)), len(dots))
     centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
     return {
         "what": np.full(cell.size, "dot"),

@@ -15,6 +15,7 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.devices.saying import told
@@ -36,7 +37,6 @@ from vbraille.simulation.specs import (
     refuse_hand,
     steering_of,
 )
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse

@@ -65,12 +65,8 @@ class Mapping:
 
     def shown_dots(self) -> int:
         """Tell which dots any row shows, as a mask; bit 0 is dot 1."""
-        mask = 0
-        for dot in range(8):
-            column, row = _PLACE[dot]
-            if row in (self.right if column else self.left):
-                mask |= 1 << dot
-        return mask
+        sides = (self.left, self.right)
+        return mask_of(dot for dot, (column, row) in PLACES.items() if row in sides[column])
 
     def row_bits(self) -> NDArray[np.uint16]:
         """Tell which actuator rows show a dot of each possible cell; uint16[256, 2].
