@@ -3,13 +3,13 @@
 import json
 import re
 from collections import Counter
-from dataclasses import replace
 from hashlib import sha256
 from itertools import groupby, pairwise
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 
 from tests.sessions.planning.rulebook import broken_rules
 from vbraille.braille.spelling import LETTERS
@@ -115,7 +115,7 @@ class TestPlans:
             assert broken_rules(protocol, f"P{seed:02}", seed) == []
 
     def test_without_the_rule_the_same_string_comes_twice_running(self):
-        free = replace(LEGIBILITY, rules=Rules())
+        free = structs.replace(LEGIBILITY, rules=Rules())
         found = [broken_rules(free, "P07", seed) for seed in range(5)]
         assert all(problems == ["twice running"] for problems in found)
 
@@ -145,7 +145,7 @@ class TestPlans:
         plan = make_plan(parse(text), "P07", 1)
         assert len(plan.practice) == 4
         assert {s.value for trial in plan.practice for s in trial.stimuli} == {1.25, 1.5}
-        with pytest.raises(InputError, match=r"\[practice\] has the value 2 mm, which the test"):
+        with pytest.raises(InputError, match=r"\[practice\] values have 2 mm, which the test"):
             parse(text.replace("1.25", "2"))
 
     def test_seed_and_participant_make_the_order(self):
@@ -245,7 +245,9 @@ class TestPlans:
 
     @pytest.mark.parametrize("trials", [0, 1, 7, 500])
     def test_more_practice_does_not_change_the_rest(self, trials):
-        other = replace(LEGIBILITY, practice=replace(LEGIBILITY.practice, trials=trials))
+        other = structs.replace(
+            LEGIBILITY, practice=structs.replace(LEGIBILITY.practice, trials=trials)
+        )
         plan = make_plan(other, "P07", 42)
         assert len(plan.practice) == trials
         assert plan.trials == make_plan(LEGIBILITY, "P07", 42).trials
@@ -268,7 +270,7 @@ class TestRefusals:
             make_plan(LEGIBILITY, "P07", seed)
 
     def test_a_texture_that_all_conditions_have(self):
-        says = r"^every condition of legibility has its own texture; leave --texture out$"
+        says = r"^every condition of legibility has its own texture; leave ‹texture› out$"
         with pytest.raises(InputError, match=says):
             make_plan(LEGIBILITY, "P07", 1, texture=0.5)
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import groupby
 
 import pytest
+from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Rules
@@ -27,8 +28,8 @@ def conditions_of(trials):
 def changed(plan, which, /, **values):
     """The plan with one trial of another kind."""
     trials = list(plan.trials)
-    trials[which - 1] = replace(trials[which - 1], **values)
-    return replace(plan, trials=tuple(trials))
+    trials[which - 1] = structs.replace(trials[which - 1], **values)
+    return structs.replace(plan, trials=tuple(trials))
 
 
 class TestChecking:
@@ -47,7 +48,7 @@ class TestChecking:
     def test_a_trial_too_few(self):
         plan = make_plan(LEGIBILITY, "P07", 42)
         says = "condition textured shows .. 4 times, and must 5 times"
-        self.refuse(LEGIBILITY, replace(plan, trials=plan.trials[:-1]), says)
+        self.refuse(LEGIBILITY, structs.replace(plan, trials=plan.trials[:-1]), says)
 
     def test_a_trial_for_another(self):
         plan = make_plan(LEGIBILITY, "P07", 42)
@@ -57,7 +58,7 @@ class TestChecking:
         self.refuse(LEGIBILITY, wrong, "condition nominal shows")
 
     def test_practice_that_is_missing(self):
-        plan = replace(make_plan(LEGIBILITY, "P07", 42), practice=())
+        plan = structs.replace(make_plan(LEGIBILITY, "P07", 42), practice=())
         self.refuse(LEGIBILITY, plan, "0 trials are practice, and 8 must be")
 
     def test_cells_that_are_not_of_the_design(self):
@@ -96,11 +97,11 @@ class TestChecking:
         other = tuple(replace(stimulus, masks=(8,)) for stimulus in plan.trials[0].stimuli)
         self.refuse(protocol, changed(plan, 1, stimuli=other), "shows another string than")
         practised = make_plan(LEGIBILITY, "P07", 42)
-        odd = replace(practised.practice[0], condition="odd")
-        plan = replace(practised, practice=(odd, *practised.practice[1:]))
+        odd = structs.replace(practised.practice[0], condition="odd")
+        plan = structs.replace(practised, practice=(odd, *practised.practice[1:]))
         self.refuse(LEGIBILITY, plan, "trial 1 is of a condition 'odd'")
-        inside = replace(practised.practice[0], block=1)
-        plan = replace(practised, practice=(inside, *practised.practice[1:]))
+        inside = structs.replace(practised.practice[0], block=1)
+        plan = structs.replace(practised, practice=(inside, *practised.practice[1:]))
         self.refuse(LEGIBILITY, plan, "a practice trial is in a block")
 
     def test_pairs_too_often(self):
@@ -120,8 +121,8 @@ class TestChecking:
 
     def test_practice_of_what_the_test_shows(self):
         plan = make_plan(LEGIBILITY, "P07", 42)
-        test = replace(plan.trials[0], number=1, block=0)
-        given = replace(plan, practice=(test, *plan.practice[1:]))
+        test = structs.replace(plan.trials[0], number=1, block=0)
+        given = structs.replace(plan, practice=(test, *plan.practice[1:]))
         self.refuse(LEGIBILITY, given, "trial 1 of practice shows what is not in the design")
 
     def test_the_same_string_twice_running(self):
@@ -131,8 +132,8 @@ class TestChecking:
         swapped = changed(plan, 2, stimuli=other.stimuli)
         swapped = changed(swapped, other.number, stimuli=second.stimuli)
         self.refuse(LEGIBILITY, swapped, "trials 1 and 2 show the same")
-        practised = replace(plan.practice[0], number=2)
-        twice = replace(plan, practice=(plan.practice[0], practised, *plan.practice[2:]))
+        practised = structs.replace(plan.practice[0], number=2)
+        twice = structs.replace(plan, practice=(plan.practice[0], practised, *plan.practice[2:]))
         self.refuse(LEGIBILITY, twice, "practice trials 1 and 2 show the same")
 
     def test_a_plan_of_version_1_is_checked_by_its_own_rules(self):
@@ -141,18 +142,22 @@ class TestChecking:
         kept = [n for n in lines if not n.startswith(("never_twice_running", "strings = "))]
         protocol = parse_protocol("\n".join(kept), "p", planned=True)
         plan = make_plan(LEGIBILITY, "P07", 42)
-        practised = [replace(t, number=n, block=0) for n, t in enumerate(plan.trials[76:84], 1)]
-        old = replace(plan, practice=tuple(practised), version=1)
+        practised = [
+            structs.replace(t, number=n, block=0) for n, t in enumerate(plan.trials[76:84], 1)
+        ]
+        old = structs.replace(plan, practice=tuple(practised), version=1)
         check_plan(protocol, old)
-        self.refuse(protocol, replace(old, version=2), "trial 1 of practice shows what is not")
+        self.refuse(
+            protocol, structs.replace(old, version=2), "trial 1 of practice shows what is not"
+        )
 
     def test_another_order_of_conditions(self):
         plan = make_plan(LEGIBILITY, "P07", 42)
         says = "its conditions are not in the balanced order 2"
-        self.refuse(LEGIBILITY, replace(plan, order=2), says)
-        self.refuse(LEGIBILITY, replace(plan, order=3), "it has the balanced order 3 of 2")
+        self.refuse(LEGIBILITY, structs.replace(plan, order=2), says)
+        self.refuse(LEGIBILITY, structs.replace(plan, order=3), "it has the balanced order 3 of 2")
         plan = make_plan(LETTERS_PROTOCOL, "P07", 42)
-        self.refuse(LETTERS_PROTOCOL, replace(plan, order=1), "order 1, and there is none")
+        self.refuse(LETTERS_PROTOCOL, structs.replace(plan, order=1), "order 1, and there is none")
 
     def test_blocks_that_are_mixed(self):
         plan = make_plan(LEGIBILITY, "P07", 42)

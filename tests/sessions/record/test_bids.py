@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bids_validator import BIDSValidator
+from msgspec import structs
 
 from tests.sessions.sittings import MINI, Session
 from vbraille.sessions.record import bids, dataset
@@ -62,7 +63,7 @@ def test_names_are_those_of_bids(record, files, tmp_path):
 
 
 def test_labels_have_letters_and_digits_only(record):
-    named = replace(record, plan=replace(record.plan, participant="P-0_7", protocol="a-b"))
+    named = replace(record, plan=structs.replace(record.plan, participant="P-0_7", protocol="a-b"))
     for path in bids.files(named):
         assert path.startswith("sub-P07/ses-01/beh/sub-P07_ses-01_task-ab_")
         assert BIDSValidator().is_bids(f"/{path}"), path

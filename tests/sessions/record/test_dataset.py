@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 from bids_validator import BIDSValidator
+from msgspec import structs
 
 from tests.sessions.sittings import Session
 from vbraille.errors import InputError, VbrailleError
@@ -35,7 +36,7 @@ def people(folder):
 def named(record, participant):
     """The session as if it were another's."""
     told = replace(record.told, crcs=[hash(participant) & 0xFFFFFFFF])
-    return replace(record, plan=replace(record.plan, participant=participant), told=told)
+    return replace(record, plan=structs.replace(record.plan, participant=participant), told=told)
 
 
 def test_a_dataset_takes_several_participants_and_several_sessions_of_each(records, tmp_path):

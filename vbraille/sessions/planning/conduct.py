@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+
+from vbraille.sessions.planning.tomlfile import Table
 
 # Of protocols, conditions and fields: they become columns of tables and parts of file names.
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
@@ -50,8 +51,7 @@ def check_range(what: str, value: float | None, low: float, high: float, unit: s
         raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
 
 
-@dataclass(frozen=True, slots=True)
-class TrialPace:
+class TrialPace(Table, frozen=True):
     """Times of a trial.
 
     Parameters
@@ -75,8 +75,7 @@ class TrialPace:
         check_range("warning_s", self.warning_s, 1, 3600, " s")
 
 
-@dataclass(frozen=True, slots=True)
-class SessionPace:
+class SessionPace(Table, frozen=True):
     """Length of a session, and its breaks.
 
     Parameters
@@ -101,14 +100,13 @@ class SessionPace:
         check_range("break_every", self.break_every, 1, 10_000)
 
 
-@dataclass(frozen=True, slots=True)
-class Tone:
-    """A sound.
+class Tone(Table, frozen=True, array_like=True):
+    """A sound: a sine of so many Hz for so many ms, which a file has as a list of the two.
 
     Parameters
     ----------
     frequency_hz, duration_ms
-        Of a sine.
+        Frequency and length of the sine.
 
     Raises
     ------
@@ -124,8 +122,7 @@ class Tone:
         check_range("duration", self.duration_ms, 1, 5_000, " ms")
 
 
-@dataclass(frozen=True, slots=True)
-class SignalSound:
+class SignalSound(Table, frozen=True):
     """What is heard.
 
     Parameters
@@ -140,8 +137,7 @@ class SignalSound:
     warning: Tone = Tone(440.0, 400.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
+class Question(Table, frozen=True):
     """A question about the participant, asked before the session; nothing personal.
 
     Parameters
@@ -167,6 +163,18 @@ class Question:
         check_name("name", self.name)
         check_line("ask", self.ask)
         for choice in self.choices:
-            check_line("a choice", choice)
+            check_line("choices: one", choice)
             if self.choices.count(choice) > 1:
-                raise ValueError(f"the choice {choice!r} stands twice; leave one out")
+                raise ValueError(f"choices have {choice!r} twice; leave one out")
+
+
+class Faults(Table, frozen=True):
+    """What becomes of a trial in which the device failed.
+
+    Parameters
+    ----------
+    repeat
+        Whether it is shown again; else it stays, and is marked.
+    """
+
+    repeat: bool = True

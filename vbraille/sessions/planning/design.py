@@ -3,26 +3,65 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
 from itertools import permutations, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from vbraille.braille.spelling import LETTERS, name_dots, to_braille
-from vbraille.sessions.planning.conduct import check_name, check_range
+from vbraille.sessions.planning.conduct import check_range
+from vbraille.sessions.planning.spellings import Mask, Masks
+from vbraille.sessions.planning.tomlfile import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vbraille.render import Tuning
+    from collections.abc import Iterable, Sequence
 
 MOST_TRIALS = 10_000
-PARAMETERS = ("dot_width_mm", "dot_gap_mm")
+
+Item = tuple[float, ...]  # the cells asked for, or the values compared
 
 _LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
 
 
-@dataclass(frozen=True, slots=True)
-class Combinations:
+class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
+    """What every design has.
+
+    Parameters
+    ----------
+    repeats
+        Of each thing, in each condition.
+    blocks
+        Conditions are mixed and spread over so many, or "conditions": a block each.
+    order
+        Of the blocks of conditions: "balanced" over participants, "listed" or "shuffled"; None
+        if it was left out.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or there are no blocks of conditions to order.
+    """
+
+    repeats: int = 1
+    blocks: int | Literal["conditions"] = "conditions"
+    order: Literal["balanced", "listed", "shuffled"] | None = None
+
+    def __post_init__(self) -> None:
+        check_range("repeats", self.repeats, 1, MOST_TRIALS)
+        if self.order is not None and self.blocks != "conditions":
+            raise ValueError(
+                "order is of a block each condition; leave it out, or give blocks = 'conditions'"
+            )
+
+    @property
+    def around(self) -> tuple[Masks, Masks]:
+        """Delimiters before and after what is asked for."""
+        return Masks(), Masks()
+
+    def content(self, item: Item) -> Item:
+        """What an item shows, whatever the order of its cells where they come in any order."""
+        return item
+
+
+class Combinations(_Design, frozen=True, tag="combinations"):
     """Every combination of some cells.
 
     Parameters
@@ -33,8 +72,6 @@ class Combinations:
         Cells of a combination.
     before, after
         Dot masks of the delimiters: shown, but not asked for.
-    repeats
-        Of each combination, in each condition.
 
     Raises
     ------
@@ -43,22 +80,27 @@ class Combinations:
         would be shown.
     """
 
-    characters: tuple[int, ...]
+    characters: tuple[Mask, ...]
     length: int
-    before: tuple[int, ...] = ()
-    after: tuple[int, ...] = ()
-    repeats: int = 1
+    before: Masks = Masks()
+    after: Masks = Masks()
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         check_range("length", self.length, 1, 100)
-        check_range("repeats", self.repeats, 1, MOST_TRIALS)
         if not self.characters:
             raise ValueError("characters are none; give one or more")
         _check_distinct("characters have", map(name_dots, self.characters))
         if 0 in self.characters and not any(self.before + self.after):
             raise ValueError(
-                "a combination is all blank, and nothing can be felt of it; give before and after"
+                "characters have a blank, and nothing can be felt of a combination of blanks; "
+                "give before and after"
             )
+
+    @property
+    def around(self) -> tuple[Masks, Masks]:
+        """Delimiters before and after what is asked for."""
+        return self.before, self.after
 
     @property
     def trials(self) -> int:
@@ -75,13 +117,12 @@ class Combinations:
         """All cells that are shown."""
         return frozenset(self.before + self.characters + self.after)
 
-    def items(self) -> list[tuple[int, ...]]:
+    def items(self) -> Sequence[Item]:
         """Cells asked for in the trials of a condition, in the order of the design."""
         return list(product(self.characters, repeat=self.length)) * self.repeats
 
 
-@dataclass(frozen=True, slots=True)
-class StringList:
+class StringList(_Design, frozen=True, tag="list"):
     """Strings of a list.
 
     Parameters
@@ -90,8 +131,6 @@ class StringList:
         Dot masks of each.
     reorder
         Whether the cells of a string come in another order at each showing.
-    repeats
-        Of each string, in each condition.
 
     Raises
     ------
@@ -99,12 +138,11 @@ class StringList:
         If a number is out of range, or a string shows nothing raised.
     """
 
-    strings: tuple[tuple[int, ...], ...]
+    strings: tuple[Masks, ...]
     reorder: bool = False
-    repeats: int = 1
 
     def __post_init__(self) -> None:
-        check_range("repeats", self.repeats, 1, MOST_TRIALS)
+        super().__post_init__()
         if not self.strings:
             raise ValueError("strings are none; give one or more")
         for number, masks in enumerate(self.strings, 1):
@@ -129,33 +167,33 @@ class StringList:
         """All cells that are shown."""
         return frozenset(mask for masks in self.strings for mask in masks)
 
-    def items(self) -> list[tuple[int, ...]]:
+    def items(self) -> Sequence[tuple[int, ...]]:
         """Cells of the trials of a condition, in the order of the design."""
         return list(self.strings) * self.repeats
+
+    def content(self, item: Item) -> Item:
+        """Cells of an item, sorted if they come in any order."""
+        return tuple(sorted(item)) if self.reorder else item
 
     def listed(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
         """String of the list that these cells are an order of; None if none is, or none changes."""
         if not self.reorder:
             return None
-        cells = sorted(masks)
-        return next((string for string in self.strings if sorted(string) == cells), None)
+        cells = self.content(masks)
+        return next((string for string in self.strings if self.content(string) == cells), None)
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(_Design, frozen=True, tag="choice"):
     """Pairs of one string at two values of a parameter.
 
     Parameters
     ----------
     parameter
-        One of `PARAMETERS`; ``dot_gap_mm`` is from edge to edge between the two
-        dots of a cell.
+        What is compared; ``dot_gap_mm`` is from edge to edge between the two dots of a cell.
     values
         To compare.
     string
         Dot masks of what is shown at both.
-    repeats
-        Of each ordered pair of different values, in each condition.
 
     Raises
     ------
@@ -164,20 +202,17 @@ class Choice:
         string does not show the parameter.
     """
 
-    parameter: str
+    parameter: Literal["dot_width_mm", "dot_gap_mm"]
     values: tuple[float, ...]
-    string: tuple[int, ...]
-    repeats: int = 1
+    string: Masks
 
     def __post_init__(self) -> None:
-        check_range("repeats", self.repeats, 1, MOST_TRIALS)
-        if self.parameter not in PARAMETERS:
-            raise ValueError(f"parameter is {self.parameter}; it must be {' or '.join(PARAMETERS)}")
+        super().__post_init__()
         if len(self.values) < 2:
             raise ValueError(f"values are {len(self.values)}; give two or more to compare")
         _check_distinct("values have", (f"{value:.15g}" for value in self.values))
         for value in self.values:
-            check_range("a value", value, 0, 50, " mm")
+            check_range("values: one", value, 0, 50, " mm")
         if not any(self.string):
             raise ValueError("string has no dots; give one with some")
         both = any(mask & _LEFT_DOTS and mask & _RIGHT_DOTS for mask in self.string)
@@ -199,7 +234,7 @@ class Choice:
         """All cells that are shown."""
         return frozenset(self.string)
 
-    def items(self) -> list[tuple[float, ...]]:
+    def items(self) -> Sequence[Item]:
         """Values of the first and the second stimulus in the trials of a condition."""
         return list(permutations(self.values, 2)) * self.repeats
 
@@ -207,36 +242,7 @@ class Choice:
 Design = Combinations | StringList | Choice
 
 
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What a design is shown with.
-
-    Parameters
-    ----------
-    name
-        Of the condition.
-    tuning
-        What it is shown with.
-    own
-        Names of those values of the tuning that the condition itself gives;
-        the others are the display's.
-
-    Raises
-    ------
-    ValueError
-        If the name cannot be used.
-    """
-
-    name: str
-    tuning: Tuning
-    own: frozenset[str] = field(default_factory=frozenset)
-
-    def __post_init__(self) -> None:
-        check_name("name", self.name)
-
-
-@dataclass(frozen=True, slots=True)
-class Rules:
+class Rules(Table, frozen=True):
     """What a plan must keep beside its design.
 
     Parameters

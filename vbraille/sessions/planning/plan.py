@@ -6,23 +6,29 @@ Protocol, participant and seed give the same plan on every machine.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
 from itertools import cycle
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field, structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning import planfile
 from vbraille.sessions.planning.chance import Chance, balanced_orders
-from vbraille.sessions.planning.design import Combinations, StringList
-from vbraille.sessions.planning.practice import Item, content
+from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.rules import check_plan, is_balanced
-from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participant, check_seed
+from vbraille.sessions.planning.stimuli import (
+    Stimuli,
+    Stimulus,
+    Trial,
+    check_participant,
+    check_seed,
+)
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.sessions.planning.design import Condition
+    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.protocol import Protocol
 
 __all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
@@ -30,12 +36,14 @@ __all__ = ["Plan", "Stimulus", "Trial", "check_plan", "make_plan"]
 _Shown = tuple[Item, "Condition"]
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """All trials of a session, in order.
+class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """All trials of a session, in order. Its file has its fields in this order.
 
     Parameters
     ----------
+    version
+        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
+        name. Nothing makes such plans any more; those of sessions are kept.
     protocol
         Its name.
     participant
@@ -46,9 +54,6 @@ class Plan:
         Which of the balanced orders of conditions, from 1; 0 if there is only one.
     practice, trials
         In the order in which they are shown.
-    version
-        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
-        name. Nothing makes such plans any more; those of sessions are kept.
 
     Raises
     ------
@@ -56,13 +61,13 @@ class Plan:
         If the participant, the seed or the order cannot be used.
     """
 
+    version: int = field(name="format", default=planfile.VERSIONS[-1])
     protocol: str
     participant: str
     seed: int
     order: int
     practice: tuple[Trial, ...]
     trials: tuple[Trial, ...]
-    version: int = planfile.VERSIONS[-1]
 
     def __post_init__(self) -> None:
         check_participant(self.participant)
@@ -78,16 +83,7 @@ class Plan:
 
     def to_json(self) -> str:
         """JSON, a trial a line; the same bytes on every machine."""
-        return planfile.encode(
-            {
-                "format": self.version,
-                "protocol": self.protocol,
-                "participant": self.participant,
-                "seed": self.seed,
-                "order": self.order,
-            },
-            {"practice": self.practice, "trials": self.trials},
-        )
+        return planfile.encode(self)
 
     @classmethod
     def from_json(cls, text: str) -> Plan:
@@ -98,17 +94,7 @@ class Plan:
         InputError
             If it is damaged.
         """
-        with planfile.damage():
-            head, runs = planfile.decode(text)
-            return cls(
-                head.text("protocol"),
-                head.text("participant"),
-                head.whole("seed"),
-                head.whole("order"),
-                runs["practice"],
-                runs["trials"],
-                head.whole("format"),
-            )
+        return planfile.decode(text, cls)
 
 
 def make_plan(
@@ -156,14 +142,15 @@ def make_plan(
         for block, shown in enumerate(blocks, 1)
         for item, condition in shown
     ]
+    # By chances of its own: another number of practice trials leaves the others as they are.
+    practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
     plan = Plan(
-        protocol.name,
-        participant,
-        seed,
-        order,
-        # By chances of its own: another number of practice trials leaves the others as they are.
-        _numbered(_practice(protocol, conditions, Chance(f"{drawn} practice"))),
-        _numbered(trials),
+        protocol=protocol.name,
+        participant=participant,
+        seed=seed,
+        order=order,
+        practice=_numbered(practice),
+        trials=_numbered(trials),
     )
     check_plan(protocol, plan)
     return plan
@@ -171,25 +158,13 @@ def make_plan(
 
 def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:
     """Conditions with what is given instead of the display's own values."""
-    for name, value in given.items():
-        if value is not None and all(name in condition.own for condition in protocol.conditions):
+    given = {name: float(value) for name, value in given.items() if value is not None}
+    for name in given:
+        if all(name in condition.given for condition in protocol.conditions):
             raise ValueError(
-                f"every condition of {protocol.name} has its own {name}; leave --{name} out"
+                f"every condition of {protocol.name} has its own {name}; leave {setting(name)} out"
             )
-    return [
-        replace(
-            condition,
-            tuning=replace(
-                condition.tuning,
-                **{
-                    name: float(value)
-                    for name, value in given.items()
-                    if value is not None and name not in condition.own
-                },
-            ),
-        )
-        for condition in protocol.conditions
-    ]
+    return [structs.replace(c, **(given | c.given)) for c in protocol.conditions]
 
 
 def _choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
@@ -241,7 +216,7 @@ def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> 
         return [chance.shuffled(block) for block in blocks]
 
     def shows(shown: _Shown) -> Item:
-        return content(protocol.design, shown[0])
+        return protocol.design.content(shown[0])
 
     ordered: list[list[_Shown]] = []
     before: Item | None = None
@@ -307,19 +282,19 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
 
 def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> Trial:
     """Make a trial of an item of the design; it gets its number later."""
-    design, tuning = protocol.design, condition.tuning
-    if isinstance(design, Combinations | StringList):
-        masks = tuple(map(int, item))
-        first = 0
-        if isinstance(design, Combinations):
-            first, masks = len(design.before), (*design.before, *masks, *design.after)
-        stimuli = (Stimulus(masks, tuning, protocol.geometry),)
-        return Trial(1, block, condition.name, stimuli, (first, first + len(item)))
-    stimuli = tuple(
-        Stimulus(design.string, tuning, protocol.geometry_at(value), value) for value in item
+    design, tuning = protocol.design, protocol.tuning(condition)
+    if isinstance(design, Choice):
+        shown = [(design.string, value) for value in item]
+        asked = (0, len(design.string))
+    else:
+        before, after = design.around
+        shown = [((*before, *map(int, item), *after), None)]
+        asked = (len(before), len(before) + len(item))
+    stimuli = Stimuli(
+        Stimulus(masks, tuning, protocol.geometry_at(value), value) for masks, value in shown
     )
-    return Trial(1, block, condition.name, stimuli, (0, len(design.string)))
+    return Trial(1, block, condition.name, asked, stimuli)
 
 
 def _numbered(trials: list[Trial]) -> tuple[Trial, ...]:
-    return tuple(replace(trial, number=number) for number, trial in enumerate(trials, 1))
+    return tuple(structs.replace(trial, number=number) for number, trial in enumerate(trials, 1))

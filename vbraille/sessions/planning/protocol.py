@@ -6,72 +6,100 @@
 from __future__ import annotations
 
 import re
-import tomllib
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import msgspec
+from msgspec import field
 
 from vbraille.braille.spelling import name_dots
-from vbraille.errors import InputError
 from vbraille.render import MODELS
-from vbraille.sessions.planning import fromtoml
-from vbraille.sessions.planning.conduct import check_line
-from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList, name_cell
+from vbraille.sessions.planning.appearance import Appearance, Condition
+from vbraille.sessions.planning.conduct import (
+    Faults,
+    Question,
+    SessionPace,
+    SignalSound,
+    TrialPace,
+    check_line,
+)
+from vbraille.sessions.planning.design import (
+    MOST_TRIALS,
+    Choice,
+    Combinations,
+    Rules,
+    StringList,
+    name_cell,
+)
+from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, read_file
-from vbraille.sessions.planning.section import Section
+from vbraille.sessions.planning.spellings import Keys, read_keys, spelled
+from vbraille.sessions.planning.tomlfile import Table, TomlFile, which
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
-    from vbraille.render import Mapping, Model
-    from vbraille.sessions.planning.conduct import Question, SessionPace, SignalSound, TrialPace
-    from vbraille.sessions.planning.design import Condition, Design, Rules
-    from vbraille.sessions.planning.practice import Practice
+    from vbraille.render import BrailleStyle, Mapping, Model, Tuning
 
-__all__ = ["MEDIA", "Protocol", "builtin_names", "builtin_text", "load_protocol", "parse_protocol"]
+__all__ = ["Protocol", "builtin_names", "builtin_text", "load_protocol", "parse_protocol"]
 
 FORMAT = 1
-MEDIA = ("device", "paper")
-_KEYS = ("format", "name", "title", "source", "model", "medium", "display", "keys", "design")
-_TABLES = ("conditions", "rules", "practice", "trial", "session", "faults", "sound", "fields")
-MOST_LEAD = 20
+ONLY_CONDITION = "all"
 _NAME = re.compile(r"[a-z0-9-]{1,40}")
 
 
-@dataclass(frozen=True, slots=True)
-class Protocol:
-    """What a session shows, and how it is conducted.
+class _File(Table, frozen=True, kw_only=True):
+    """What a protocol's file has, key by key."""
+
+    format: int
+    name: str
+    title: str
+    source: str
+    model_name: str = field(name="model")
+    medium: Literal["device", "paper"] = "device"
+    display: Appearance = Appearance()
+    keys: Keys = field(default_factory=Keys)
+    design: Combinations | StringList | Choice
+    listed: tuple[Condition, ...] = field(name="conditions", default=())
+    rules: Rules = Rules()
+    practice: Practice = Practice()
+    trial: TrialPace = TrialPace()
+    session: SessionPace = SessionPace()
+    faults: Faults = Faults()
+    sound: SignalSound = SignalSound()
+    fields: tuple[Question, ...] = ()
+
+
+class Protocol(_File, frozen=True, kw_only=True, dict=True):
+    """What a session shows, and how it is conducted: what its file has, and what follows from it.
 
     Parameters
     ----------
+    format
+        Of the file: 1.
     name, title, source
         What options call it, what people do, and where it comes from.
-    model
-        The display.
+    model_name
+        The display, by its name.
     medium
         "device", or "paper": what the source shows on paper or on a
         conventional display, timed by key.
-    mapping, geometry
-        Of the display.
-    lead_cells
-        Blank cells before each string, so that the array at its left stop is clear of it.
+    display
+        How strings are shown on the display.
     keys
         Dot mask of each spelling beside a to z.
     design
         What is shown in each condition.
-    blocks
-        Conditions are mixed and spread over so many; None for a block each.
-    order
-        Of the blocks of conditions: "balanced" over participants, "listed" or
-        "shuffled".
-    conditions
-        One or more.
+    listed
+        Conditions of the file; none if there is only one, without a name.
     rules
         What the finished plan is checked for, beside its design.
     practice
         What comes before block 1.
     trial, session
         Their paces.
-    repeat_faults
-        Whether a trial in which the device failed is shown again.
+    faults
+        What becomes of a trial in which the device failed.
     sound
         What is heard.
     fields
@@ -85,26 +113,6 @@ class Protocol:
         If values are out of range or do not go together.
     """
 
-    name: str
-    title: str
-    source: str
-    model: Model
-    medium: str
-    mapping: Mapping
-    geometry: Geometry
-    lead_cells: int
-    keys: dict[str, int]
-    design: Design
-    blocks: int | None
-    order: str
-    conditions: tuple[Condition, ...]
-    rules: Rules
-    practice: Practice
-    trial: TrialPace
-    session: SessionPace
-    repeat_faults: bool
-    sound: SignalSound
-    fields: tuple[Question, ...]
     text: str
 
     def __post_init__(self) -> None:
@@ -114,12 +122,58 @@ class Protocol:
             )
         check_line("title", self.title)
         check_line("source", self.source)
+        if self.model_name not in MODELS:
+            raise ValueError(f"model is {self.model_name!r}{which(self.model_name, MODELS)}")
         _check_names("[[conditions]]", [condition.name for condition in self.conditions])
         _check_names("[[fields]]", [field.name for field in self.fields])
+        self._check_tuning()
+        problem = self.practice.problem(self.design)
+        if problem:
+            raise ValueError(f"[practice] {problem}")
         self._check_trials()
         self._check_cells()
         self._check_lines()
         self._check_letters()
+
+    @property
+    def model(self) -> Model:
+        """The display."""
+        return MODELS[self.model_name]
+
+    @cached_property
+    def style(self) -> BrailleStyle:
+        """How strings are shown on it."""
+        return self.display.style(self.model)
+
+    @property
+    def mapping(self) -> Mapping:
+        """Which dots its rows show."""
+        return self.style.mapping
+
+    @property
+    def geometry(self) -> Geometry:
+        """Distances on it."""
+        return self.style.geometry
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """One or more."""
+        return self.listed or (Condition(name=ONLY_CONDITION),)
+
+    @property
+    def blocks(self) -> int | None:
+        """Conditions are mixed and spread over so many; None for a block each."""
+        return None if self.design.blocks == "conditions" else self.design.blocks
+
+    @property
+    def order(self) -> str:
+        """Order of the blocks of conditions: "balanced", "listed" or "shuffled"."""
+        return self.design.order or "balanced"
+
+    @property
+    def repeat_faults(self) -> bool:
+        """Whether a trial in which the device failed is shown again."""
+        return self.faults.repeat
 
     @property
     def task(self) -> str:
@@ -135,6 +189,15 @@ class Protocol:
     def trials(self) -> int:
         """Trials of all conditions, without practice."""
         return self.design.trials * len(self.conditions)
+
+    @property
+    def lead_cells(self) -> int:
+        """Blank cells before each string, so that the array at its left stop is clear of it."""
+        return self.display.lead_cells
+
+    def tuning(self, condition: Condition) -> Tuning:
+        """What a condition is shown with."""
+        return condition.tune(self.model, self.style.tuning)
 
     def line(self, masks: tuple[int, ...]) -> tuple[int, ...]:
         """Cells of the line that a string is shown as."""
@@ -154,6 +217,16 @@ class Protocol:
             return replace(self.geometry, dot_width_mm=value)
         # From edge to edge, as the source has it: the centres stand a dot's width further apart.
         return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
+
+    def _check_tuning(self) -> None:
+        place = "[display]"
+        try:
+            self.style  # noqa: B018
+            for number, condition in enumerate(self.listed, 1):
+                place = f"[[conditions]] number {number}"
+                self.tuning(condition)
+        except ValueError as error:
+            raise ValueError(f"{place} {error}") from None
 
     def _check_trials(self) -> None:
         if self.trials + self.practice.trials > MOST_TRIALS:
@@ -183,15 +256,11 @@ class Protocol:
                 )
 
     def _check_lines(self) -> None:
-        if not 0 <= self.lead_cells <= MOST_LEAD:
-            raise ValueError(
-                f"[display] lead_cells is {self.lead_cells}; it must be 0 to {MOST_LEAD}"
-            )
         values = self.design.values if isinstance(self.design, Choice) else (None,)
         practised = self.practice.lines(self.design)
         longest = max((self.design.cells, *map(len, practised)))
         whose = "[design]" if longest == self.design.cells else "[practice]"
-        for value in (*values, *sorted(self.practice.values(self.design))):
+        for value in (*values, *sorted(set(self.practice.values))):
             at = "" if value is None else f" at a value of {value:g} mm"
             try:
                 room = self.geometry_at(value).cells_per_line(self.model.display.span_mm)
@@ -250,49 +319,38 @@ def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
     InputError
         If it cannot be used. One sentence says where, why, and what to do.
     """
-    try:
-        tree = tomllib.loads(text)
-    except RecursionError:
-        raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
-    except ValueError as error:
-        raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+    file = TomlFile(text, where)
     # Before all keys are known: another format may have others.
-    version = Section(where, "", tree, None).whole("format")
-    if version != FORMAT:
-        raise InputError(
-            f"{where}: format is {version}, and this vbraille knows format {FORMAT}; "
-            f"use a vbraille that knows it"
-        )
-    root = Section(where, "", tree, (*_KEYS, *_TABLES))
-    model = MODELS[root.one_of("model", MODELS)]
-    mapping, geometry, lead_cells, tuning = fromtoml.read_display(root, model)
-    keys = fromtoml.read_keys(root)
-    design, blocks, order = fromtoml.read_design(root, keys, planned=planned)
-    trial, session = fromtoml.read_paces(root)
-    with root.checking():
-        return Protocol(
-            name=root.text("name"),
-            title=root.text("title"),
-            source=root.text("source"),
-            model=model,
-            medium=root.one_of("medium", MEDIA, MEDIA[0]),
-            mapping=mapping,
-            geometry=geometry,
-            lead_cells=lead_cells,
-            keys=keys,
-            design=design,
-            blocks=blocks,
-            order=order,
-            conditions=fromtoml.read_conditions(root, model, tuning),
-            rules=fromtoml.read_rules(root),
-            practice=fromtoml.read_practice(root, keys, design, planned=planned),
-            trial=trial,
-            session=session,
-            repeat_faults=root.table("faults", ("repeat",)).flag("repeat", True),
-            sound=fromtoml.read_sound(root),
-            fields=fromtoml.read_fields(root),
-            text=text,
-        )
+    version = file.read(_Format).format
+    with file.checking():
+        if version != FORMAT:
+            raise ValueError(
+                f"format is {version}, and this vbraille knows format {FORMAT}; "
+                f"use a vbraille that knows it"
+            )
+    keys = file.read(_Keyed, read_keys).keys
+    tables = file.read(_File, spelled(keys, planned=planned))
+    with file.checking():
+        protocol = Protocol(**msgspec.structs.asdict(tables), text=text)
+        if protocol.practice.trials and not protocol.practice.items and not planned:
+            raise ValueError(
+                f"[practice] has no items of its own, and those of the test would be given away; "
+                f"give {'values' if protocol.parameter else 'strings'} that the test does not "
+                f"have, or trials = 0"
+            )
+    return protocol
+
+
+class _Format(msgspec.Struct):
+    """What is known of a file of any format."""
+
+    format: int
+
+
+class _Keyed(msgspec.Struct):
+    """What is read before the strings that are spelled by it."""
+
+    keys: Keys = field(default_factory=Keys)
 
 
 def _display(model: Model, mapping: Mapping) -> str:
@@ -302,6 +360,6 @@ def _display(model: Model, mapping: Mapping) -> str:
 
 
 def _check_names(table: str, names: list[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"{table} has the name {name!r} twice; give each its own")
+    for number, name in enumerate(names, 1):
+        if name in names[: number - 1]:
+            raise ValueError(f"{table} number {number} name is {name!r} again; give each its own")

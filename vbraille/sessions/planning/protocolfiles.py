@@ -6,7 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.section import nearest
+from vbraille.sessions.planning.tomlfile import which
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
 _MOST_BYTES = 1_000_000
@@ -29,7 +29,7 @@ def builtin_text(name: str) -> str:
     names = builtin_names()
     if name not in names:
         raise InputError(
-            f"there is no protocol {name!r}{nearest(name, names)}; "
+            f"there is no protocol {name!r}{which(name, names)}; "
             f"that of a file ends in .toml, or has a / in it"
         )
     return _FOLDER.joinpath(f"{name}.toml").read_bytes().decode("utf-8")

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import balanced_orders
-from vbraille.sessions.planning.design import Choice, Combinations
-from vbraille.sessions.planning.practice import Item, content
+from vbraille.sessions.planning.design import Choice, Combinations, Item
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -66,7 +65,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
 
 def _practised(protocol: Protocol) -> set[Item]:
     """What practice may show."""
-    return {content(protocol.design, item) for item in protocol.practice.items}
+    return set(map(protocol.design.content, protocol.practice.items))
 
 
 def _check_practice(protocol: Protocol, plan: Plan) -> None:
@@ -104,7 +103,7 @@ def _content(protocol: Protocol, trial: Trial) -> Item:
     """What a trial shows, as `_wanted` has it."""
     if isinstance(protocol.design, Choice):
         return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
-    return content(protocol.design, trial.stimuli[0].masks[slice(*trial.asked)])
+    return protocol.design.content(trial.stimuli[0].masks[slice(*trial.asked)])
 
 
 def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item]) -> str:
@@ -114,10 +113,9 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
         return f"has {len(trial.stimuli)} stimuli"
     if len(trial.stimuli) == 2 and trial.stimuli[0] == trial.stimuli[1]:
         return "compares two identical stimuli"
-    around = (design.before, design.after) if isinstance(design, Combinations) else ((), ())
     first, stop = trial.asked
     for stimulus in trial.stimuli:
-        if (stimulus.masks[:first], stimulus.masks[stop:]) != around:
+        if (stimulus.masks[:first], stimulus.masks[stop:]) != design.around:
             return "asks for other cells than those between the delimiters"
         if isinstance(design, Choice) and stimulus.masks != design.string:
             return "shows another string than the design's"
@@ -140,8 +138,9 @@ def _check_tuning(protocol: Protocol, plan: Plan) -> None:
         if len(tunings[condition.name]) != 1:
             raise ValueError(f"condition {condition.name} has not one texture and contrast")
         (tuning,) = tunings[condition.name]
-        for name in (*condition.own, "cycles"):
-            if getattr(tuning, name) != getattr(condition.tuning, name):
+        planned = protocol.tuning(condition)
+        for name in (*condition.given, "cycles"):
+            if getattr(tuning, name) != getattr(planned, name):
                 raise ValueError(f"condition {condition.name} has another {name}")
 
 

@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from vbraille.braille.spelling import to_braille
 
 if TYPE_CHECKING:
@@ -76,9 +78,14 @@ class Stimulus:
                 raise ValueError(f"a cell's dot mask is {mask}; it must be 0 to 255")
 
 
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """Something to read, or two things to compare.
+class Stimuli(tuple[Stimulus, ...]):
+    """What is shown in a trial, one after the other."""
+
+    __slots__ = ()
+
+
+class Trial(Struct, frozen=True, forbid_unknown_fields=True):
+    """Something to read, or two things to compare. Files have its fields in this order.
 
     Parameters
     ----------
@@ -88,10 +95,10 @@ class Trial:
         From 1; 0 is practice.
     condition
         Its name.
-    stimuli
-        One to read, two to compare.
     asked
         Cells of the stimulus that are asked for, as [first, one past the last).
+    stimuli
+        One to read, two to compare.
 
     Raises
     ------
@@ -102,8 +109,8 @@ class Trial:
     number: int
     block: int
     condition: str
-    stimuli: tuple[Stimulus, ...]
     asked: tuple[int, int]
+    stimuli: Stimuli
 
     def __post_init__(self) -> None:
         if self.number < 1:

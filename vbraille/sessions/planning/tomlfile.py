@@ -1,0 +1,274 @@
+"""TOML → typed values, or one sentence that says what is wrong with it, and in which line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+import msgspec
+from msgspec import inspect
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.tomllines import lines_of
+from vbraille.wording import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator
+
+    from vbraille.sessions.planning.tomllines import Path
+
+_Value = TypeVar("_Value")
+
+# Beyond this TOML readers differ, and no number of a protocol is so large.
+_MOST_WHOLE = 2**63 - 1
+_LONGEST_QUOTE = 60
+# What msgspec calls a type, and what must stand in a file instead of something else.
+_WANTED = {
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "str": "a string, in quotation marks",
+    "array": "a list, in brackets",
+    "object": "a table",
+}
+_EXPECTED = re.compile(r"Expected `([^`]*)`(?: of .*length (\d+))?, got")
+_STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
+_ABOUT = re.compile(r"(?:\[{1,2}(\w+)\]{1,2} )?(?:number (\d+) )?(.*)", re.DOTALL)
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A table of a TOML file: its fields are the keys that the table may have.
+
+    It checks itself in ``__post_init__``. The sentence of the `ValueError` begins with the words
+    of the key that it is about, if it is about one: by these its line is found.
+    """
+
+
+class TomlFile:
+    """A TOML text, and where it comes from.
+
+    Parameters
+    ----------
+    text
+        What the file holds.
+    where
+        The file, as messages name it.
+
+    Raises
+    ------
+    InputError
+        If it is no TOML, or has a string of several lines or a number that is far too large.
+    """
+
+    def __init__(self, text: str, where: str) -> None:
+        self._text, self._where = text, where
+        try:
+            self._tree = tomllib.loads(text)
+        except RecursionError:
+            raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
+        except ValueError as error:
+            raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+        for path, value in _leaves(self._tree):
+            if isinstance(value, str) and not value.isprintable():
+                self._refuse(path, "one line without control characters")
+            if isinstance(value, int) and abs(value) > _MOST_WHOLE:
+                self._refuse(path, "a smaller number")
+
+    def read(
+        self, kind: type[_Value], dec_hook: Callable[[type, Any], Any] | None = None
+    ) -> _Value:
+        """Fill a value of a type, and have it check itself.
+
+        Parameters
+        ----------
+        kind
+            A `Table`.
+        dec_hook
+            Makes what is in the file into types that msgspec does not know.
+
+        Raises
+        ------
+        InputError
+            If a key is missing or not known, or a value is not of its type or out of range.
+        """
+        try:
+            return msgspec.convert(self._tree, kind, dec_hook=dec_hook)
+        except msgspec.ValidationError as error:
+            message, _, steps = str(error).rpartition(" - at `$")
+            path = tuple(int(item) if item else key for key, item in _STEP.findall(steps))
+            if isinstance(error.__cause__, ValueError):
+                colon = "" if isinstance(self._at(path), dict) else ": "
+                self._fail(path, f"{colon}{error.__cause__}")
+            self._explain(path, message or steps, _types_at(kind, path))
+
+    @contextmanager
+    def checking(self) -> Iterator[None]:
+        """Add the file and the line to what is said of the whole of it.
+
+        The sentence begins with the table that it is about, as ``[design]`` or ``[[fields]] number
+        2``, and then the words of the key; or with those alone for a key that is in no table.
+
+        Raises
+        ------
+        InputError
+            For a `ValueError` within.
+        """
+        try:
+            yield
+        except ValueError as error:
+            about = _ABOUT.fullmatch(str(error))
+            table, item, problem = about.groups() if about else (None, None, "")
+            path = (*([table] if table else []), *([int(item) - 1] if item else []))
+            raise InputError(f"{self._line(path, problem)}: {error}") from None
+
+    def _explain(self, path: Path, message: str, types: list[inspect.Type]) -> NoReturn:
+        """Say in a sentence of ours what msgspec found."""
+        value = self._at(path)
+        expected = _EXPECTED.match(message)
+        if message.startswith("Object missing"):
+            self._fail(path, f"lacks {message.split('`')[1]}; add it")
+        if message.startswith("Object contains unknown") and isinstance(value, dict):
+            self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
+        if message.startswith("Invalid"):
+            names = [str(n) for t in types if isinstance(t, inspect.LiteralType) for n in t.values]
+            self._fail(path, f"is {quote(value)}{which(str(value), names)}")
+        if expected and expected[2]:
+            items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
+            self._fail(path, f"has {len(value)} items; give {expected[2]}: {', '.join(items)}")
+        if expected and any(map(_is_tables, types)):
+            self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
+        if expected:
+            wanted = [_WANTED.get(name) for name in expected[1].split(" | ")]
+            self._refuse(path, " or ".join(filter(None, wanted)))
+        self._fail(path, f"cannot be used: {message}")
+
+    def _fail_unknown(
+        self, path: Path, table: dict[str, Any], kinds: list[inspect.StructType]
+    ) -> NoReturn:
+        """Name a key that a table cannot have, or not in a table of its kind."""
+        own = [kind for kind in kinds if not kind.tag_field or table[kind.tag_field] == kind.tag]
+        known = {name for kind in own for name in _keys(kind)}
+        key = next((key for key in table if key not in known), "")
+        others = [repr(kind.tag) for kind in kinds if key in _keys(kind)]
+        if others:
+            (kind,) = own
+            self._fail(
+                (*path, key),
+                f"is of {kind.tag_field} = {' or '.join(others)}; "
+                f"leave it out of {kind.tag_field} = {kind.tag!r}",
+            )
+        self._fail(path, f"has no key {quote(key)}{which(key, known)}", key)
+
+    def _refuse(self, path: Path, wanted: str) -> NoReturn:
+        self._fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
+
+    def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
+        """Raise the sentence: in which line, of which table and key, what is wrong."""
+        named = self._named(path)
+        if problem.startswith(": "):
+            named = named.rstrip(",")
+        elif named:
+            named += " "
+        line = self._line((*path, key) if key else path, problem)
+        raise InputError(f"{line}: {named}{problem}")
+
+    def _named(self, path: Path) -> str:
+        """Table as it is written in the file, and key."""
+        label, rest = "", path
+        if isinstance(self._at(path[:1]), dict) and path:
+            label, rest = f"[{path[0]}]", path[1:]
+        elif isinstance(self._at(path[:2]), dict) and path:
+            label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
+        keys = "".join(f", number {s + 1}," if isinstance(s, int) else f" {s}" for s in rest)
+        return f"{label}{keys}".strip()
+
+    def _line(self, path: Path, problem: str) -> str:
+        """File and line of a place, or of the key in it with whose words a sentence begins."""
+        table = self._at(path)
+        if isinstance(table, dict):
+            path = (*path, *_steps_of(problem, table))
+        lines = lines_of(self._text)
+        while path and path not in lines:
+            path = path[:-1]
+        return f"{self._where} line {lines[path]}" if path else self._where
+
+    def _at(self, path: Path) -> Any:
+        """What stands at a path; None if nothing does."""
+        value: Any = self._tree
+        try:
+            for step in path:
+                value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+        return value
+
+
+def quote(value: object) -> str:
+    """A value of a file, as it can be said in a sentence."""
+    try:
+        said = repr(value)
+    # Python does not write whole numbers of thousands of digits, nor tables in tables without end.
+    except (ValueError, RecursionError):
+        return "too large a number" if isinstance(value, int) else "too large a table"
+    return said if len(said) <= _LONGEST_QUOTE else f"{said[:_LONGEST_QUOTE]}…"
+
+
+def which(name: str, names: Collection[str]) -> str:
+    """End of a sentence about a name that says what comes nearest to it, and all that there is."""
+    return f"; {nearest(name, names)}, and there is {', '.join(sorted(names))}"
+
+
+def _leaves(tree: object) -> Iterator[tuple[Path, object]]:
+    """Every value of a file that has no others in it, and its path; however deep they nest."""
+    left: list[tuple[Path, object]] = [((), tree)]
+    while left:
+        path, value = left.pop()
+        if isinstance(value, dict):
+            left += [((*path, key), inner) for key, inner in value.items()]
+        elif isinstance(value, list):
+            left += [((*path, item), inner) for item, inner in enumerate(value)]
+        else:
+            yield path, value
+
+
+def _types_at(kind: type, path: Path) -> list[inspect.Type]:
+    """Types that what stands at a path may have."""
+    types = _each(inspect.type_info(kind))
+    for step in path:
+        found: list[inspect.Type] = []
+        for t in types:
+            if isinstance(t, inspect.StructType) and t.array_like:
+                found += _each(t.fields[int(step)].type)
+            elif isinstance(t, inspect.StructType):
+                found += [t2 for f in t.fields if f.encode_name == step for t2 in _each(f.type)]
+                found += [inspect.LiteralType((t.tag,))] if step == t.tag_field else []
+            elif isinstance(t, inspect.VarTupleType):
+                found += _each(t.item_type)
+        types = found
+    return types
+
+
+def _each(t: inspect.Type) -> list[inspect.Type]:
+    return list(t.types) if isinstance(t, inspect.UnionType) else [t]
+
+
+def _is_tables(t: inspect.Type) -> bool:
+    return isinstance(t, inspect.VarTupleType) and isinstance(t.item_type, inspect.StructType)
+
+
+def _keys(kind: inspect.StructType) -> list[str]:
+    tag = [kind.tag_field] if kind.tag_field else []
+    return [*(field.encode_name for field in kind.fields), *tag]
+
+
+def _steps_of(problem: str, table: dict[str, Any]) -> Path:
+    """Key of a table with whose words a sentence begins, and the item that it names, if any."""
+    said = problem.lstrip("'\"").replace("_", " ")
+    for key in sorted(table, key=len, reverse=True):
+        words = re.escape(key.removesuffix("_mm").replace("_", " "))
+        named = re.match(rf"{words}(?!\w)(?:, number (\d+))?", said)
+        if named:
+            return (key, int(named[1]) - 1) if named[1] else (key,)
+    return ()

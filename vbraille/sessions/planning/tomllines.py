@@ -1,0 +1,97 @@
+"""In which line of a TOML text each key, table and item stands, which `tomllib` does not tell."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# Keys of tables and numbers of items, from 0, that lead from the whole file to a value in it.
+Path = tuple[str | int, ...]
+
+_TOKEN = re.compile(
+    r"""
+    (?P<nothing>[ \t\r]+|\#[^\n]*)
+    |"{3}(?:[^\\]|\\.)*?"{3}"{0,2}|'{3}.*?'{3}'{0,2}  # of several lines
+    |"(?:[^"\\\n]|\\.)*"|'[^'\n]*'
+    |[\n\[\]{},=.]
+    |[^\s\[\]{},=.\#"']+
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def lines_of(text: str) -> dict[Path, int]:
+    r"""Line of every key, table and item, from 1, by its path; but of those in braces.
+
+    Parameters
+    ----------
+    text
+        A TOML text that `tomllib` has read; of any other the lines mean nothing.
+
+    Examples
+    --------
+    >>> lines_of('size = 3\n[[box]]\nnames = [\n  "a",\n  "b",\n]')["box", 0, "names", 1]
+    5
+    """
+    lines: dict[Path, int] = {}
+    tables: Counter[Path] = Counter()  # under each [[name]] so far
+    table: Path = ()
+    for statement in _statements(text):
+        tokens = [token for token, _ in statement]
+        header = tokens[0] == "["
+        path: Path = () if header else table
+        for token in tokens[: len(tokens) if header else tokens.index("=")]:
+            if token in "[].":
+                continue
+            if path in tables:
+                path = (*path, tables[path] - 1)
+            path = (*path, _unquoted(token))
+            lines.setdefault(path, statement[0][1])
+        if not header:
+            _add_items(lines, path, statement[tokens.index("=") + 1 :])
+            continue
+        if tokens[1] == "[":
+            tables[path] += 1
+            path = (*path, tables[path] - 1)
+        lines[path] = statement[0][1]
+        table = path
+    return lines
+
+
+def _statements(text: str) -> Iterator[list[tuple[str, int]]]:
+    """Tokens of each header, and of each key with its value, and their lines."""
+    statement: list[tuple[str, int]] = []
+    depth, line = 0, 1
+    for match in _TOKEN.finditer(f"{text}\n"):
+        token = match[0]
+        if token == "\n":
+            if statement and not depth:
+                yield statement
+                statement = []
+        elif match["nothing"] is None:
+            statement.append((token, line))
+            depth += (token in "[{") - (token in "]}")
+        line += token.count("\n")
+
+
+def _add_items(lines: dict[Path, int], path: Path, value: list[tuple[str, int]]) -> None:
+    """Add the lines of the items of a list, and of lists in it."""
+    places: list[int] = []  # of the items that stand open, each in the one before it
+    for token, line in value:
+        if token in "]}":
+            places.pop()
+        elif token == "," and places:
+            places[-1] += 1
+        else:
+            lines.setdefault((*path, *places), line)
+        if token in "[{":
+            places.append(0)
+
+
+def _unquoted(key: str) -> str:
+    return tomllib.loads(f"key = {key}")["key"] if key[0] in "\"'" else key
