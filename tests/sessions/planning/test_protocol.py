@@ -22,6 +22,7 @@ from vbraille.sessions.planning.protocol import (
     load_protocol,
     parse_protocol,
 )
+from vbraille.sessions.planning.rules import is_balanced
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
 VBD_HEAD = f'{HEAD}model = "vbd"\n'
@@ -101,7 +102,7 @@ class TestBuiltIns:
             ("textured", Tuning(texture=1.0)),
         ]
         assert (protocol.trials, protocol.practice.trials) == (160, 8)
-        assert (protocol.blocks, protocol.order) == (None, "balanced")
+        assert (protocol.design.blocks, protocol.design.order) == ("conditions", "balanced")
 
     def test_control_is_legibility_on_paper(self):
         protocol, device = load_protocol("control"), load_protocol("legibility")
@@ -117,7 +118,7 @@ class TestBuiltIns:
         assert {protocol.tuning(c).cycles for c in protocol.conditions} == {7}
         assert (len(protocol.design.strings), protocol.trials) == (26, 78)
         assert all(len(set(string)) == 5 for string in protocol.design.strings)
-        assert (protocol.blocks, protocol.design.reorder) == (2, True)
+        assert (protocol.design.blocks, protocol.design.reorder) == (2, True)
         assert (protocol.practice.trials, len(protocol.practice.items)) == (6, 6)
         assert (protocol.rules.each_letter, protocol.trial.warning_s) == (5, 30.0)
         assert '"epkgn"' in protocol.text
@@ -150,7 +151,8 @@ class TestParsing:
         assert (protocol.medium, protocol.repeat_faults) == ("device", True)
         assert protocol.practice == Practice()
         assert not protocol.rules.never_twice_running
-        assert (protocol.blocks, protocol.order, protocol.design.repeats) == (None, "balanced", 1)
+        assert (protocol.design.blocks, protocol.design.repeats) == ("conditions", 1)
+        assert (protocol.design.order, is_balanced(protocol)) == (None, False)
         assert [(c.name, protocol.tuning(c), c.given) for c in protocol.conditions] == [
             ("all", Tuning(), {})
         ]
@@ -209,7 +211,7 @@ class TestParsing:
             ("weak", Tuning(0.5, 0.25, 5), {"contrast": 0.25}),
             ("fine", Tuning(1.0, 0.75, 9), {"texture": 1.0, "cycles": 9}),
         ]
-        assert (protocol.order, protocol.trials) == ("listed", 4)
+        assert (protocol.design.order, protocol.trials) == ("listed", 4)
         assert protocol.practice == Practice(3, ((3, 3),))
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (1.0, 20.0)
         assert (protocol.session.limit_s, protocol.session.break_every) == (60.0, 5)

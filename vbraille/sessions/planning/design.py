@@ -6,7 +6,7 @@ from collections import Counter
 from itertools import permutations, product
 from typing import TYPE_CHECKING, Literal
 
-from vbraille.braille.spelling import LETTERS, name_dots, to_braille
+from vbraille.braille.spelling import LETTERS, name_dots
 from vbraille.sessions.planning.conduct import check_range
 from vbraille.sessions.planning.spellings import Mask, Masks
 from vbraille.sessions.planning.tomlfile import Table
@@ -282,11 +282,6 @@ class Rules(Table, frozen=True):
                     f"each_letter_at_least is {self.each_letter_at_least}"
                 )
         return ""
-
-
-def name_cell(mask: int) -> str:
-    """Name a cell in a message: its braille character and its dots."""
-    return f"{to_braille((mask,))} ({name_dots(mask)})"
 
 
 def _check_distinct(what: str, names: Iterable[str]) -> None:

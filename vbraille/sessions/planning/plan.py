@@ -193,14 +193,14 @@ def _blocks(
 ) -> list[list[_Shown]]:
     """What each block shows, not yet shuffled."""
     items = _items(protocol, chance)
-    if protocol.blocks is None:
+    if protocol.design.blocks == "conditions":
         places = list(range(len(conditions)))
         if order:
             places = list(balanced_orders(len(conditions))[order - 1])
-        elif protocol.order == "shuffled":
+        elif protocol.design.order == "shuffled":
             places = chance.shuffled(places)
         return [[(item, conditions[place]) for item in items[place]] for place in places]
-    blocks: list[list[_Shown]] = [[] for _ in range(protocol.blocks)]
+    blocks: list[list[_Shown]] = [[] for _ in range(protocol.design.blocks)]
     # Dealt like cards, and each condition goes on where the one before it ended: so no block gets
     # more than one more of a condition than another, nor more than one more in all.
     dealt = cycle(blocks)

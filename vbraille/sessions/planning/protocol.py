@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Literal
 import msgspec
 from msgspec import field
 
-from vbraille.braille.spelling import name_dots
 from vbraille.render import MODELS
+from vbraille.sessions.planning.agreement import check_agreement
 from vbraille.sessions.planning.appearance import Appearance, Condition
 from vbraille.sessions.planning.conduct import (
     Faults,
@@ -24,14 +24,7 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
-from vbraille.sessions.planning.design import (
-    MOST_TRIALS,
-    Choice,
-    Combinations,
-    Rules,
-    StringList,
-    name_cell,
-)
+from vbraille.sessions.planning.design import Choice, Combinations, Rules, StringList
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, read_file
 from vbraille.sessions.planning.spellings import Keys, read_keys, spelled
@@ -124,16 +117,7 @@ class Protocol(_File, frozen=True, kw_only=True, dict=True):
         check_line("source", self.source)
         if self.model_name not in MODELS:
             raise ValueError(f"model is {self.model_name!r}{which(self.model_name, MODELS)}")
-        _check_names("[[conditions]]", [condition.name for condition in self.conditions])
-        _check_names("[[fields]]", [field.name for field in self.fields])
-        self._check_tuning()
-        problem = self.practice.problem(self.design)
-        if problem:
-            raise ValueError(f"[practice] {problem}")
-        self._check_trials()
-        self._check_cells()
-        self._check_lines()
-        self._check_letters()
+        check_agreement(self)
 
     @property
     def model(self) -> Model:
@@ -159,16 +143,6 @@ class Protocol(_File, frozen=True, kw_only=True, dict=True):
     def conditions(self) -> tuple[Condition, ...]:
         """One or more."""
         return self.listed or (Condition(name=ONLY_CONDITION),)
-
-    @property
-    def blocks(self) -> int | None:
-        """Conditions are mixed and spread over so many; None for a block each."""
-        return None if self.design.blocks == "conditions" else self.design.blocks
-
-    @property
-    def order(self) -> str:
-        """Order of the blocks of conditions: "balanced", "listed" or "shuffled"."""
-        return self.design.order or "balanced"
 
     @property
     def repeat_faults(self) -> bool:
@@ -218,69 +192,6 @@ class Protocol(_File, frozen=True, kw_only=True, dict=True):
         # From edge to edge, as the source has it: the centres stand a dot's width further apart.
         return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
 
-    def _check_tuning(self) -> None:
-        place = "[display]"
-        try:
-            self.style  # noqa: B018
-            for number, condition in enumerate(self.listed, 1):
-                place = f"[[conditions]] number {number}"
-                self.tuning(condition)
-        except ValueError as error:
-            raise ValueError(f"{place} {error}") from None
-
-    def _check_trials(self) -> None:
-        if self.trials + self.practice.trials > MOST_TRIALS:
-            raise ValueError(
-                f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
-            )
-        if self.blocks is not None and not 1 <= self.blocks <= self.trials:
-            raise ValueError(
-                f"[design] blocks is {self.blocks}; it must be 1 to {self.trials}, "
-                f"since there are {self.trials} trials"
-            )
-
-    def _check_cells(self) -> None:
-        shown = self.mapping.shown_dots()
-        only = f"{_display(self.model, self.mapping)} shows {name_dots(shown)} only"
-        practised = {mask for line in self.practice.lines(self.design) for mask in line}
-        for table, masks in (("[design]", self.design.masks), ("[practice]", practised)):
-            for mask in sorted(masks):
-                if mask & ~shown:
-                    raise ValueError(
-                        f"{table} has the cell {name_cell(mask)}, and {only}; leave the cell out"
-                    )
-        for key, mask in self.keys.items():
-            if mask & ~shown:
-                raise ValueError(
-                    f"[keys] {key} is {name_dots(mask)}, and {only}; leave the key out"
-                )
-
-    def _check_lines(self) -> None:
-        values = self.design.values if isinstance(self.design, Choice) else (None,)
-        practised = self.practice.lines(self.design)
-        longest = max((self.design.cells, *map(len, practised)))
-        whose = "[design]" if longest == self.design.cells else "[practice]"
-        for value in (*values, *sorted(set(self.practice.values))):
-            at = "" if value is None else f" at a value of {value:g} mm"
-            try:
-                room = self.geometry_at(value).cells_per_line(self.model.display.span_mm)
-            except ValueError as error:
-                raise ValueError(f"[design]{at}: {error}") from None
-            cells = self.lead_cells + longest
-            if cells > room:
-                raise ValueError(
-                    f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
-                    f"{self.model.title} has room for {room}; make it shorter, or travel_mm longer"
-                )
-
-    def _check_letters(self) -> None:
-        if isinstance(self.design, StringList):
-            problem = self.rules.problem(self.design.items())
-            if problem:
-                raise ValueError(f"[rules] {problem}; change the strings or the rule")
-        elif (self.rules.each_letter, self.rules.each_letter_at_least) != (None, None):
-            raise ValueError("[rules] count the letters of kind = 'list'; leave them out")
-
 
 def load_protocol(spec: str) -> Protocol:
     """Read a protocol.
@@ -320,14 +231,7 @@ def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
         If it cannot be used. One sentence says where, why, and what to do.
     """
     file = TomlFile(text, where)
-    # Before all keys are known: another format may have others.
-    version = file.read(_Format).format
-    with file.checking():
-        if version != FORMAT:
-            raise ValueError(
-                f"format is {version}, and this vbraille knows format {FORMAT}; "
-                f"use a vbraille that knows it"
-            )
+    file.read(_Format)  # before all keys are known: another format may have others
     keys = file.read(_Keyed, read_keys).keys
     tables = file.read(_File, spelled(keys, planned=planned))
     with file.checking():
@@ -346,20 +250,15 @@ class _Format(msgspec.Struct):
 
     format: int
 
+    def __post_init__(self) -> None:
+        if self.format != FORMAT:
+            raise ValueError(
+                f"format is {self.format}, and this vbraille knows format {FORMAT}; "
+                f"use a vbraille that knows it"
+            )
+
 
 class _Keyed(msgspec.Struct):
     """What is read before the strings that are spelled by it."""
 
     keys: Keys = field(default_factory=Keys)
-
-
-def _display(model: Model, mapping: Mapping) -> str:
-    if mapping.rows == 1:
-        return f"the {model.title}'s row {mapping.left[0] + 1}"
-    return f"the {model.title} with the mapping {mapping.name}"
-
-
-def _check_names(table: str, names: list[str]) -> None:
-    for number, name in enumerate(names, 1):
-        if name in names[: number - 1]:
-            raise ValueError(f"{table} number {number} name is {name!r} again; give each its own")

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 def is_balanced(protocol: Protocol) -> bool:
     """Whether participants differ in the order of the conditions."""
-    return protocol.blocks is None and protocol.order == "balanced" and len(protocol.conditions) > 1
+    design = protocol.design
+    balanced = design.blocks == "conditions" and design.order in ("balanced", None)
+    return balanced and len(protocol.conditions) > 1
 
 
 def check_plan(protocol: Protocol, plan: Plan) -> None:
@@ -146,14 +148,15 @@ def _check_tuning(protocol: Protocol, plan: Plan) -> None:
 
 def _check_blocks(protocol: Protocol, plan: Plan) -> None:
     blocks = [block for block, _ in groupby(plan.trials, key=lambda trial: trial.block)]
-    wanted = len(protocol.conditions) if protocol.blocks is None else protocol.blocks
+    planned = protocol.design.blocks
+    wanted = len(protocol.conditions) if planned == "conditions" else planned
     if blocks != list(range(1, wanted + 1)):
         raise ValueError(f"its blocks are not 1 to {wanted}")
     if any(not trial.practice for trial in plan.practice):
         raise ValueError("a practice trial is in a block")
     if plan.order and not is_balanced(protocol):
         raise ValueError(f"it has the balanced order {plan.order}, and there is none")
-    if protocol.blocks is None:
+    if planned == "conditions":
         _check_order(protocol, plan)
         return
     for name in (*(condition.name for condition in protocol.conditions), None):
@@ -171,7 +174,7 @@ def _check_order(protocol: Protocol, plan: Plan) -> None:
     shown = [name for _, name in dict.fromkeys((t.block, t.condition) for t in plan.trials)]
     if sorted(shown) != sorted(listed):
         raise ValueError("its blocks are not of one condition each")
-    if protocol.order == "listed" and shown != listed:
+    if protocol.design.order == "listed" and shown != listed:
         raise ValueError("its conditions are not in the order listed")
     if not is_balanced(protocol):
         return

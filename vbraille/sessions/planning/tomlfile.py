@@ -167,21 +167,21 @@ class TomlFile:
     def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
         """Raise the sentence: in which line, of which table and key, what is wrong."""
         named = self._named(path)
-        if problem.startswith(": "):
-            named = named.rstrip(",")
-        elif named:
-            named += " "
+        if named and not problem.startswith(":"):
+            is_item = isinstance(path[-1], int) and not isinstance(self._at(path), dict)
+            named += ", " if is_item else " "
         line = self._line((*path, key) if key else path, problem)
         raise InputError(f"{line}: {named}{problem}")
 
     def _named(self, path: Path) -> str:
         """Table as it is written in the file, and key."""
-        label, rest = "", path
-        if isinstance(self._at(path[:1]), dict) and path:
+        if path and isinstance(self._at(path[:1]), dict):
             label, rest = f"[{path[0]}]", path[1:]
-        elif isinstance(self._at(path[:2]), dict) and path:
+        elif path and isinstance(self._at(path[:2]), dict):
             label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
-        keys = "".join(f", number {s + 1}," if isinstance(s, int) else f" {s}" for s in rest)
+        else:
+            label, rest = "", path
+        keys = "".join(f", number {s + 1}" if isinstance(s, int) else f" {s}" for s in rest)
         return f"{label}{keys}".strip()
 
     def _line(self, path: Path, problem: str) -> str:
