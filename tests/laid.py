@@ -11,10 +11,10 @@ def rebuilt(layout: Layout) -> str:
 
 
 def laid_out(layout: Layout) -> str:
-    """The text that was laid out: its paragraphs, one after the other."""
+    """The text that was laid out: its blocks, one after the other."""
     texts, number = [], 0
-    while (paragraph := layout.book.document.paragraph(number)) is not None:
-        texts.append(paragraph.text)
+    while (block := layout.book.source.block(number)) is not None:
+        texts.append(str(block.text))
         number += 1
     return "".join(texts)
 
@@ -27,7 +27,7 @@ def cuts_inside(layout: Layout) -> int:
         raised = line.cells.starts[line.cells.masks > 0]
         if before is not None and raised.size and raised[0] == before:
             character = int(raised[0])
-            _, cells = layout.book.paragraph(layout.book.document.paragraph_at(character))
+            _, cells = layout.book.block(layout.book.source.block_at(character))
             own = np.flatnonzero((cells.starts == character) & (cells.masks > 0))
             cuts += int(own[-1] - own[0]) < layout.width - line.indent
         before = int(raised[-1]) if raised.size else None

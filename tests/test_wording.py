@@ -5,14 +5,16 @@ from pathlib import Path
 import pytest
 
 import vbraille
-from vbraille import wording
+from vbraille import errors, wording
+from vbraille.braille import dots
 from vbraille.wording import printable, setting, spelled
 
 
-def test_the_examples():
-    failed, attempted = doctest.testmod(wording)
+@pytest.mark.parametrize("module", [wording, errors, dots], ids=lambda module: module.__name__)
+def test_the_examples(module):
+    failed, attempted = doctest.testmod(module)
     assert failed == 0
-    assert attempted > 2
+    assert attempted > 0
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,105 @@
-"""Braille under one fingertip, by lateral skin deformation.
+"""Braille under one fingertip: text as travelling waves of lateral skin deformation.
 
-``translate`` makes braille cells of a text, ``page`` lays them out on a
-surface, ``render`` turns a place on it into deflections, ``devices`` and
-``engine`` bring those to a fingertip. Importing this package loads none of
-them.
+What a program wants is here, and is loaded when it is first asked for; `docs/api.md` tells of it
+with examples.
+
+>>> import vbraille
+>>> len(vbraille.render_text("Hello", display=vbraille.STRESS2).cells)
+6
 """
+
+from importlib import import_module
 
 from vbraille.version import __version__
 
-__all__ = ["__version__"]
+TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
+if TYPE_CHECKING:
+    from vbraille import testing as testing
+    from vbraille.analysis import analyse as analyse
+    from vbraille.analysis.results import Results as Results
+    from vbraille.braille.geometry import Geometry as Geometry
+    from vbraille.devices.base import Device as Device
+    from vbraille.display import Display as Display
+    from vbraille.errors import DeviceError as DeviceError
+    from vbraille.errors import InputError as InputError
+    from vbraille.errors import VbrailleError as VbrailleError
+    from vbraille.pose import Pose as Pose
+    from vbraille.reading.frames import RenderedLine as RenderedLine
+    from vbraille.reading.frames import render_text as render_text
+    from vbraille.reading.opened import OpenDevice as OpenDevice
+    from vbraille.reading.opening import open_device as open  # noqa: A004
+    from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
+    from vbraille.render.braille.models import STRESS2 as STRESS2
+    from vbraille.render.braille.models import VBD as VBD
+    from vbraille.render.braille.models import Model as Model
+    from vbraille.render.braille.style import BrailleStyle as BrailleStyle
+    from vbraille.render.braille.tuning import Tuning as Tuning
+    from vbraille.sessions.conditions import Conditions as Conditions
+    from vbraille.sessions.session import Session as Session
+
+# Where each name is; what it has another name there stands after the colon.
+_PLACES = {
+    "BrailleStyle": "vbraille.render.braille.style",
+    "Conditions": "vbraille.sessions.conditions",
+    "Device": "vbraille.devices.base",
+    "DeviceError": "vbraille.errors",
+    "Display": "vbraille.display",
+    "Geometry": "vbraille.braille.geometry",
+    "InputError": "vbraille.errors",
+    "MAPPINGS": "vbraille.render.braille.mappings",
+    "Model": "vbraille.render.braille.models",
+    "OpenDevice": "vbraille.reading.opened",
+    "Pose": "vbraille.pose",
+    "RenderedLine": "vbraille.reading.frames",
+    "Results": "vbraille.analysis.results",
+    "STRESS2": "vbraille.render.braille.models",
+    "Session": "vbraille.sessions.session",
+    "Tuning": "vbraille.render.braille.tuning",
+    "VBD": "vbraille.render.braille.models",
+    "VbrailleError": "vbraille.errors",
+    "analyse": "vbraille.analysis",
+    "open": "vbraille.reading.opening:open_device",
+    "render_text": "vbraille.reading.frames",
+}
+__all__ = [
+    "MAPPINGS",
+    "STRESS2",
+    "VBD",
+    "BrailleStyle",
+    "Conditions",
+    "Device",
+    "DeviceError",
+    "Display",
+    "Geometry",
+    "InputError",
+    "Model",
+    "OpenDevice",
+    "Pose",
+    "RenderedLine",
+    "Results",
+    "Session",
+    "Tuning",
+    "VbrailleError",
+    "__version__",
+    "analyse",
+    "open",
+    "render_text",
+    "testing",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Load what is asked for; it is then at hand."""
+    if name == "testing":
+        return import_module("vbraille.testing")
+    if name not in _PLACES:
+        raise AttributeError(f"module 'vbraille' has no attribute {name!r}")
+    place, _, its_name = _PLACES[name].partition(":")
+    found = getattr(import_module(place), its_name or name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    """Names for people, loaded or not."""
+    return sorted({*globals(), *__all__})

@@ -19,3 +19,19 @@ class InputError(VbrailleError):
 
 class DeviceError(VbrailleError):
     """A device did not do what it was asked, or was asked what it must not do."""
+
+
+def check_range(what: str, value: float | None, low: float, high: float, unit: str = "") -> None:
+    """See that a number, which may be left out, is in a range.
+
+    Raises
+    ------
+    ValueError
+        If it is not, or is no number; it names the value and the range.
+
+    >>> check_range("gap", 61.0, 0, 60, " s")
+    Traceback (most recent call last):
+    ValueError: gap is 61 s; it must be 0 to 60 s
+    """
+    if value is not None and not low <= value <= high:
+        raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")

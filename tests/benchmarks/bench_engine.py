@@ -37,8 +37,8 @@ _TRANSLATE = """
 from vbraille.layout.pages import Layout
 from vbraille.translate import Book, BrailleTable, Document
 while True:
-    document = Document.open("texts/english.txt")
-    list(Layout(Book(document, BrailleTable("en-ueb-g2.ctb")), 26).lines())
+    book = Book(Document.open("texts/english.txt"), BrailleTable("en-ueb-g2.ctb"))
+    list(Layout(book, 26).lines())
 """
 
 INFO = STRESS2.on(STRESS2.style.geometry)

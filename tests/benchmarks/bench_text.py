@@ -56,8 +56,8 @@ def _texts(folder: Path) -> Iterator[Result]:
     path = big_text(folder / "1mb", 1_000_000)
     document = Document.open(path)
     texts = []
-    while (paragraph := document.paragraph(len(texts))) is not None:
-        texts.append(paragraph.text)
+    while (block := document.block(len(texts))) is not None:
+        texts.append(str(block.text))
 
     def bare() -> None:
         for text in texts:

@@ -171,6 +171,28 @@ def test_overstrikes_are_no_text(call, text):
     assert said.err.count("\n") == 1
 
 
+def test_a_brf_file_is_read_as_it_is(call, tmp_path):
+    book = tmp_path / "book.BRF"
+    book.write_bytes(b"  ,! 9vi*t]\r\n\r\n,b #c\r\n")
+    said = call("page", book, "--format", "brf")
+    assert said.out == "  ,! 9VI*T]\n\n,B #C\n"
+    assert said.err == "line width: 26 cells, braille as it is\n"
+    assert call("page", book, "--format", "text").out == "  ,! 9vi*t]\n\n,b #c\n"
+    assert call("page", book, "--lines", "3").out == "⠠⠃⠀⠼⠉\n"
+    said = call("page", book, "--language", "fr")
+    assert (said.code, said.out) == (2, "")
+    assert said.err == f"vbraille: {book} is in braille already; leave out --language\n"
+    book.write_text("caf\xe9")
+    said = call("page", book)
+    assert (said.code, said.out) == (2, "")
+    assert "is not all braille: 'é' is neither ASCII braille nor" in said.err
+    book.write_text("⣀")
+    assert call("page", book).out == "⣀\n"
+    said = call("page", book, "--format", "brf")
+    assert (said.code, said.out) == (2, "")
+    assert "dots 7-8; give --format unicode" in said.err
+
+
 def test_help_and_version_end_well(call):
     said = call("--help")
     assert said.code == 0

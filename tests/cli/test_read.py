@@ -7,7 +7,8 @@ import pytest
 
 from tests.cli import program
 from vbraille.layout.pages import Layout
-from vbraille.reading import COMMANDS
+from vbraille.reading import COMMANDS, Context
+from vbraille.reading.commands import commands_of
 from vbraille.translate import Book, BrailleTable, Document
 
 SUMMARY = (
@@ -120,7 +121,7 @@ def test_keys_at_a_terminal(tmp_path, text):
         helped = press("h", "q: stop reading").splitlines()
         assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
             f"{' or '.join('space' if key == ' ' else key for key in command.keys)}: {command.help}"
-            for command in COMMANDS
+            for command in commands_of(Context.READING)
         ]
         word = ""
         while "two" not in word:

@@ -311,7 +311,7 @@ class TestLayout:
         layout = lay_out(text, table if file[0] == "e" else letters, width, keep_lines=keep_lines)
         shown = [line.cells for line in layout.lines()]
         book, translated, n = layout.book, [], 0
-        while (found := book.paragraph(n)) is not None:
+        while (found := book.block(n)) is not None:
             translated.append(found[1])
             n += 1
         for part in ("masks", "starts"):
@@ -352,9 +352,9 @@ class TestLayout:
         class Counting(Book):
             asked = 0
 
-            def paragraph(self, number):
+            def block(self, number):
                 self.asked = max(self.asked, number)
-                return super().paragraph(number)
+                return super().block(number)
 
         book = Counting(Document.from_text(english), table)
         assert Layout(book, 26).line(2) is not None
@@ -384,13 +384,14 @@ class TestLongParagraphs:
             "full lines": "abcd " * 1_634 + "abc. " + "abcd " * 1_000,
         }[kind].strip()
         layout = lay_out(text, letters, keep_lines=keep_lines)
-        paragraph, cells = layout.book.paragraph(0)
+        block, cells = layout.book.block(0)
+        whole = block.text
         n = 1
-        while (found := layout.book.paragraph(n)) is not None:
-            paragraph, cells = paragraph + found[0], cells + found[1]
+        while (found := layout.book.block(n)) is not None:
+            whole, cells = whole + found[0].text, cells + found[1]
             n += 1
         assert n > 1
-        solid = np.isin(cells.starts, paragraph.source[paragraph.codes == 0xA0])
+        solid = np.isin(cells.starts, whole.places[whole.codes == 0xA0])
         breaks = np.where(solid, 0xFF, cells.masks).astype(np.uint8).tobytes()
         indents = (0, 2) if keep_lines else (2, 0)
         bounds = wrap(breaks, 26, *indents)
@@ -540,6 +541,6 @@ class TestLocate:
             return
         geometry = replace(VBD, cell_gap_mm=50.0, dot_width_mm=width_mm, dot_spacing_mm=spacing_mm)
         geometry = replace(geometry, cell_gap_mm=gap_mm)
-        paragraph = Document.from_text("x").paragraph(0)
-        line = Line(1, 0, Cells.bare(np.ones(501, np.uint8)), paragraph, 0, 1)
+        block = Document.from_text("x").block(0)
+        line = Line(1, 0, Cells.bare(np.ones(501, np.uint8)), block, 0, 1)
         assert locate(line, geometry, place_of(cell, geometry)) == cell

@@ -1,14 +1,12 @@
 from dataclasses import replace
 
-import numpy as np
-
 from vbraille.braille.cells import Cells
 from vbraille.layout.pages import Line
 from vbraille.pictures import mapping, page, profile, strain, wave
 from vbraille.render import STRESS2, VBD, Tuning
-from vbraille.translate.documents.paragraphs import Paragraph
+from vbraille.translate import Block, Text
 
-NO_TEXT = Paragraph(np.zeros(0, np.uint32), np.zeros(0, np.int64), 0, False, frozenset())
+NO_TEXT = Block(Text.empty())
 
 
 def make_line(braille, number=1, indent=0):

@@ -9,27 +9,40 @@ from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.layout.pages import Layout
-from vbraille.reading import COMMANDS
-from vbraille.reading.commands import BY_KEY
-from vbraille.reading.reader import Echo, Reader
+from vbraille.reading.commands import press
+from vbraille.reading.echo import Echo
+from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, CellsSource, Document
 
 SPAN_MM = 10.8
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
 
 
+class Device(Recording):
+    """A device that counts how often it was told that it is at its left stop."""
+
+    zeroed = 0
+
+    def set_zero(self) -> None:
+        self.zeroed += 1
+
+
 class Bench:
     """A reader with its device, and all that it says."""
 
-    def __init__(self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, **options):
+    def __init__(
+        self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, book=None, **options
+    ):
         self.clock = ManualClock()
-        self.device = Recording(self.clock, hand)
+        self.device = Device(self.clock, hand)
         self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
         self.loop = self.engine.loop
         self.said: list[str] = []
-        self.layout = Layout(Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb")), width)
+        if book is None:
+            book = Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb"))
+        self.layout = Layout(book, width)
         self.reader = Reader(
             self.layout,
             self.engine,
@@ -49,7 +62,7 @@ class Bench:
     def press(self, keys):
         before = len(self.said)
         for key in keys:
-            self.reader.press(key)
+            press(self.reader, key)
         return self.said[before:]
 
 
@@ -70,6 +83,21 @@ def test_the_hand_s_return_brings_the_next_line_until_the_end():
         )
     ]
     assert biggest_step(bench.device.sent) < 1  # a frame a tick, and the hand's own motion only
+
+
+def test_a_text_that_is_braille_already_is_read_like_any_other():
+    braille = Document.from_text(",read ,me\n  #c", keep_lines=True)
+    bench = Bench(book=Book(CellsSource(braille)), hand=Sweep(400), echo=Echo.BOTH)
+    bench.run()
+    assert bench.reader.done
+    assert [said for said in bench.said if not said.startswith("speed")] == [
+        "line: 1",
+        "cells: ⠠⠗⠑⠁⠙⠀⠠⠍⠑",
+        "text: ,read ,me",
+        "line: 2",
+        "cells: ⠀⠀⠼⠉",
+        "text: #c",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -163,16 +191,6 @@ def test_each_turn_is_said_in_one_line_shown_and_kept_in_bounds():
     assert bench.reader.style.tuning == Tuning(texture=0.9, contrast=0.2)
     run(bench.loop, 0.5)
     assert np.abs(bench.loop.output - before).max() > 0.01
-
-
-def test_help_says_every_key_and_every_key_does_something():
-    bench = Bench()
-    assert len(bench.press("h")) == len(COMMANDS)
-    for key in BY_KEY:
-        Bench().reader.press(key)
-    assert bench.press("x") == ["no command: 'x'; h says the keys"]
-    bench.press("q")
-    assert bench.reader.done
 
 
 @pytest.mark.no_cover

@@ -17,9 +17,9 @@ class Counting(BrailleTable):
         super().__init__(name)
         self.asked: list[str] = []
 
-    def translate(self, paragraph) -> Cells:
-        self.asked.append(paragraph.text)
-        return super().translate(paragraph)
+    def translate(self, text) -> Cells:
+        self.asked.append(str(text))
+        return super().translate(text)
 
 
 @pytest.fixture(scope="module")
@@ -33,33 +33,33 @@ def table() -> BrailleTable:
 
 
 class TestLazy:
-    def test_a_paragraph_is_translated_when_it_is_read(self, english):
+    def test_a_block_is_translated_when_it_is_read(self, english):
         table = Counting("en-ueb-g2.ctb")
         book = Book(Document.from_text(english), table)
         assert table.asked == []
-        paragraph, _ = book.paragraph(3)
-        assert table.asked == [paragraph.text]
-        book.paragraph(3)
+        block, _ = book.block(3)
+        assert table.asked == [str(block.text)]
+        book.block(3)
         assert len(table.asked) == 1
 
     def test_no_more_is_kept_than_a_few(self):
         table = Counting("en-ueb-g2.ctb")
         book = Book(Document.from_text("\n\n".join("abcdefghijklmnopqrstuvwxyz")), table)
         for n in (*range(26), 0, 25):
-            assert book.paragraph(n) is not None
+            assert book.block(n) is not None
         assert table.asked == [*"abcdefghijklmnopqrstuvwxyz", "a"]
-        assert book.paragraph(26) is None
+        assert book.block(26) is None
 
 
 class TestCells:
     def test_in_any_order(self, english, table):
         expected = Book(Document.from_text(english), table)
         count = len(english.strip().split("\n\n"))
-        cells = [expected.paragraph(n)[1].to_unicode() for n in range(count)]
+        cells = [expected.block(n)[1].to_unicode() for n in range(count)]
         book = Book(Document(io.BytesIO(english.encode("utf-16"))), table)
         chance = random.Random(SEED)
         for n in chance.choices(range(count), k=100):
-            assert book.paragraph(n)[1].to_unicode() == cells[n]
+            assert book.block(n)[1].to_unicode() == cells[n]
 
     def test_hard_wrapped_lines_are_one_text(self, english, table):
         wrapped = Book(Document.from_text(english), table)
@@ -67,8 +67,8 @@ class TestCells:
         lines = [" ".join(paragraph.split()) for paragraph in items.split("\n\n")]
         joined = Book(Document.from_text("\n\n".join(lines)), table)
         n = 0
-        while (found := wrapped.paragraph(n)) is not None:
-            assert found[1].to_unicode() == joined.paragraph(n)[1].to_unicode()
+        while (found := wrapped.block(n)) is not None:
+            assert found[1].to_unicode() == joined.block(n)[1].to_unicode()
             n += 1
         assert n > 20
 
@@ -76,15 +76,16 @@ class TestCells:
         """liblouis sees a paragraph too long to hold in pieces; nobody who reads it can tell."""
         long = " ".join(english.split() * 5)
         book = Book(Document.from_text(long), table)
-        paragraph, cells = book.paragraph(0)
+        block, cells = book.block(0)
+        text = block.text
         n = 1
-        while (found := book.paragraph(n)) is not None:
+        while (found := book.block(n)) is not None:
             assert found[0].continues
-            paragraph, cells = paragraph + found[0], cells + found[1]
+            text, cells = text + found[0].text, cells + found[1]
             n += 1
         assert n > 4
-        assert paragraph.text == long
-        whole = table.translate(paragraph)
+        assert str(text) == long
+        whole = table.translate(text)
         assert cells.to_unicode() == whole.to_unicode()
         assert cells.starts.tolist() == whole.starts.tolist()
         assert cells.end == whole.end == len(long)
@@ -96,14 +97,14 @@ class TestCells:
         name = {"e": "en-ueb-g2.ctb", "f": "fr-bfu-comp6.utb", "d": "de-g2.ctb"}[file[0]]
         book = Book(Document.from_text(text), BrailleTable(name))
         n = 0
-        while (found := book.paragraph(n)) is not None:
-            paragraph, cells = found
+        while (found := book.block(n)) is not None:
+            own, cells = found[0].text, found[1]
             spans = sorted({cells.source(cell) for cell in range(len(cells))})
-            assert spans[0][0] == paragraph.source[0]
-            assert spans[-1][1] == paragraph.end
+            assert spans[0][0] == own.places[0]
+            assert spans[-1][1] == own.end
             source = "".join(text[first:end] for first, end in spans)
-            assert source == text[paragraph.source[0] : paragraph.end]
-            for character in paragraph.source.tolist():
+            assert source == text[own.places[0] : own.end]
+            for character in own.places.tolist():
                 low, high = cells.of_source(character)
                 first, end = cells.source(low)
                 assert low < high

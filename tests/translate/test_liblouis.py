@@ -33,9 +33,9 @@ def table(request) -> BrailleTable:
 
 
 def translate(table: BrailleTable, text: str) -> Cells:
-    paragraph = Document.from_text(text, keep_lines=True).paragraph(0)
-    assert paragraph is not None
-    return table.translate(paragraph)
+    block = Document.from_text(text, keep_lines=True).block(0)
+    assert block is not None
+    return table.translate(block.text)
 
 
 @cache
@@ -122,9 +122,9 @@ class TestTable:
         assert Cells.from_unicode(cells.to_unicode()).masks.tolist() == cells.masks.tolist()
 
     def test_nothing_gives_nothing(self, table):
-        paragraph = Document.from_text("a\n\nb", keep_lines=True).paragraph(1)
-        assert paragraph is not None
-        cells = table.translate(paragraph)
+        block = Document.from_text("a\n\nb", keep_lines=True).block(1)
+        assert block is not None
+        cells = table.translate(block.text)
         assert (len(cells), cells.end) == (0, 1)
 
 
@@ -176,16 +176,16 @@ class TestNothingLost:
     @given(st.text(likely, min_size=1, max_size=20))
     def test_maps_hold_for_any_text(self, text):
         table = BrailleTable("en-ueb-g2.ctb")
-        paragraph = Document.from_text(text).paragraph(0)
-        if paragraph is None:
+        block = Document.from_text(text).block(0)
+        if block is None:
             return
-        cells = table.translate(paragraph)
-        places = set(paragraph.source.tolist())
+        cells = table.translate(block.text)
+        places = set(block.text.places.tolist())
         assert set(cells.starts.tolist()) <= places
         assert (cells.starts[1:] >= cells.starts[:-1]).all()
-        assert cells.end == paragraph.end
+        assert cells.end == block.text.end
         printed = any(
-            not c.isspace() and ord(c) not in IGNORABLE and c != "\u2800" for c in paragraph.text
+            not c.isspace() and ord(c) not in IGNORABLE and c != "\u2800" for c in str(block.text)
         )
         assert cells.masks.any() == printed
 
@@ -234,8 +234,8 @@ def work(n):
     cells = []
     for m in range(6):
         table = BrailleTable(NAMES[(n + m) % 3])
-        paragraph = Document.from_text(TEXT * (1 + m % 4)).paragraph(0)
-        cells.append((table.name, m, table.translate(paragraph).to_unicode()))
+        block = Document.from_text(TEXT * (1 + m % 4)).block(0)
+        cells.append((table.name, m, table.translate(block.text).to_unicode()))
     return cells
 
 with ThreadPoolExecutor(8) as pool:

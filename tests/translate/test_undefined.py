@@ -14,9 +14,9 @@ SIX_DOT_TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "ru-litbrl.ctb", "ko-g2.c
 
 
 def translate(table: BrailleTable, text: str) -> Cells:
-    paragraph = Document.from_text(text).paragraph(0)
-    assert paragraph is not None
-    return table.translate(paragraph)
+    block = Document.from_text(text).block(0)
+    assert block is not None
+    return table.translate(block.text)
 
 
 class TestSpelling:
@@ -76,13 +76,13 @@ class TestSpelling:
     def test_maps_hold_in_every_manner(self, text):
         for how in Undefined:
             table = BrailleTable("en-ueb-g2.ctb", how)
-            paragraph = Document.from_text(text).paragraph(0)
-            if paragraph is None:
+            block = Document.from_text(text).block(0)
+            if block is None:
                 return
-            cells = table.translate(paragraph)
-            assert set(cells.starts.tolist()) <= set(paragraph.source.tolist())
+            cells = table.translate(block.text)
+            assert set(cells.starts.tolist()) <= set(block.text.places.tolist())
             assert (cells.starts[1:] >= cells.starts[:-1]).all()
-            assert cells.end == paragraph.end
+            assert cells.end == block.text.end
 
 
 class TestEightDots:

@@ -23,6 +23,7 @@ _BRF_MASKS[_BRF_CODES] = np.arange(64, dtype=np.uint8)
 # Files in the wild use 0x60-0x7E for 0x40-0x5E, letters in lower case among them.
 _BRF_MASKS[0x60:0x7F] = _BRF_MASKS[0x40:0x5F]
 
+_PATTERNS = 0x100  # of Unicode, from `UNICODE_BLANK` on
 _DOTS = ["-".join(map(str, dots_of(mask))) or "0" for mask in range(256)]
 
 
@@ -117,7 +118,7 @@ class Cells:
             If a character is not in U+2800-28FF.
         """
         codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
-        wrong = np.flatnonzero((codes < UNICODE_BLANK) | (codes > UNICODE_BLANK + 0xFF))
+        wrong = np.flatnonzero((codes < UNICODE_BLANK) | (codes >= UNICODE_BLANK + _PATTERNS))
         if wrong.size:
             raise ValueError(f"{text[wrong[0]]!r} is not a braille pattern (U+2800 to U+28FF)")
         return cls.bare((codes - UNICODE_BLANK).astype(np.uint8))
@@ -173,3 +174,31 @@ class Cells:
                 )
             masks.append(mask_of(int(dot) for dot in word if dot not in "-0"))
         return cls.bare(np.array(masks, np.uint8))
+
+
+def masks_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    """Dot masks of braille as files have it: Unicode braille patterns, ASCII braille, or both.
+
+    Parameters
+    ----------
+    codes : uint32[n]
+        Code points.
+
+    Returns
+    -------
+    uint8[n]
+        A mask for each of them.
+
+    Raises
+    ------
+    ValueError
+        If a character is neither.
+    """
+    is_pattern = (codes >= UNICODE_BLANK) & (codes < UNICODE_BLANK + _PATTERNS)
+    masks = np.where(is_pattern, codes - UNICODE_BLANK, _BRF_MASKS[np.minimum(codes, 127)])
+    wrong = np.flatnonzero(~is_pattern & (masks == 0xFF))
+    if wrong.size:
+        raise ValueError(
+            f"{chr(codes[wrong[0]])!r} is neither ASCII braille nor a Unicode braille pattern"
+        )
+    return masks.astype(np.uint8)

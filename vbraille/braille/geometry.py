@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
+from vbraille.errors import check_range
+
 BOUNDS_MM = {
     "dot_width_mm": (0.1, 20.0),
     "dot_spacing_mm": (0.1, 50.0),
@@ -55,10 +57,8 @@ class Geometry:
     def __post_init__(self) -> None:
         for field in fields(self):
             low, high = BOUNDS_MM[field.name]
-            length = getattr(self, field.name)
-            if not low <= length <= high:
-                name = field.name.removesuffix("_mm").replace("_", " ")
-                raise ValueError(f"{name} is {length:g} mm; it must be {low:g} to {high:g} mm")
+            name = field.name.removesuffix("_mm").replace("_", " ")
+            check_range(name, getattr(self, field.name), low, high, " mm")
         if self.dot_width_mm > self.cell_pitch_mm:
             raise ValueError(
                 f"dot width is {self.dot_width_mm:g} mm; it must be at most the cell pitch, "

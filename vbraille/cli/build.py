@@ -10,10 +10,18 @@ from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
+from vbraille.layout.texts import cells_per_line
 from vbraille.layout.unknown import Unknown
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
-from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table, six_dot_table
-from vbraille.translate.languages import foreign_note
+from vbraille.translate import (
+    Book,
+    BrailleTable,
+    CellsSource,
+    Document,
+    Undefined,
+    find_table,
+    six_dot_table,
+)
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -21,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.layout.pages import Line
+    from vbraille.translate import Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,32 +45,32 @@ class Page:
     first, last
         Lines asked for.
     unknown
-        Counts what the table does not know.
+        Counts what the table does not know; None where there is no table.
     """
 
     layout: Layout
     model: Model
     first: int
     last: int | None
-    unknown: Unknown
+    unknown: Unknown | None
 
     @property
-    def document(self) -> Document:
+    def source(self) -> Source:
         """The text."""
-        return self.layout.book.document
+        return self.layout.book.source
 
     def lines(self) -> Iterator[Line]:
         """Lines asked for; says on stderr what the text's encoding and script need saying."""
         for line in self.layout.lines(self.first, self.last):
             self.say_note()
-            self.unknown.see(line)
+            self._count(line)
             yield line
 
     def see(self, number: int) -> None:
         """Count what the table does not know on a line that was laid out."""
         line = self.layout.line(number)
         if line is not None:
-            self.unknown.see(line)
+            self._count(line)
 
     def progress(self, line: Line) -> float:
         """How much of the lines asked for is done with this one, about, 0 to 1."""
@@ -79,15 +88,18 @@ class Page:
 
     def say_note(self) -> None:
         """Say once if the text is not UTF-8, and of each script that the table does not know."""
-        for note in (self.document.note(), foreign_note(self.layout.book.table)):
-            if note is not None:
-                say_line(spelled(note), aside=True)
+        for note in self.layout.book.notes():
+            say_line(spelled(note), aside=True)
 
     def say_unknown(self) -> None:
         """Say at the end how many characters the table does not know, if there were any."""
-        sentence = self.unknown.sentence
+        sentence = None if self.unknown is None else self.unknown.sentence
         if sentence is not None:
             say_line(spelled(sentence), aside=True)
+
+    def _count(self, line: Line) -> None:
+        if self.unknown is not None:
+            self.unknown.see(line)
 
 
 def build_lengths(
@@ -142,7 +154,7 @@ def build_table(arguments: argparse.Namespace) -> BrailleTable:
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
-    """The text and its table, before anything is laid out.
+    """The text and its table, before anything is laid out; a BRF file has none.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -151,6 +163,8 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     InputError
         If an option or the text cannot be used.
     """
+    if arguments.file.lower().endswith(".brf"):
+        return _build_brf(arguments)
     table = build_table(arguments)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
@@ -159,13 +173,20 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
         if sys.stdin is None:
             raise InputError("standard input is closed; give a text there, or the name of a file")
         if sys.stdin.isatty():
-            print("type the text; Ctrl-D on an empty line ends it", file=sys.stderr, flush=True)
+            say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
         document = Document.take(
             sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
         )
     else:
         document = Document.open(arguments.file, arguments.encoding, keep_lines=keep_lines)
     return Book(document, table)
+
+
+def _build_brf(arguments: argparse.Namespace) -> Book:
+    for option in ("table", "language", "grade"):
+        if getattr(arguments, option) is not None:
+            raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
+    return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
 
 
 def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
@@ -176,21 +197,20 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
     InputError
         If there is no room for a cell, or the text ends before the lines asked for.
     """
-    try:
-        width = model.style.geometry.cells_per_line(model.display.span_mm)
-    except ValueError as error:
-        raise InputError(str(error)) from None
+    width = cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
     layout = Layout(book, width)
     if layout.line(first) is None:
         lines = layout.count()
-        name = book.document.name
+        name = book.source.name
         if not lines:
             raise InputError(f"{name} has no text in it; give a text file")
         raise InputError(f"{name} ends at line {lines}; --lines {first} is past that")
     cells = "1 cell" if width == 1 else f"{width} cells"
-    say_line(f"line width: {cells}, table {book.table.name}", aside=True)
-    unknown = Unknown(book.table, Undefined(arguments.undefined))
+    table = book.table
+    written = "braille as it is" if table is None else f"table {table.name}"
+    say_line(f"line width: {cells}, {written}", aside=True)
+    unknown = None if table is None else Unknown(table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)
 
 
@@ -260,11 +280,11 @@ def build_show(arguments: argparse.Namespace, model: Model) -> Model:
 
 def note_unseen_dots(page: Page) -> None:
     """Say on stderr if the table writes dots that the display does not show."""
-    info = page.layout.book.table.info
+    table = page.layout.book.table
+    info = None if table is None else table.info
     if info is not None and info.dots == 8 and page.model.style.mapping.rows > 1:
-        print(
+        say_line(
             f"table {info.name} has eight dots; the {page.model.title} shows six, "
             f"so that dots 7 and 8 are not felt",
-            file=sys.stderr,
-            flush=True,
+            aside=True,
         )

@@ -1,4 +1,4 @@
-"""An engine in this process, for tests and checks."""
+"""An engine in this process: its loop goes on while it is polled."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class LocalEngine:
-    """An engine in this process, for tests and for runs on a clock that is turned by hand.
+    """An engine in this process, for a device that a program has, tests and clocks turned by hand.
 
     Parameters
     ----------
@@ -86,3 +86,16 @@ class LocalEngine:
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
         self.loop.device.set_zero()
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """What went wrong with the device, by name."""
+        return self.loop.device.counts()
+
+    def start(self) -> None:
+        """Begin with the next poll: what has gone by until now is not late."""
+        self.loop.restart_clock()
+
+    def close(self) -> None:
+        """Have the array fade to rest; whoever opened the device closes it."""
+        self.loop.fade_to_rest()

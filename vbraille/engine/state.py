@@ -17,6 +17,7 @@ from vbraille.engine.constants import (
     PAUSE_FADE_S,
     SILENCE_S,
 )
+from vbraille.errors import check_range
 from vbraille.render import work
 from vbraille.render.kernels import blend
 from vbraille.render.program import nothing, scratch_for
@@ -110,8 +111,7 @@ class LoopState:
         idle_s: float = IDLE_S,
         rested: int = 0,
     ) -> None:
-        if not 1 <= rate_hz <= 10_000:
-            raise ValueError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+        check_range("rate", rate_hz, 1, 10_000, " Hz")
         self.shape = display.shape
         self._numbers = np.zeros(1, _STATE)
         self.now = now = self._numbers[0]

@@ -1,1 +1,1 @@
-"""Braille on pages: paragraphs of cells wrapped into lines."""
+"""Braille on pages: blocks of cells wrapped into lines."""

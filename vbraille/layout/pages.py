@@ -6,13 +6,13 @@ import math
 from array import array
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.cells import Cells
-from vbraille.layout.wrapping import breaks_of, wrap
-from vbraille.translate.documents.paragraphs import to_text
+from vbraille.braille.cells import UNICODE_BLANK, Cells
+from vbraille.layout.blocks import LaidBlock
+from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
+    from vbraille.layout.blocks import Carried
     from vbraille.translate.book import Book
-    from vbraille.translate.documents.paragraphs import Paragraph
+    from vbraille.translate.source import Block
 
-INDENT = 2
-_REMEMBERED = 16  # paragraphs
+_REMEMBERED = 16  # blocks
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,16 +39,16 @@ class Line:
         Blank cells before the first.
     cells : Cells
         What it shows after them.
-    paragraph : Paragraph
-        The text it is part of.
+    block : Block
+        The block that it is part of.
     first, after : int
-        The first of the paragraph's characters that it stands for, and one past the last.
+        Index of the first character of the block's text that it stands for, and one past the last.
     """
 
     number: int
     indent: int
     cells: Cells
-    paragraph: Paragraph
+    block: Block
     first: int
     after: int
 
@@ -69,12 +69,12 @@ class Line:
 
     @property
     def text(self) -> str:
-        """The text that the line stands for; the lines of a paragraph together are its text.
+        """The text that the line stands for; the lines of a block together are its text.
 
         White space at which a line ends belongs to that line. A character whose cells do not
         find room on one line belongs to the first of its lines.
         """
-        return to_text(self.paragraph.codes[self.first : self.after])
+        return to_text(self.block.text.codes[self.first : self.after])
 
     def source(self, cell: int) -> tuple[int, int] | None:
         """Source characters of a cell as [first, one past the last); None off the text."""
@@ -97,8 +97,8 @@ class Line:
         span = self.source(cell)
         if span is None:
             return ""
-        at = int(np.searchsorted(self.paragraph.source, span[0]))
-        text = self.paragraph.text
+        at = self.block.text.index(span[0])
+        text = str(self.block.text).replace(chr(UNICODE_BLANK), " ")
         if at >= len(text) or text[at].isspace():
             return ""
         before = text[:at].split(None)[-1:] if at and not text[at - 1].isspace() else []
@@ -108,10 +108,9 @@ class Line:
 class Layout:
     """A book laid out in lines of a width, only as far as somebody looks.
 
-    Words wrap whole; a paragraph begins with an indent of two cells; a word
-    that is longer than a line is cut between two of its characters and goes on
-    in the next. With the lines of the source kept, each begins at the margin
-    and what runs over is indented.
+    Words wrap whole; a word that is longer than a line is cut between two of its characters and
+    goes on in the next. How a block is indented is a matter of its kind: a paragraph begins with
+    two blank cells, and of a line that is kept as the source has it, what runs over does.
 
     Parameters
     ----------
@@ -131,14 +130,12 @@ class Layout:
             raise ValueError(f"width is {width} cells; it must be at least 1")
         self.book = book
         self.width = width
-        indent = INDENT if width > 2 * INDENT else 0
-        self._indents = (0, indent) if book.document.keep_lines else (indent, 0)
-        # Number of lines before each paragraph; the last entry is of the paragraph to come.
+        # Number of lines before each block; the last entry is of the block to come.
         self._before = array("q", [0])
-        # Where a long paragraph comes in pieces: its unfinished line, by the next piece.
-        self._carried: dict[int, _Carried] = {}
+        # Where a long block comes in pieces: its unfinished line, by the next piece.
+        self._carried: dict[int, Carried] = {}
         self._complete = False
-        self._recent: dict[int, _Laid] = {}
+        self._recent: dict[int, LaidBlock] = {}
 
     def line(self, number: int) -> Line | None:
         """Line of a number, from 1; None past the end."""
@@ -146,8 +143,8 @@ class Layout:
             self._extend()
         if not 0 < number <= self._before[-1]:
             return None
-        paragraph = bisect_right(self._before, number - 1) - 1
-        return self._line(paragraph, number - 1 - self._before[paragraph])
+        block = bisect_right(self._before, number - 1) - 1
+        return self._line(block, number - 1 - self._before[block])
 
     def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
         """Lines of a range of numbers, both ends included."""
@@ -171,154 +168,57 @@ class Layout:
         A character that no cell stands for, such as a blank at a wrap, gives
         the next cell after it.
         """
-        paragraph = self.book.document.paragraph_at(character)
-        while paragraph is not None:
-            while paragraph >= len(self._before) - 1 and not self._complete:
+        block = self.book.source.block_at(character)
+        while block is not None:
+            while block >= len(self._before) - 1 and not self._complete:
                 self._extend()
-            if paragraph >= len(self._before) - 1:
+            if block >= len(self._before) - 1:
                 return None
-            for n in range(self._before[paragraph + 1] - self._before[paragraph]):
-                line = self._line(paragraph, n)
+            for n in range(self._before[block + 1] - self._before[block]):
+                line = self._line(block, n)
                 if len(line.cells) and character < line.cells.end:
                     return line, line.cell_of(max(character, int(line.cells.starts[0])))
-            paragraph += 1
+            block += 1
         return None
 
     def progress(self, line: Line) -> float:
         """About how much of the book stands before a line, 0 to 1."""
-        return self.book.document.progress(bisect_right(self._before, line.number - 1) - 1)
+        return self.book.source.progress(bisect_right(self._before, line.number - 1) - 1)
 
     def _extend(self) -> None:
-        """Lay out the next paragraph."""
+        """Lay out the next block."""
         laid = self._lay_out(len(self._before) - 1)
         if laid is None:
             self._complete = True
         else:
             self._before.append(self._before[-1] + len(laid.bounds))
 
-    def _line(self, paragraph: int, index: int) -> Line:
-        laid = self._lay_out(paragraph)
-        assert laid is not None, "only paragraphs already laid out are asked for"
+    def _line(self, block: int, index: int) -> Line:
+        laid = self._lay_out(block)
+        assert laid is not None, "only blocks already laid out are asked for"
         start, stop, indent = laid.bounds[index]
-        number = self._before[paragraph] + index + 1
+        number = self._before[block] + index + 1
         first, after = laid.edges[index : index + 2]
-        return Line(number, indent, laid.cells[start:stop], laid.paragraph, first, after)
+        return Line(number, indent, laid.cells[start:stop], laid.block, first, after)
 
-    def _lay_out(self, number: int) -> _Laid | None:
-        """Break a paragraph, or a piece of one, into lines; None past the end."""
+    def _lay_out(self, number: int) -> LaidBlock | None:
+        """Break a block, or a piece of one, into lines; None past the end."""
         laid = self._recent.get(number)
         if laid is not None:
             return laid
-        found = self.book.paragraph(number)
+        found = self.book.block(number)
         if found is None:
             return None
-        paragraph, cells = found
-        indent, runover = self._indents
-        first = 0
-        if paragraph.continues:
-            carried = self._carried[number]
-            indent = carried.indent
-            paragraph, cells = carried.paragraph + paragraph, carried.cells + cells
-            first = int(np.searchsorted(paragraph.source, carried.character))
-        breaks = breaks_of(paragraph, cells)
-        bounds = wrap(breaks, self.width, indent, runover, cells.starts.data)
-        laid = _Laid(paragraph, cells, bounds, first)
-        following = self.book.document.paragraph(number + 1)
-        if following is None or not following.continues:
-            if paragraph.continues and bounds == [(0, 0, 0)]:
-                bounds.clear()  # nothing but blanks after the last piece
-        else:
-            start, stop, its_indent = bounds.pop()
-            if start == stop:  # blank so far
-                start, its_indent = len(cells), indent
-            elif stop < len(cells):  # the blanks after it have filled it
-                bounds.append((start, stop, its_indent))
-                start, its_indent = len(cells), runover
-            laid.rest = start
-            self._carried[number + 1] = _carry(laid, start, its_indent)
+        following = self.book.source.block(number + 1)
+        goes_on = following is not None and following.continues
+        carried = self._carried[number] if found[0].continues else None
+        laid = LaidBlock(*found, self.width, carried, goes_on=goes_on)
+        if laid.carries is not None:
+            self._carried[number + 1] = laid.carries
         if len(self._recent) >= _REMEMBERED:
             del self._recent[next(iter(self._recent))]
         self._recent[number] = laid
         return laid
-
-
-class _Laid:
-    """A paragraph, or a piece of one, in lines.
-
-    Parameters
-    ----------
-    paragraph, cells
-        What is laid out.
-    bounds
-        Of each line the first cell, one past the last, and the indent.
-    first
-        The first of the paragraph's characters that no earlier piece's lines stand for.
-
-    Attributes
-    ----------
-    rest : int or None
-        Where the cells begin that are left for the next piece's lines.
-    """
-
-    __slots__ = ("_edges", "bounds", "cells", "first", "paragraph", "rest")
-
-    def __init__(
-        self,
-        paragraph: Paragraph,
-        cells: Cells,
-        bounds: list[tuple[int, int, int]],
-        first: int,
-    ) -> None:
-        self.paragraph = paragraph
-        self.cells = cells
-        self.bounds = bounds
-        self.first = first
-        self.rest: int | None = None
-        self._edges: list[int] | None = None
-
-    @property
-    def edges(self) -> list[int]:
-        """Index of the character at which each line begins, and one past the last line's."""
-        if self._edges is None:
-            starts = [start for start, _, _ in self.bounds[1:]]
-            starts += [] if self.rest is None or not self.bounds else [self.rest]
-            after = [stop for _, stop, _ in self.bounds]
-            edges = [self._edge(start, stop) for start, stop in zip(starts, after, strict=False)]
-            self._edges = [self.first, *edges]
-            if len(edges) < max(len(self.bounds), 1):
-                self._edges.append(self.paragraph.codes.size)
-        return self._edges
-
-    def _edge(self, start: int, stop: int) -> int:
-        """Where a line's text begins: the line has its cells from `start`, the last to `stop`."""
-        codes, starts = self.paragraph.codes, self.cells.starts
-        if start == starts.size:
-            return codes.size
-        character = int(starts[start])
-        if stop and starts[stop - 1] == character:  # its text is on the line before
-            character = self.cells.source(start)[1]
-        at = int(np.searchsorted(self.paragraph.source, character))
-        while at < codes.size and chr(codes[at]).isspace():
-            at += 1
-        return at
-
-
-class _Carried(NamedTuple):
-    """A paragraph's unfinished line, for its next piece, and the first character of its text."""
-
-    indent: int
-    paragraph: Paragraph
-    cells: Cells
-    character: int
-
-
-def _carry(laid: _Laid, start: int, indent: int) -> _Carried:
-    """A paragraph from one of its cells on; keeps nothing of what is before in memory."""
-    paragraph, cells = laid.paragraph, laid.cells
-    first, text = int(cells.starts[start]) if start < len(cells) else paragraph.end, laid.edges[-1]
-    character = int(paragraph.source[text]) if text < paragraph.source.size else paragraph.end
-    rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
-    return _Carried(indent, paragraph.since(first), rest, character)
 
 
 def locate(line: Line, geometry: Geometry, x_mm: float) -> int | None:

@@ -1,4 +1,4 @@
-"""Where the lines of a paragraph of cells begin and end."""
+"""Where the lines of a block of cells begin and end."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.translate.documents.paragraphs import NO_BREAK_SPACE
+from vbraille.translate.text import NO_BREAK_SPACE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.braille.cells import Cells
-    from vbraille.translate.documents.paragraphs import Paragraph
+    from vbraille.translate.text import Text
 
 _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
 
 
-def breaks_of(paragraph: Paragraph, cells: Cells) -> bytes:
+def breaks_of(text: Text, cells: Cells) -> bytes:
     """Cells as bytes: zero where a line may break, which is at blanks but for no-break spaces."""
-    if NO_BREAK_SPACE not in paragraph.alphabet:
+    if NO_BREAK_SPACE not in text.alphabet:
         return cells.masks.tobytes()
-    no_break = paragraph.source[paragraph.codes == NO_BREAK_SPACE]
+    no_break = text.places[text.codes == NO_BREAK_SPACE]
     solid = np.isin(cells.starts, no_break) & (cells.masks == 0)
     return np.where(solid, _SOLID, cells.masks).astype(np.uint8).tobytes()
 
@@ -34,7 +34,7 @@ def wrap(
     runover: int = 0,
     starts: Sequence[int] | memoryview | None = None,
 ) -> list[tuple[int, int, int]]:
-    """Break a paragraph into lines, each as full as it can be.
+    """Break a block into lines, each as full as it can be.
 
     The cells of one source character stay together, if need be at the cost of the indent. Only
     where they are more than a line's width are they cut, where the line is full.

@@ -1,8 +1,25 @@
-"""The commands of a reader and their keys; names as in BRLTTY where it has them."""
+"""The commands of a reader: one table of what keys do, from which help and documents are made.
+
+Names are BRLTTY's where it has the command.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vbraille.reading import asking, control, moving
+from vbraille.reading.context import Context
+from vbraille.reading.keys import PASTE
+from vbraille.reading.turning import STEP, turn
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.reading.reader import Reader
+
+ANY = "any key"
+EVERYWHERE = tuple(Context)
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,16 +29,23 @@ class Command:
     Parameters
     ----------
     name
-        Of the method of `vbraille.reading.Reader` that does it, in capitals.
+        What it is called in documents, in capitals as BRLTTY has it.
     keys
-        That call it, as `vbraille.reading.keyboard` names them.
+        The keys that call it, as `vbraille.reading.keys` names them; `ANY` for each that calls no
+        other command of the context.
     help
         What it does, for people.
+    handler
+        What does it.
+    contexts
+        Where it can be called.
     """
 
     name: str
     keys: tuple[str, ...]
     help: str
+    handler: Callable[[Reader], None]
+    contexts: tuple[Context, ...] = (Context.READING,)
 
     @property
     def spoken_keys(self) -> str:
@@ -29,16 +53,55 @@ class Command:
         return " or ".join("space" if key == " " else key for key in self.keys)
 
 
+def commands_of(context: Context) -> tuple[Command, ...]:
+    """Commands that can be called in a context."""
+    return tuple(command for command in COMMANDS if context in command.contexts)
+
+
+def find(key: str, context: Context) -> Command | None:
+    """Command that a key calls in a context; None if it calls none."""
+    return _BY_KEY.get((context, key)) or _BY_KEY.get((context, ANY))
+
+
+def press(reader: Reader, key: str) -> None:
+    """Do what a key stands for in the reader's context."""
+    command = find(key, reader.context)
+    if key == PASTE:
+        reader.say("paste: text that is pasted is passed over; type the keys")
+    elif command is None:
+        reader.say(f"no command: {key!r}; h says the keys")
+    else:
+        command.handler(reader)
+
+
+def say_keys(reader: Reader) -> None:
+    """Say what the keys do."""
+    for command in commands_of(reader.context):
+        reader.say(f"{command.spoken_keys}: {command.help}")
+
+
 COMMANDS = (
-    Command("LNDN", ("n", "down"), "next line"),
-    Command("LNUP", ("p", "up"), "previous line"),
-    Command("WORD", ("w",), "say the word under the finger"),
-    Command("PAUSE", (" ",), "rest the array at once, or go on"),
-    Command("TEXTURE_UP", ("t",), "more texture"),
-    Command("TEXTURE_DOWN", ("T",), "less texture"),
-    Command("CONTRAST_UP", ("c",), "more contrast"),
-    Command("CONTRAST_DOWN", ("C",), "less contrast"),
-    Command("HELP", ("h", "?"), "say the keys"),
-    Command("QUIT", ("q",), "stop reading"),
+    Command("LNDN", ("n", "down"), "next line", moving.next_line),
+    Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
+    Command("WORD", ("w",), "say the word under the finger", asking.say_word),
+    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
+    Command("TEXTURE_UP", ("t",), "more texture", turn("texture", STEP)),
+    Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -STEP)),
+    Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", STEP)),
+    Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -STEP)),
+    Command("HELP", ("h", "?"), "say the keys", say_keys),
+    Command("QUIT", ("q",), "stop reading", control.stop, EVERYWHERE),
+    Command(
+        "ZERO",
+        (ANY,),
+        "the carriage is at the left stop, when that is asked for",
+        control.set_zero,
+        (Context.PLACING,),
+    ),
 )
-BY_KEY = {key: command for command in COMMANDS for key in command.keys}
+_BY_KEY = {
+    (context, key): command
+    for command in COMMANDS
+    for context in command.contexts
+    for key in command.keys
+}

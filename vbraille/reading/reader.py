@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from vbraille.engine.advance import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import locate
-from vbraille.reading.commands import BY_KEY, COMMANDS
-from vbraille.reading.keys import PASTE
+from vbraille.reading.context import Context
+from vbraille.reading.echo import Echo
+from vbraille.reading.speed import too_fast_note
 from vbraille.reading.waiting import Waiting
 from vbraille.simulation.steering import ReadLine
 
@@ -22,27 +21,17 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout, Line
-    from vbraille.render import BrailleStyle, Model
+    from vbraille.render import Model
     from vbraille.simulation.steering import Steering
 
-STEP = 0.1
-# Above this the devices' reconstruction filters take texture away (Lévesque 2009, 6.2).
-FILTER_HZ = 200.0
 # Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
 _PAUSED, _HELD = int(Flag.PAUSED), int(Flag.HELD)
 
 
-class Echo(StrEnum):
-    """What is said of each line."""
-
-    NONE = "none"
-    TEXT = "text"
-    CELLS = "cells"
-    BOTH = "both"
-
-
 class Reader:
-    """Read a range of lines.
+    """Somebody who reads a range of lines: what is under the hand, and where that is on its way.
+
+    It says what it has to say in sentences; `vbraille.reading.commands` does things with it.
 
     Parameters
     ----------
@@ -63,10 +52,16 @@ class Reader:
     steering
         What tells the simulated hand what to read; None if a person's hand reads.
     say
-        Where to say it, one thing a call.
+        Takes what is said, one thing a call.
 
     Attributes
     ----------
+    line : Line or None
+        The line under the hand; None before the first.
+    style : BrailleStyle
+        How lines are shown.
+    context : Context
+        What keys mean at the moment.
     lines : int
         Lines read so far: those that were under the hand.
     done : bool
@@ -90,16 +85,17 @@ class Reader:
         self.layout = layout
         self.engine = engine
         self.style = model.style
+        self.say = say
+        self.echo = echo
+        self.context = Context.READING
+        self.line: Line | None = None
         self.lines = 0
         self.done = False
         self._model = model
-        self._say = say
         self._first, self._last = first, last
         self._advance = advance
         self._stay = stay
-        self._echo = echo
         self._steering = steering
-        self._line: Line | None = None
         self._end: EndOfLine
         self._waiting: Waiting
         self._finished = False  # said that there is no more, until a key brings another line
@@ -109,12 +105,20 @@ class Reader:
     @property
     def hopeless(self) -> str | None:
         """Why the line will not come to its end unless somebody sees to it; else None."""
-        return None if self._line is None else self._waiting.hopeless
+        return None if self.line is None else self._waiting.hopeless
 
     @property
     def line_number(self) -> int:
-        """Of the line under the hand; 0 before the first."""
-        return 0 if self._line is None else self._line.number
+        """Number of the line under the hand; 0 before the first."""
+        return 0 if self.line is None else self.line.number
+
+    @property
+    def cell(self) -> int | None:
+        """Cell of the line under the middle of the array; None if it is not on the line."""
+        x_mm = self.engine.x_mm
+        if self.line is None or x_mm is None:
+            return None
+        return locate(self.line, self.style.geometry, x_mm)
 
     def start(self) -> None:
         """Put the first line under the hand."""
@@ -126,9 +130,9 @@ class Reader:
 
     def step(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand was in these ticks, all since the last call."""
-        if self._line is None:
+        if self.line is None:
             return
-        ticks = ticks[(ticks["line"] == self._line.number) & (ticks["flags"] & _PAUSED == 0)]
+        ticks = ticks[(ticks["line"] == self.line.number) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             self._waiting.rest()
             return
@@ -140,99 +144,28 @@ class Reader:
             if self._end.reached and not self._prefetched:
                 # On the way back to the start there is time for it.
                 self._prefetched = True
-                self.layout.line(self._line.number + 1)
+                self.layout.line(self.line.number + 1)
             if not self._finished:
                 for sentence in self._waiting.watch(ticks, reached=self._end.reached):
-                    self._say(sentence)
+                    self.say(sentence)
         self._watch_speed(float(ticks["vx_mm_s"].max()))
 
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does by itself."""
-        if self._steering is not None and self._line is not None:
-            self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self._line))))
+        if self._steering is not None and self.line is not None:
+            self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self.line))))
 
     def steered_till(self, tick: np.void) -> bool:
         """Whether a simulated hand had read the line, by the time of a tick; no other ever has."""
         return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
 
     def go_on(self) -> None:
-        """Put the next line under the hand; there is none: the reading is finished."""
-        if self._line is not None and not self._go(self._line.number + 1):
+        """Put the next line under the hand; where there is none, the reading is finished."""
+        if self.line is not None and not self.go(self.line.number + 1):
             self._finish()
 
-    def press(self, key: str) -> None:
-        """Do what a key stands for."""
-        command = BY_KEY.get(key)
-        if key == PASTE:
-            self._say("paste: text that is pasted is passed over; type the keys")
-        elif command is None:
-            self._say(f"no command: {key!r}; h says the keys")
-        else:
-            getattr(self, command.name.lower())()
-
-    def lndn(self) -> None:
-        """Next line."""
-        self._step_by_key(1, "last line")
-
-    def lnup(self) -> None:
-        """Previous line."""
-        self._step_by_key(-1, "first line")
-
-    def word(self) -> None:
-        """Say the word under the middle of the array."""
-        line, x_mm = self._line, self.engine.x_mm
-        cell = None
-        if line is not None and x_mm is not None:
-            cell = locate(line, self.style.geometry, x_mm)
-        word = line.word(cell) if line is not None and cell is not None else ""
-        self._say(f"word: {word}" if word else "word: none here")
-
-    def pause(self) -> None:
-        """Rest the array at once, or go on."""
-        self.engine.paused = not self.engine.paused
-        self._say("paused" if self.engine.paused else "reading")
-
-    def texture_up(self) -> None:
-        """More texture."""
-        self._turn("texture", STEP)
-
-    def texture_down(self) -> None:
-        """Less texture."""
-        self._turn("texture", -STEP)
-
-    def contrast_up(self) -> None:
-        """More contrast."""
-        self._turn("contrast", STEP)
-
-    def contrast_down(self) -> None:
-        """Less contrast."""
-        self._turn("contrast", -STEP)
-
-    def help(self) -> None:
-        """Say the keys."""
-        for command in COMMANDS:
-            self._say(f"{command.spoken_keys}: {command.help}")
-
-    def quit(self) -> None:
-        """Stop reading."""
-        self.done = True
-
-    def _step_by_key(self, step: int, none: str) -> None:
-        """Go to another line and say its number, or that there is none."""
-        if self._line is None or not self._go(self._line.number + step):
-            self._say(none)
-        elif self._echo is Echo.NONE:
-            self._say(f"line: {self._line.number}")
-
-    def _finish(self) -> None:
-        if self._stay:
-            self._finished = True
-            self._say("end of text; p goes back, q stops")
-        else:
-            self.done = True
-
-    def _go(self, number: int) -> bool:
-        """Put another line under the hand; whether there is one."""
+    def go(self, number: int) -> bool:
+        """Put a line of a number under the hand; False if there is none among those to read."""
         if number < self._first or (self._last is not None and number > self._last):
             return False
         line = self.layout.line(number)
@@ -241,8 +174,32 @@ class Reader:
         self._show(line)
         return True
 
+    def tune(self, **turned: float) -> None:
+        """Show the line, and those after it, with another texture or contrast, 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range.
+        """
+        self.style = self.style.replace(**turned)
+        self._too_fast_said = False
+        if self.line is not None:
+            self._render(self.line)
+
+    def quit(self) -> None:
+        """Stop reading."""
+        self.done = True
+
+    def _finish(self) -> None:
+        if self._stay:
+            self._finished = True
+            self.say("end of text; p goes back, q stops")
+        else:
+            self.done = True
+
     def _show(self, line: Line) -> None:
-        self._line = line
+        self.line = line
         self.lines += 1
         self._finished = False
         self._prefetched = False
@@ -251,36 +208,13 @@ class Reader:
         self._waiting = Waiting(
             self._model.display.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
         )
-        self._picture(line)
+        self._render(line)
         self.steer()
-        self._say_line(line)
+        for sentence in self.echo.sentences(line):
+            self.say(sentence)
 
-    def _picture(self, line: Line) -> None:
-        self.engine.show(
-            self.style.render(line.masks, self._model.display),
-            line.number,
-        )
-
-    def _say_line(self, line: Line) -> None:
-        if self._echo is Echo.NONE:
-            return
-        self._say(f"line: {line.number}")
-        if self._echo in (Echo.CELLS, Echo.BOTH):
-            self._say(f"cells: {line.printed.to_unicode()}")
-        if self._echo in (Echo.TEXT, Echo.BOTH):
-            self._say(f"text: {line.text.strip()}")
-
-    def _turn(self, name: str, step: float) -> None:
-        tuning = self.style.tuning
-        value = round(min(max(getattr(tuning, name) + step, 0.0), 1.0), 6)
-        if value == getattr(tuning, name):
-            self._say(f"{name}: {value:g}, the {'most' if step > 0 else 'least'}")
-            return
-        self.style = replace(self.style, tuning=replace(tuning, **{name: value}))
-        self._too_fast_said = False
-        self._say(f"{name}: {value:g}")
-        if self._line is not None:
-            self._picture(self._line)
+    def _render(self, line: Line) -> None:
+        self.engine.show(self.style.render(line.masks, self._model.display), line.number)
 
     def _watch_speed(self, speed_mm_s: float) -> None:
         if self._too_fast_said or self._end.reached:
@@ -288,17 +222,4 @@ class Reader:
         note = too_fast_note(speed_mm_s, self.style)
         if note is not None:
             self._too_fast_said = True
-            self._say(note)
-
-
-def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:
-    """What to say of a hand so fast that texture passes the filters; None if it is not."""
-    if not style.tuning.texture:
-        return None
-    period_mm = style.profile.texture_period_mm(style.geometry.dot_width_mm, style.tuning.cycles)
-    if speed_mm_s / period_mm <= FILTER_HZ:
-        return None
-    return (
-        f"speed: {speed_mm_s:.0f} mm/s, at which texture passes {FILTER_HZ:g} Hz and fades; "
-        f"below {FILTER_HZ * period_mm:.0f} mm/s it is felt"
-    )
+            self.say(note)

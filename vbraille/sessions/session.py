@@ -53,7 +53,7 @@ def _nothing() -> None:
 
 
 class Session:
-    """A legibility session: `create` or `resume` it, `run` it, read its `trials`.
+    r"""A legibility session: `create` or `resume` it, `run` it, read its `trials`.
 
     Parameters
     ----------
@@ -70,18 +70,23 @@ class Session:
 
     Examples
     --------
-    Four trials, read by a simulated reader on a simulated device as fast as the machine can:
+    Two trials, felt by a simulated reader on a simulated device as fast as the machine can:
 
-    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
     >>> from vbraille import Conditions, Session
-    >>> folder = tempfile.mkdtemp()
-    >>> fast = Conditions(fast=True, hand="sweep:200")
+    >>> folder = Path(mkdtemp())
+    >>> _ = Path(folder, "two.toml").write_text(
+    ...     'format = 1\nname = "two"\ntitle = "Two"\nsource = "ours"\nmodel = "vbd"\n'
+    ...     '[design]\nkind = "combinations"\ncharacters = ["a", "c"]\nlength = 1\n'
+    ... )
+    >>> fast = Conditions(fast=True, hand="sweep:150")
     >>> session = Session.create(
-    ...     "letters", "P01", folder=f"{folder}/P01", seed=1, conditions=fast
+    ...     folder / "two.toml", "P01", folder=folder / "P01", seed=1, conditions=fast
     ... )
     >>> _ = session.run("simulated")
-    >>> len(session.trials), session.trials[0]["participant"]
-    (78, 'P01')
+    >>> [row["answered"] == row["presented"] for row in session.trials]
+    [True, True]
     """
 
     def __init__(
@@ -317,12 +322,9 @@ class Session:
             )
             if begins:
                 sitting.open(self.protocol, self.plan)
-                create(
-                    self.folder,
-                    self.protocol,
-                    self.plan,
-                    head_of(self.protocol, self.plan, self.fields, self.conditions, given.name),
-                )
+                began = replace(self.conditions, answers=given.name)
+                head = head_of(self.protocol, self.plan, self.fields, began)
+                create(self.folder, self.protocol, self.plan, head)
                 self._begun = True
                 if self._drawn:
                     warn(f"seed: {self.plan.seed}")

@@ -13,6 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
+from vbraille.errors import check_range
 from vbraille.simulation.motion import RETURN_MM_S, SPEED_BOUNDS_MM_S, Motion, Way
 from vbraille.simulation.paging import Area, Drift, read_lines
 from vbraille.simulation.recorded import MOST_MM
@@ -83,11 +84,7 @@ class Sweep:
     speed_mm_s: float
 
     def __post_init__(self) -> None:
-        low, high = SPEED_BOUNDS_MM_S
-        if not low <= self.speed_mm_s <= high:
-            raise ValueError(
-                f"sweep speed is {self.speed_mm_s:g} mm/s; it must be {low:g} to {high:g} mm/s"
-            )
+        check_range("sweep speed", self.speed_mm_s, *SPEED_BOUNDS_MM_S, " mm/s")
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """Read the next line; see `Hand`."""
@@ -152,12 +149,9 @@ class Habits:
             low, high = getattr(self, name)
             if not 0 < low <= high < math.inf:
                 raise ValueError(f"{name} is {low:g} to {high:g}; it must be above 0, and in order")
-        low, high = self.speed_bounds_mm_s
-        if not low <= self.speed_mm_s <= high:
-            raise ValueError(f"speed_mm_s is {self.speed_mm_s:g}; it must be {low:g} to {high:g}")
+        check_range("speed_mm_s", self.speed_mm_s, *self.speed_bounds_mm_s)
         for name in ("spread", "pause_chance", "regression_chance", "rescan_chance"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 to 1")
+            check_range(name, getattr(self, name), 0, 1)
         forth_mm = self.speed_mm_s * sum(self.movement_s) / 2
         back_mm = self.regression_chance * sum(self.regression_mm) / 2
         back_mm += self.rescan_chance * sum(self.rescan_mm) / 2

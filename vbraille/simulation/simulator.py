@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.wire.codec import DELIMITER, MOST_FRAME_BYTES
 from vbraille.devices.wire.messages import Encoder
+from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
 
@@ -80,8 +81,7 @@ class Faults:
 
     def __post_init__(self) -> None:
         for name in ("drop", "corrupt"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 to 1")
+            check_range(name, getattr(self, name), 0, 1)
         for name in ("stall_s", "unplug_every_s"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise ValueError(f"{name} is {getattr(self, name):g}; it must be 0 or more")

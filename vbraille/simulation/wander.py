@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.errors import check_range
 from vbraille.simulation.hand import CLEAR_MM, Sweep, along
 from vbraille.simulation.motion import LEAST_KNOT_S, RETURN_MM_S, SPEED_BOUNDS_MM_S, Motion
 
@@ -45,11 +46,7 @@ class Wander:
     """
 
     def __init__(self, speed_mm_s: float, seed: int = 1) -> None:
-        low, high = SPEED_BOUNDS_MM_S
-        if not low <= speed_mm_s <= high:
-            raise ValueError(
-                f"wander speed is {speed_mm_s:g} mm/s; it must be {low:g} to {high:g} mm/s"
-            )
+        check_range("wander speed", speed_mm_s, *SPEED_BOUNDS_MM_S, " mm/s")
         if seed < 0:
             raise ValueError(f"seed is {seed}; it must be 0 or more")
         self.speed_mm_s = speed_mm_s

@@ -1,6 +1,6 @@
 """What every device must do, as checks that any driver's tests can run.
 
-    from vbraille.testing.conformance import CHECKS
+    from vbraille.testing import CHECKS
 
     @pytest.mark.parametrize("check", CHECKS)
     def test_my_device(check):

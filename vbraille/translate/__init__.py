@@ -2,19 +2,25 @@
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.book import Book
+from vbraille.translate.cellssource import CellsSource
 from vbraille.translate.documents.document import Document
-from vbraille.translate.documents.paragraphs import Paragraph
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
 from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
+from vbraille.translate.source import Block, Kind, Source
+from vbraille.translate.text import Text
 from vbraille.translate.undefined import Undefined
 
 __all__ = [
+    "Block",
     "Book",
     "BrailleTable",
     "Cells",
+    "CellsSource",
     "Document",
-    "Paragraph",
+    "Kind",
+    "Source",
     "TableInfo",
+    "Text",
     "Undefined",
     "find_table",
     "list_tables",

@@ -1,43 +1,64 @@
-"""A document in braille, translated only as far as somebody reads."""
+"""A source in braille, translated only as far as somebody reads."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.translate.languages import foreign_note
+
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from vbraille.braille.cells import Cells
-    from vbraille.translate.documents.document import Document
-    from vbraille.translate.documents.paragraphs import Paragraph
     from vbraille.translate.liblouis import BrailleTable
+    from vbraille.translate.source import Block, Source
 
 
 class Book:
-    """Paragraphs of a document with their cells.
+    """Blocks of a source with their cells.
 
     Parameters
     ----------
-    document
-        The text.
+    source
+        The blocks. Those that hold cells are shown as they are, the others are translated.
     table
-        The table to translate it with.
+        The table to translate with; None for a source of ready cells.
     """
 
     _REMEMBERED = 16
 
-    def __init__(self, document: Document, table: BrailleTable) -> None:
-        self.document = document
+    def __init__(self, source: Source, table: BrailleTable | None = None) -> None:
+        self.source = source
         self.table = table
-        self._recent: dict[int, tuple[Paragraph, Cells]] = {}
+        self._recent: dict[int, tuple[Block, Cells]] = {}
 
-    def paragraph(self, number: int) -> tuple[Paragraph, Cells] | None:
-        """Paragraph of a number, from 0, with its cells; None past the end."""
+    def block(self, number: int) -> tuple[Block, Cells] | None:
+        """Block of a number, from 0, with its cells; None past the end.
+
+        Raises
+        ------
+        ValueError
+            If it has to be translated and there is no table.
+        """
         found = self._recent.get(number)
         if found is None:
-            paragraph = self.document.paragraph(number)
-            if paragraph is None:
+            block = self.source.block(number)
+            if block is None:
                 return None
-            found = paragraph, self.table.translate(paragraph)
+            found = block, block.cells if block.cells is not None else self._translate(block)
             if len(self._recent) >= self._REMEMBERED:
                 del self._recent[next(iter(self._recent))]
             self._recent[number] = found
         return found
+
+    def notes(self) -> Iterator[str]:
+        """What is to be said now of the source and of the table, each thing once."""
+        table = self.table
+        for note in (self.source.note(), None if table is None else foreign_note(table)):
+            if note is not None:
+                yield note
+
+    def _translate(self, block: Block) -> Cells:
+        if self.table is None:
+            raise ValueError(f"{self.source.name} has text in it; give its book a braille table")
+        return self.table.translate(block.text)

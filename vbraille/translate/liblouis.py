@@ -18,8 +18,8 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.documents.paragraphs import SPACE, to_codes, to_text
-from vbraille.translate.scripts import script_of
+from vbraille.translate.scripts import all_letters, native_letters, script_of
+from vbraille.translate.text import SPACE, to_codes, to_text
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
 from vbraille.wording import nearest
 
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.translate.documents.paragraphs import Paragraph
     from vbraille.translate.scripts import Script
+    from vbraille.translate.text import Text
 
 # Bytes; liblouis puts a name, with a folder before it, into 2 kB, and does not look if it fits.
 _LONGEST_NAME = 1_000
@@ -175,7 +175,7 @@ class BrailleTable:
         self._noted = 0
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
-        if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, _all_letters)):
+        if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, all_letters)):
             raise InputError(
                 f"{name} has no braille in it, as tables for hyphenation have not; give a braille "
                 f"table (vbraille tables lists all)"
@@ -204,7 +204,7 @@ class BrailleTable:
         if said == b"6":
             return False
         if said == b"8" or not described:
-            return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(_native_letters())
+            return self._high(_SMALL + _SMALL.upper() + _DIGITS) or self._high(native_letters())
         has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
         return self._high(_DIGITS if has_digits else _SMALL)
 
@@ -220,21 +220,21 @@ class BrailleTable:
         self._noted += 1
         return list(self._foreign.values())[self._noted - 1]
 
-    def translate(self, paragraph: Paragraph) -> Cells:
-        """Cells of a paragraph, none of its characters left out unless that was asked for.
+    def translate(self, text: Text) -> Cells:
+        """Cells of a paragraph's text, none of its characters left out unless that was asked for.
 
         What stands for a character that the table does not know is written by the rules
         of the table, so that it reads back like any other text.
         """
-        codes, source = paragraph.codes, paragraph.source
-        if not paragraph.alphabet <= self._known:
-            codes, source = self._substitute(paragraph)
+        codes, places = text.codes, text.places
+        if not text.alphabet <= self._known:
+            codes, places = self._substitute(text)
         masks, inputs = self._call(codes, _MODE)
         if not masks.size:
-            return Cells(masks, np.empty(0, np.int64), paragraph.end)
+            return Cells(masks, np.empty(0, np.int64), text.end)
         if masks.tobytes().translate(None, _SIX_DOTS) and not self.eight_dots:
             masks &= 0x3F  # a rule for neighbours that raises what neither raises alone
-        return Cells(masks, source[inputs], paragraph.end)
+        return Cells(masks, places[inputs], text.end)
 
     def _grow(self, characters: int) -> None:
         cells = characters * louis.outlenMultiplier
@@ -291,20 +291,19 @@ class BrailleTable:
             inputs = np.maximum(np.maximum.accumulate(self._inputs[:cells]), 0)
         return masks, inputs
 
-    def _substitute(self, paragraph: Paragraph) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
+    def _substitute(self, text: Text) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
         """Put what the table can write for what it cannot."""
-        for code in paragraph.alphabet - self._known - self._instead.keys():
+        for code in text.alphabet - self._known - self._instead.keys():
             self._probe(code)
-        codes, source = paragraph.codes, paragraph.source
-        own = codes.tolist()
+        own = text.codes.tolist()
         if self._instead.keys().isdisjoint(own):
-            return codes, source
+            return text.codes, text.places
         self._look_for_foreign(own)
         written: list[int] = []
         places: list[int] = []
         mark = _codes(self.marker) if self._how is Undefined.MARK else None
         marked = False
-        for code, place in zip(own, source.tolist(), strict=True):
+        for code, place in zip(own, text.places.tolist(), strict=True):
             instead = self._instead.get(code, (code,))
             marked, before = instead == mark and code in self.undefined, marked
             if marked and before:
@@ -365,18 +364,6 @@ class BrailleTable:
         """Whether any of these letters that the table knows is written with dot 7 or 8."""
         masks, _ = self._call(to_codes(letters), _MODE | louis.noUndefined)
         return bool(masks.size) and bool(masks.max() > 0x3F)
-
-
-@cache
-def _native_letters() -> str:
-    """Letters of other scripts than the Latin, for what a table's metadata leave open."""
-    return "".join(c for c in map(chr, range(0x370, 0x700)) if c.isalpha())
-
-
-def _all_letters() -> str:
-    """Letters of every script of today but the Latin; of the large ones some."""
-    codes = (*range(0x370, 0x2000), *range(0x3041, 0x3100), *range(0x4E00, 0xD7A4, 64))
-    return "".join(c for c in map(chr, codes) if c.isalpha())
 
 
 def _codes(text: str) -> tuple[int, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import unicodedata
 from collections import Counter
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -84,3 +85,15 @@ def script_of(letters: Iterable[str]) -> Script | None:
         return _SCRIPTS["HIRAGANA"]
     commonest = counts.most_common(1)
     return _SCRIPTS.get(commonest[0][0]) if commonest else None
+
+
+@cache
+def native_letters() -> str:
+    """Letters of the alphabets from Greek to Arabic, for what a table's metadata leave open."""
+    return "".join(c for c in map(chr, range(0x370, 0x700)) if c.isalpha())
+
+
+def all_letters() -> str:
+    """Letters of every script of today but the Latin; of the large ones some."""
+    codes = (*range(0x370, 0x2000), *range(0x3041, 0x3100), *range(0x4E00, 0xD7A4, 64))
+    return "".join(c for c in map(chr, codes) if c.isalpha())

@@ -131,6 +131,8 @@ def test_a_trace_cut_where_a_chunk_ends_is_damaged_too(folder):
 
 def test_a_trace_without_a_stimulus_that_was_answered_is_a_fault(tmp_path):
     sat = Session(tmp_path / "s").sit()
+    book = tmp_path / "s" / journal.NAME
+    book.write_bytes(b"".join(book.read_bytes().splitlines(keepends=True)[:-1]))  # not "closed"
     path = tmp_path / "s" / "trace-001.gz"
     whole = path.read_bytes()
     path.write_bytes(whole[: whole.rindex(b"\x1f\x8b\x08\x04", 0, len(whole) * 2 // 3)])

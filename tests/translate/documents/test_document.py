@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 from tests.conftest import SEED
 from tests.translate.model import Piece, pieces_of
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate import Document, Paragraph
-from vbraille.translate.documents.document import BLOCK_BYTES
+from vbraille.translate import Block, Document, Kind
+from vbraille.translate.documents.document import CHUNK_BYTES
 
 GAPS = [" "] * 40 + ["\n"] * 8 + ["\r\n", "\r", "  ", "\t", "-\n", "\xad\n", "\x85", "\u2028"]
 ENDS = ["\n\n", "\r\n\r\n", "\n \n", "\f", "\u2029", "\n\n\n\n\n"]
@@ -52,21 +52,21 @@ def document(raw: bytes, encoding: str | None = None, *, keep_lines: bool = Fals
     return Document(io.BytesIO(raw), "a.txt", encoding, keep_lines=keep_lines)
 
 
-def paragraphs(document: Document) -> list[Paragraph]:
-    return list(iter_paragraphs(document))
+def blocks(document: Document) -> list[Block]:
+    return list(iter_blocks(document))
 
 
-def iter_paragraphs(document: Document):
-    found = map(document.paragraph, itertools.count())
-    return itertools.takewhile(lambda paragraph: paragraph is not None, found)
+def iter_blocks(document: Document):
+    found = map(document.block, itertools.count())
+    return itertools.takewhile(lambda block: block is not None, found)
 
 
 def pieces(document: Document) -> list[Piece]:
-    return [piece(p) for p in iter_paragraphs(document)]
+    return [piece(p) for p in iter_blocks(document)]
 
 
-def piece(paragraph: Paragraph) -> Piece:
-    return Piece(paragraph.text, paragraph.source.tolist(), paragraph.continues)
+def piece(block: Block) -> Piece:
+    return Piece(str(block.text), block.text.places.tolist(), block.continues)
 
 
 @cache
@@ -91,8 +91,8 @@ def words(texts) -> tuple[str, ...]:
 
 
 @pytest.mark.no_cover
-class TestBlocks:
-    """Where the file's blocks end must not show."""
+class TestChunks:
+    """Where the file's chunks end must not show."""
 
     @pytest.mark.parametrize(
         ("encoding", "length", "keep_lines"),
@@ -108,7 +108,7 @@ class TestBlocks:
     def test_as_the_model(self, words, encoding, length, keep_lines):
         text = made_text(words, length, ends=True)
         raw = text.encode(encoding)
-        assert len(raw) > 2 * BLOCK_BYTES
+        assert len(raw) > 2 * CHUNK_BYTES
         named = encoding if encoding == "gb18030" else None
         found = pieces(document(raw, named, keep_lines=keep_lines))
         assert found == pieces_of(text, keep_lines=keep_lines)
@@ -130,7 +130,7 @@ class TestBlocks:
             found = pieces(document(raw, keep_lines=keep_lines))
             _, peak = tracemalloc.get_traced_memory()
             tracemalloc.stop()
-            assert peak < 12 * BLOCK_BYTES * 8
+            assert peak < 12 * CHUNK_BYTES * 8
             shown = "".join(piece.text for piece in found)
             places = [place for piece in found for place in piece.source]
             assert shown.split() == (["x", "yz"] if keep_lines else ["x", "y", "z"])
@@ -151,30 +151,30 @@ class TestBlocks:
                 found = pieces(document(before + whole.encode()))
                 assert found[1_024:][: len(expected)] == expected
 
-    @pytest.mark.parametrize("shift", [3, BLOCK_BYTES - 1])
+    @pytest.mark.parametrize("shift", [3, CHUNK_BYTES - 1])
     def test_blanks_in_front_move_the_places_and_nothing_else(self, words, shift):
         text = made_text(words, 135_000, ends=True)
-        plain = paragraphs(document(text.encode()))
-        moved = paragraphs(document(b" " * shift + text.encode()))
-        assert [p.text for p in moved] == [p.text for p in plain]
+        plain = blocks(document(text.encode()))
+        moved = blocks(document(b" " * shift + text.encode()))
+        assert [str(p.text) for p in moved] == [str(p.text) for p in plain]
         assert np.array_equal(
-            np.concatenate([p.source for p in moved]),
-            np.concatenate([p.source for p in plain]) + shift,
+            np.concatenate([p.text.places for p in moved]),
+            np.concatenate([p.text.places for p in plain]) + shift,
         )
 
     @pytest.mark.parametrize("keep_lines", [False, True])
     @pytest.mark.parametrize("blank", ["\n", " ", "\r\n", " \t\n", "\f", "\ufeff", "\xad"])
     def test_long_stretches_of_nothing(self, blank, keep_lines):
-        nothing = blank * (2 * BLOCK_BYTES // len(blank.encode()) + 1)
+        nothing = blank * (2 * CHUNK_BYTES // len(blank.encode()) + 1)
         text = f"\n{nothing}  one{nothing}  two  {nothing}"
         found = pieces(document(text.encode(), keep_lines=keep_lines))
         assert found == pieces_of(text, keep_lines=keep_lines)
 
     def test_nothing_but_blanks(self):
         blank = document(b" \n" * 100_000)
-        assert blank.paragraph(0) is None
-        assert blank.paragraph_at(0) is None
-        assert document(b"\n").paragraph(0) is None
+        assert blank.block(0) is None
+        assert blank.block_at(0) is None
+        assert document(b"\n").block(0) is None
 
     @pytest.mark.parametrize("damage", [70_000, 131_071])
     def test_a_later_bad_byte_is_windows_1252(self, damage):
@@ -193,7 +193,7 @@ class TestBlocks:
 @pytest.mark.no_cover
 class TestRandomAccess:
     @pytest.mark.parametrize("keep_lines", [False, True])
-    def test_paragraphs_in_any_order(self, words, keep_lines):
+    def test_blocks_in_any_order(self, words, keep_lines):
         text = made_text(words, 140_000, ends=True)
         one = document(text.encode(), keep_lines=keep_lines)
         expected = pieces(one)
@@ -201,17 +201,17 @@ class TestRandomAccess:
         random.Random(SEED).shuffle(order)
         other = document(text.encode(), keep_lines=keep_lines)
         for n in order[:25]:
-            assert piece(other.paragraph(n)) == expected[n]
-            assert piece(one.paragraph(n)) == expected[n]
-        assert other.paragraph(len(expected)) is None
-        assert other.paragraph(-1) is None
+            assert piece(other.block(n)) == expected[n]
+            assert piece(one.block(n)) == expected[n]
+        assert other.block(len(expected)) is None
+        assert other.block(-1) is None
 
     def test_pieces_of_a_long_paragraph_in_any_order(self, words):
         text = made_text(words, 140_000, ends=False)
         expected = pieces(document(text.encode()))
         other = document(text.encode())
         for n in (13, 3, 16, 0, 11, 12, 10):
-            assert piece(other.paragraph(n)) == expected[n]
+            assert piece(other.block(n)) == expected[n]
 
     def test_an_encoding_with_a_state(self):
         text = "日本語の文章。\n\n" * 10_000
@@ -219,31 +219,31 @@ class TestRandomAccess:
         other = document(raw, "iso2022_jp")
         assert pieces(other) == pieces_of(text)
         for n in (9_999, 5, 6_789):
-            assert other.paragraph(n).text == "日本語の文章。"
+            assert str(other.block(n).text) == "日本語の文章。"
 
     @pytest.mark.parametrize("keep_lines", [False, True])
-    def test_paragraph_at(self, words, keep_lines):
+    def test_block_at(self, words, keep_lines):
         text = made_text(words, 140_000, ends=True)
-        found = paragraphs(document(text.encode(), keep_lines=keep_lines))
+        found = blocks(document(text.encode(), keep_lines=keep_lines))
         chance = random.Random(SEED)
         other = document(text.encode(), keep_lines=keep_lines)
         for n in chance.sample(range(len(found)), 15):
-            paragraph = found[n]
-            if paragraph.codes.size:
-                assert other.paragraph_at(int(paragraph.source[0])) == n
-                assert other.paragraph_at(int(paragraph.source[-1])) == n
-                assert other.paragraph_at(paragraph.end) != n
-        assert other.paragraph_at(0) == 0
-        assert other.paragraph_at(found[-1].end) is None
-        assert other.paragraph_at(10**12) is None
+            text = found[n].text
+            if len(text):
+                assert other.block_at(int(text.places[0])) == n
+                assert other.block_at(int(text.places[-1])) == n
+                assert other.block_at(text.end) != n
+        assert other.block_at(0) == 0
+        assert other.block_at(found[-1].text.end) is None
+        assert other.block_at(10**12) is None
 
     def test_blanks_belong_to_what_follows(self):
         found = document(b"  one\n\n\ntwo\n\n")
-        assert [found.paragraph_at(c) for c in range(14)] == [0] * 5 + [1] * 6 + [None] * 3
+        assert [found.block_at(c) for c in range(14)] == [0] * 5 + [1] * 6 + [None] * 3
 
     def test_progress_grows_from_0_to_1(self, words):
         found = document(made_text(words, 140_000, ends=True).encode())
-        count = len(paragraphs(found))
+        count = len(blocks(found))
         shares = [found.progress(n) for n in range(count + 1)]
         assert shares == sorted(shares)
         assert shares[0] == 0
@@ -256,9 +256,9 @@ class TestLazy:
     def test_only_what_is_asked_for_is_read(self):
         stream = Repeated(b"A short paragraph.\n\n", 10**9)
         found = Document(stream)
-        assert found.paragraph(100).text == "A short paragraph."
-        assert found.paragraph_at(1_000) == 50
-        assert stream.taken <= 4 * BLOCK_BYTES
+        assert str(found.block(100).text) == "A short paragraph."
+        assert found.block_at(1_000) == 50
+        assert stream.taken <= 4 * CHUNK_BYTES
 
     @pytest.mark.parametrize(
         ("text", "size"),
@@ -274,7 +274,7 @@ class TestLazy:
         gc.collect()
         tracemalloc.start()
         try:
-            count = sum(1 for _ in iter_paragraphs(Document(Repeated(text, size))))
+            count = sum(1 for _ in iter_blocks(Document(Repeated(text, size))))
             _, peak = tracemalloc.get_traced_memory()
         finally:
             tracemalloc.stop()
@@ -283,6 +283,11 @@ class TestLazy:
 
 
 class TestSource:
+    def test_its_blocks_are_paragraphs_or_the_lines_that_are_kept(self):
+        for keep_lines, kind in ((False, Kind.PARAGRAPH), (True, Kind.LINE)):
+            found = blocks(document(b"one\n\ntwo\nthree", keep_lines=keep_lines))
+            assert {(block.kind, block.level, block.cells) for block in found} == {(kind, 0, None)}
+
     def test_from_text_counts_the_characters_of_the_string(self):
         text = "\ufeffone \ud800 😀\n\ntwo"
         found = Document.from_text(text)
@@ -333,7 +338,7 @@ class TestNote:
     def test_utf8_needs_none(self):
         for raw in (b"plain", "café".encode(), "café".encode("utf-8-sig")):
             found = document(raw)
-            paragraphs(found)
+            blocks(found)
             assert found.note() is None
 
     def test_a_guess_is_said_once(self, texts):
@@ -345,7 +350,7 @@ class TestNote:
             f"‹encoding› NAME says otherwise"
         )
         assert found.note() is None
-        assert found.paragraph(3).text == document(text.encode()).paragraph(3).text
+        assert str(found.block(3).text) == str(document(text.encode()).block(3).text)
 
     @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32"])
     def test_utf16_is_said_too(self, texts, encoding):
@@ -358,9 +363,9 @@ class TestNote:
     def test_a_later_byte_is_said_when_it_is_found(self):
         raw = b"plain text\n\n" * 20_000 + b"caf\xe9\n"
         found = document(raw)
-        assert found.paragraph(0) is not None
+        assert found.block(0) is not None
         assert found.note() is None
-        assert paragraphs(found)[-1].text == "café"
+        assert blocks(found)[-1].text == "café"
         assert found.note() == (
             f"a.txt is not utf-8 at byte {len(raw) - 2}; such bytes are read as windows-1252, "
             f"‹encoding› NAME says otherwise"
@@ -369,14 +374,14 @@ class TestNote:
 
     def test_the_first_of_many_after_a_mark(self):
         found = document(codecs.BOM_UTF8 + "é".encode() + b"\xff x" + b"\xe9")
-        assert [p.text for p in paragraphs(found)] == ["éÿ xé"]
+        assert [p.text for p in blocks(found)] == ["éÿ xé"]
         assert "at byte 5;" in found.note()
 
     def test_a_named_encoding_overrides_and_needs_none(self, texts):
         raw = (texts / "deutsch.txt").read_text().encode("cp1252")
         found = document(raw, "cp850")
         assert found.encoding.name == "cp850"
-        assert paragraphs(found)[0].text == raw.decode("cp850").split("\n")[0]
+        assert blocks(found)[0].text == raw.decode("cp850").split("\n")[0]
         assert found.note() is None
         assert document("text".encode("utf-16"), "utf-16").note() is None
 
@@ -398,7 +403,7 @@ class TestRefused:
         raw = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"
         with pytest.raises(InputError, match=r"a\.txt is a PNG image, not text"):
             document(raw)
-        assert paragraphs(document(raw, "latin-1"))[0].text == "\x89PNG \x1a \0\0\0 IHDR"
+        assert blocks(document(raw, "latin-1"))[0].text == "\x89PNG \x1a \0\0\0 IHDR"
 
     @pytest.mark.no_cover
     @pytest.mark.parametrize(
@@ -425,31 +430,31 @@ class TestRefused:
         path = tmp_path / "book.txt"
         path.write_text("A paragraph.\n\n" * 30_000)
         found = Document.open(path)
-        assert len(paragraphs(found)) == 30_000
+        assert len(blocks(found)) == 30_000
         path.write_text("A paragraph.\n\n" * 100)
         with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
-            found.paragraph(10_000)
+            found.block(10_000)
         found.close()
 
     def test_a_file_that_becomes_shorter_before_its_end_is_read(self, tmp_path):
         path = tmp_path / "book.txt"
         path.write_text("A paragraph.\n\n" * 30_000)
         found = Document.open(path)
-        assert found.paragraph(10).text == "A paragraph."
+        assert str(found.block(10).text) == "A paragraph."
         path.write_text("A paragraph.\n\n" * 15_000)
         with pytest.raises(VbrailleError, match="has become shorter since it was opened; open it"):
-            paragraphs(found)
+            blocks(found)
         found.close()
 
     def test_a_file_that_grows_is_read_as_far_as_it_was_and_it_is_said_once(self, tmp_path):
         path = tmp_path / "book.txt"
         path.write_text("A paragraph.\n\n" * 30_000)
         found = Document.open(path)
-        assert found.paragraph(10).text == "A paragraph."
+        assert str(found.block(10).text) == "A paragraph."
         with path.open("a") as file:
             file.write("More.\n\n" * 100)
         assert found.note() is None
-        assert {paragraph.text for paragraph in paragraphs(found)} == {"A paragraph."}
+        assert {str(block.text) for block in blocks(found)} == {"A paragraph."}
         assert found.note() == (
             f"{path} has grown since it was opened; open it again to read what was added"
         )
@@ -474,10 +479,10 @@ class TestOpen:
         writer.start()
         found = Document.open(pipe)
         writer.join()
-        assert len(paragraphs(found)) == 20_000
-        assert found.paragraph(0).text == "A paragraph."
+        assert len(blocks(found)) == 20_000
+        assert str(found.block(0).text) == "A paragraph."
 
     def test_a_file_that_says_it_has_no_size(self):
         found = Document.open("/proc/self/status", keep_lines=True)
         assert found.size > 0
-        assert found.paragraph(0).text.startswith("Name:")
+        assert str(found.block(0).text).startswith("Name:")

@@ -14,10 +14,10 @@ from vbraille.translate.documents.codepoints import (
     LONGEST_BLANK,
     Stretch,
     shorten_blanks,
-    to_codes,
-    to_text,
 )
-from vbraille.translate.documents.paragraphs import PIECE_CHARACTERS, Paragraph, split_paragraphs
+from vbraille.translate.documents.paragraphs import PIECE_CHARACTERS, split_paragraphs
+from vbraille.translate.source import Block
+from vbraille.translate.text import to_codes, to_text
 
 # What the rules speak of, and a few letters.
 AWKWARD = list("aaé- \n\r\t\f\v\x85\xa0\xad\u2010\u2028\u2029\u202f\u0301\ufeff\0\ud800😀.")
@@ -35,11 +35,11 @@ def at(codes, first: int = 0) -> Stretch:
 
 
 def split(text: str, **how) -> list[str]:
-    return [p.text for p in split_paragraphs(at(text), **how).paragraphs]
+    return [str(b.text) for b in split_paragraphs(at(text), **how).blocks]
 
 
-def pieces(paragraphs: list[Paragraph]) -> list[Piece]:
-    return [Piece(p.text, p.source.tolist(), p.continues) for p in paragraphs]
+def pieces(blocks: list[Block]) -> list[Piece]:
+    return [Piece(str(b.text), b.text.places.tolist(), b.continues) for b in blocks]
 
 
 class TestProse:
@@ -137,9 +137,9 @@ class TestProse:
         assert split("\ufeffone tw\ufeffo") == ["one two"]
 
     def test_accents_join_their_letters(self):
-        found = split_paragraphs(at("e\u0301te\u0323\u0301 x\u0301", 5)).paragraphs[0]
-        assert found.text == "\xe9t\u1eb9\u0301 x\u0301"
-        assert found.source.tolist() == [5, 7, 8, 10, 11, 12, 13]
+        found = split_paragraphs(at("e\u0301te\u0323\u0301 x\u0301", 5)).blocks[0].text
+        assert str(found) == "\xe9t\u1eb9\u0301 x\u0301"
+        assert found.places.tolist() == [5, 7, 8, 10, 11, 12, 13]
         assert found.end == 14
 
     def test_accents_do_not_depend_on_what_else_is_in_the_text(self):
@@ -148,17 +148,17 @@ class TestProse:
 
     def test_every_character_knows_its_place(self):
         text = "  one\r\n  two\n\n\tthree  four"
-        found = split_paragraphs(at(text, 100)).paragraphs
-        assert [p.source.tolist() for p in found] == [
+        found = split_paragraphs(at(text, 100)).blocks
+        assert [b.text.places.tolist() for b in found] == [
             [102, 103, 104, 105, 109, 110, 111],
             [115, 116, 117, 118, 119, 120, 122, 123, 124, 125],
         ]
-        assert [p.end for p in found] == [112, 126]
+        assert [b.text.end for b in found] == [112, 126]
 
     @settings(max_examples=150)
     @given(awkward_texts)
     def test_as_the_model(self, text):
-        assert pieces(split_paragraphs(at(text)).paragraphs) == pieces_of(text)
+        assert pieces(split_paragraphs(at(text)).blocks) == pieces_of(text)
 
 
 class TestLinesKept:
@@ -183,7 +183,7 @@ class TestLinesKept:
     @settings(max_examples=150)
     @given(awkward_texts)
     def test_as_the_model(self, text):
-        found = split_paragraphs(at(text), keep_lines=True).paragraphs
+        found = split_paragraphs(at(text), keep_lines=True).blocks
         assert pieces(found) == pieces_of(text, keep_lines=True)
 
 
@@ -202,7 +202,7 @@ class TestInParts:
             keep_lines=keep_lines,
         )
         whole = split_paragraphs(at(codes, 7), keep_lines=keep_lines)
-        assert pieces(early.paragraphs + late.paragraphs) == pieces(whole.paragraphs)
+        assert pieces(early.blocks + late.blocks) == pieces(whole.blocks)
 
     @pytest.mark.parametrize("end", range(-9, 10))
     @pytest.mark.parametrize(
@@ -215,18 +215,18 @@ class TestInParts:
         late = split_paragraphs(
             at(codes[early.used :], early.used), continues=early.continues, item=early.item
         )
-        assert pieces(early.paragraphs + late.paragraphs) == pieces_of(text)
+        assert pieces(early.blocks + late.blocks) == pieces_of(text)
 
     def test_blanks_are_done_with_at_once(self):
         for blank in ("\n" * 100, " \n\f " * 100):
             found = split_paragraphs(at(f"one{blank}"), final=False)
-            assert pieces(found.paragraphs) == [Piece("one", [0, 1, 2], False)]
+            assert pieces(found.blocks) == [Piece("one", [0, 1, 2], False)]
             assert found.used == 3 + len(blank)
             assert split_paragraphs(at(blank), final=False).used == len(blank)
 
     def test_with_lines_kept_an_indent_waits_for_its_text(self):
         found = split_paragraphs(at("\n\n   "), final=False, keep_lines=True)
-        assert (found.paragraphs, found.used) == ([], 2)
+        assert (found.blocks, found.used) == ([], 2)
 
 
 class TestLongBlanks:
@@ -254,10 +254,10 @@ class TestLongParagraphs:
         chance = random.Random(SEED)
         for kind in (["a", "b"], ["a", " "], ["ab", " ", ". "], ["e", "\u0301"], ["\u0301"]):
             text = f"x{''.join(chance.choices(kind, k=20_000))}x"
-            found = split_paragraphs(at(text), keep_lines=keep_lines).paragraphs
+            found = split_paragraphs(at(text), keep_lines=keep_lines).blocks
             assert len(found) > 1
-            assert all(0 < p.codes.size <= PIECE_CHARACTERS + 1 for p in found)
-            assert [p.continues for p in found] == [False] + [True] * (len(found) - 1)
+            assert all(0 < len(b.text) <= PIECE_CHARACTERS + 1 for b in found)
+            assert [b.continues for b in found] == [False] + [True] * (len(found) - 1)
             assert pieces(found) == pieces_of(text, keep_lines=keep_lines)
 
     def test_cut_after_a_sentence_else_at_a_space_else_anywhere(self):
@@ -273,32 +273,7 @@ class TestLongParagraphs:
             assert not text.startswith("\u0301")
 
 
-class TestParagraph:
-    def test_joined_and_cut(self):
-        one, two = split_paragraphs(at("One two.\n\nThree.")).paragraphs
-        both = one + two
-        assert both.text == "One two.Three."
-        assert both.source.tolist() == [*range(8), *range(10, 16)]
-        assert both.end == two.end
-        assert both.alphabet >= set(both.codes.tolist())
-        rest = both.since(11)
-        assert (rest.text, rest.source[0], rest.end, rest.continues) == ("hree.", 11, 16, True)
-        assert both.since(16).text == ""
-
-    def test_a_part_keeps_nothing_of_the_whole(self):
-        whole = split_paragraphs(at("a" * 5_000)).paragraphs[0]
-        rest = whole.since(4_990)
-        assert rest.codes.base is None
-        assert rest.source.base is None
-
-    @given(awkward_texts)
-    def test_the_alphabet_holds_all_characters(self, text):
-        for paragraph in split_paragraphs(at(text)).paragraphs:
-            assert paragraph.alphabet >= set(paragraph.codes.tolist())
-
-    @given(st.text(st.characters(exclude_categories=()), max_size=30))
-    def test_codes_and_back(self, text):
-        codes = to_codes(text)
-        assert codes.dtype == np.uint32
-        assert codes.tolist() == list(map(ord, text))
-        assert to_text(codes) == text
+@given(awkward_texts)
+def test_the_alphabet_holds_all_characters(text):
+    for block in split_paragraphs(at(text)).blocks:
+        assert block.text.alphabet >= set(block.text.codes.tolist())

@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
+from vbraille.errors import InputError
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -32,4 +33,7 @@ def _format(line: Line, how: str) -> str:
         return line.printed.to_dots()
     if how == "unicode":
         return line.printed.to_unicode()
-    return line.printed.to_brf()
+    try:
+        return line.printed.to_brf()
+    except ValueError as error:
+        raise InputError(f"{error}; give --format unicode, which writes all eight dots") from None

@@ -92,9 +92,9 @@ def _letter(arguments: argparse.Namespace) -> dict:
         return {}
     if not arguments.letter.strip():
         raise InputError("--letter is blank; give a letter")
-    paragraph = Document.from_text(arguments.letter).paragraph(0)
-    assert paragraph is not None
-    cells = build_table(arguments).translate(paragraph)
+    block = Document.from_text(arguments.letter).block(0)
+    assert block is not None
+    cells = build_table(arguments).translate(block.text)
     if not 1 <= len(cells) <= 4:
         raise InputError(f"{arguments.letter!r} is {len(cells)} cells; give a letter of 1 to 4")
     return {"masks": cells.masks}

@@ -18,36 +18,24 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_travel
-from vbraille.devices.saying import told
 from vbraille.display import check_rate
-from vbraille.engine.engine import placing_of
-from vbraille.engine.host import Host, HostDiedError
-from vbraille.engine.record import Flag
+from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
-from vbraille.errors import DeviceError, InputError
+from vbraille.errors import InputError
+from vbraille.reading.commands import press
+from vbraille.reading.context import Context
 from vbraille.reading.keyboard import Keyboard
-from vbraille.reading.keys import PASTE
-from vbraille.reading.reader import Echo, Reader
+from vbraille.reading.opened import HAND, OpenDevice
+from vbraille.reading.reader import Echo
 from vbraille.render import MODELS, model_of
-from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.specs import (
-    device_spec,
-    is_simulated,
-    parse_hand,
-    refuse_hand,
-    steering_of,
-)
+from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 
 if TYPE_CHECKING:
     import argparse
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from vbraille.cli.build import Page
     from vbraille.engine.tally import Tally
 
-_HAND = "sweep:60"
 _POLL_S = 0.02
 _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
@@ -59,28 +47,25 @@ def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
-    hand = _HAND if arguments.hand is None else arguments.hand
+    hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
-    once = isinstance(parse_hand(hand, seed), Recorded)
+    parse_hand(hand, seed)  # it is refused before anything is opened
     # What the options ask for: a simulated device is just so, a real one is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
     wanted = asked.on(asked.style.geometry, rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
-    steering = steering_of(arguments.device)
     if (note := compiling_note()) is not None:
         print(note, file=sys.stderr, flush=True)
-    host = Host(
-        device_spec(arguments.device, hand, seed, steering),
-        wanted,
-        pass_fds=() if steering is None else (steering.descriptor,),
-    )
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
+        device = OpenDevice(
+            arguments.device, wanted, hand=hand, seed=seed, say=say_line, attended=keyboard.attached
+        )
         try:
             book = build_book(arguments)
-            display = wanted if is_simulated(arguments.device) else host.open()
+            display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
             model = build_show(arguments, model_of(display))
@@ -89,99 +74,64 @@ def run(arguments: argparse.Namespace) -> int:
             model = build_lengths(arguments, model, display.travel_mm)
             page = lay_out(arguments, book, model)
             note_unseen_dots(page)
-            host.fit(display, model.style.room(display, page.layout.width))
-            host.start()
-            reader = Reader(
-                page.layout,
-                host,
-                model=page.model,
-                say=say_line,
-                first=page.first,
-                last=page.last,
-                advance=arguments.advance == "return",
-                stay=keyboard.attached,
-                echo=_echo(arguments.echo),
-                steering=steering,
-            )
+            device.start(page.model)
             # Till now Ctrl-Z may do what it does elsewhere.
             suspension = listening.enter_context(Suspension())
             keyboard.take()
-            _Reading(page, reader, host, keyboard, suspension, once=once).run()
+            device.show(
+                page.layout,
+                first=page.first,
+                last=page.last,
+                advance=arguments.advance == "return",
+                echo=_echo(arguments.echo),
+            )
+            _Reading(page, device, keyboard, suspension).run()
         finally:
             EAR.close()  # so that the array goes to rest
-            host.close()
-    faults = ", ".join(f"{name} {count}" for name, count in host.counts.items() if count)
+            device.close()
+    faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
     if faults:
         say_line(f"device: {faults}")
     page.say_unknown()
-    say_line(_summary(reader.lines, host.tally, rate_hz))
+    say_line(_summary(device.reader.lines, device.tally, rate_hz))
     return 0
 
 
 class _Reading:
-    """One reading: what happens between a reader, its keyboard and its host."""
+    """One reading: what happens between a device that is read on and a keyboard."""
 
     def __init__(
-        self,
-        page: Page,
-        reader: Reader,
-        host: Host,
-        keyboard: Keyboard,
-        suspension: Suspension,
-        *,
-        once: bool,
+        self, page: Page, device: OpenDevice, keyboard: Keyboard, suspension: Suspension
     ) -> None:
         self._page = page
-        self._reader = reader
-        self._host = host
+        self._device = device
         self._keyboard = keyboard
         self._suspension = suspension
-        self._once = once  # the hand reads no more than it has recorded
-        self._placing = Placing.DONE
 
     def run(self) -> None:
         """Read to the end."""
-        self._reader.start()
+        device = self._device
         self._page.say_note()
         if self._keyboard.attached:
             say_line("h says the keys")
-        while not self._reader.done:
+        while not device.done:
             for key in self._pressed():
                 self._press(key)
+            placing = device.placing
             try:
-                ticks = self._host.poll()
+                device.poll(0.0)
             except HostDiedError as fault:
                 self._start_again(fault)
                 continue
-            self._step(ticks)
-            self._page.see(self._reader.line_number)
+            if device.placing is not placing:
+                self._say_place()
+            self._page.see(device.reader.line_number)
             self._page.say_note()
 
-    def _step(self, ticks: NDArray[np.void]) -> None:
-        for sentence in told(self._host.take_events()):
-            say_line(sentence)
-        if not ticks.size:
-            return
-        placing = placing_of(ticks[-1])
-        if placing is not self._placing:
-            self._placing = placing
-            if placing is Placing.STOP and not self._keyboard.attached:
-                raise InputError(
-                    "the device must be told where its left stop is; read at a terminal"
-                )
-            say_line(_PLACES.get(placing, "place: known"))
-        line = self._reader.lines
-        self._reader.step(ticks)
-        felt = not int(ticks["flags"][-1]) & Flag.HELD
-        done = felt and self._reader.steered_till(ticks[-1]) and not self._keyboard.attached
-        if done and self._reader.lines == line and not self._reader.done:
-            # The hand was at the end of the line between two ticks, or its recording is over.
-            if self._once:
-                self._reader.quit()
-            elif ticks["line"][-1] == self._reader.line_number:
-                self._reader.go_on()
-        if self._reader.hopeless is not None and not self._keyboard.attached:
-            raise DeviceError(self._reader.hopeless)
+    def _say_place(self) -> None:
+        if self._device.placing is Placing.STOP and not self._keyboard.attached:
+            raise InputError("the device must be told where its left stop is; read at a terminal")
+        say_line(_PLACES.get(self._device.placing, "place: known"))
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""
@@ -194,20 +144,19 @@ class _Reading:
 
     def _suspend(self) -> None:
         """Stop, with the array at rest, until the shell says to go on."""
-        host = self._host
-        paused, host.paused = host.paused, True
+        device = self._device
+        paused, device.paused = device.paused, True
         say_line("stopped: the array rests; fg goes on")
         self._keyboard.release()
         self._suspension.stop()
         self._keyboard.take()
-        host.paused = paused
+        device.paused = paused
         say_line("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
-        if self._placing is Placing.STOP and key not in ("q", PASTE):
-            self._host.set_zero()
-        else:
-            self._reader.press(key)
+        placing = self._device.placing is Placing.STOP
+        self._device.reader.context = Context.PLACING if placing else Context.READING
+        press(self._device.reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.
@@ -223,15 +172,13 @@ class _Reading:
         while True:
             keys = self._pressed()
             if "q" in keys:
-                self._reader.quit()
+                self._device.reader.quit()
                 return
             if " " in keys:
                 break
             if keys:
                 say_line("fault: nothing drives the device; space begins again, q stops")
-        self._placing = Placing.DONE
-        self._host.start()
-        self._reader.steer()
+        self._device.start_again()
         say_line("reading")
 
 

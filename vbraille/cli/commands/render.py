@@ -22,7 +22,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
-from vbraille.reading.reader import too_fast_note
+from vbraille.reading.speed import too_fast_note
 from vbraille.recording import Recorder, new_file
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK
@@ -76,8 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
             model=model,
             rate_hz=rate_hz,
             first_line=page.first,
-            source=page.document.name,
-            sha256=page.document.sha256(),
+            source=page.source.name,
+            sha256=page.source.sha256(),
         )
         for stretch in _walk(page, hand, rate_hz, pages):
             last = stretch.lines[-1]

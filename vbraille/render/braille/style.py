@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from vbraille.render import work
 from vbraille.render.braille.profiles import coefficients
+from vbraille.render.braille.tuning import Tuning
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.profiles import Profile
-    from vbraille.render.braille.tuning import Tuning
     from vbraille.render.program import Program
 
 # How far apart on a page going to the next line and coming back are, in line pitches.
@@ -51,6 +51,31 @@ class BrailleStyle:
     geometry: Geometry
     tuning: Tuning
     first_row: int | None = None
+
+    def replace(self, **changes: Any) -> Self:
+        """The same style, but for what is given.
+
+        Parameters
+        ----------
+        changes
+            Fields of the style, or of its `Tuning`: texture, contrast, cycles.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range.
+
+        Examples
+        --------
+        >>> from vbraille import VBD
+        >>> VBD.style.replace(texture=0.5).tuning
+        Tuning(texture=0.5, contrast=1.0, cycles=7)
+        """
+        names = {field.name for field in fields(Tuning)}
+        turned = {name: value for name, value in changes.items() if name in names}
+        others = {name: value for name, value in changes.items() if name not in names}
+        tuning = replace(others.pop("tuning", self.tuning), **turned)
+        return replace(self, tuning=tuning, **others)
 
     def rows_on(self, display: Display) -> slice:
         """Tell which rows of a display the mapping takes.

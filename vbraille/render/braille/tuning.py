@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vbraille.errors import check_range
+
 # The kernels' polynomial of T_k has six coefficients; finer texture than this is below what the
 # source's encoders resolve.
 MOST_TEXTURE_CYCLES = 11
@@ -36,9 +38,7 @@ class Tuning:
 
     def __post_init__(self) -> None:
         for name in ("texture", "contrast"):
-            value = getattr(self, name)
-            if not 0 <= value <= 1:
-                raise ValueError(f"{name} is {value:g}; it must be 0 to 1")
+            check_range(name, getattr(self, name), 0, 1)
         if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:
             raise ValueError(
                 f"texture cycles are {self.cycles}; "

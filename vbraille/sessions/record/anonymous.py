@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 LEFT_OUT = ("notes", "notes_before", "notes_after", "cue_time", "answer_time", "trace")
 _PATH = re.compile(r"\S*[/\\]\S*")
-_SOURCES = ("typed", "simulated")
+_SOURCES = ("typed", "simulated", "program")
 
 
 def number_of(record: Record) -> str:

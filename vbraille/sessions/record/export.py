@@ -63,7 +63,7 @@ COLUMNS = {
     "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
     "correct": "1 if all places are right, 0 if not; empty for comparisons and without an answer",
     "first_answer": "what had been answered before an undo; else empty",
-    "answers_from": "typed, simulated:NOISE for a simulated reader, or a file",
+    "answers_from": "typed, simulated:NOISE for a simulated reader, program, or a file",
     "attempt": "how often the trial was begun",
     "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
     "(Levesque 2009, 3.4); on paper, by key",

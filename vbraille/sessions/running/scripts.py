@@ -43,6 +43,7 @@ class GivenAnswers:
         else:
             lines = iter(given)
             self._give = lambda _trial: next(lines, None)
+        self._answered: tuple[bool, int, int] | None = None
 
     def lines(self, wait_s: float) -> list[str]:
         """Nothing, after a wait: lines are given to trials."""
@@ -50,20 +51,21 @@ class GivenAnswers:
         return []
 
     def next(
-        self, trial: Trial, _attempt: int, _felt: list[Exploration], /
+        self, trial: Trial, attempt: int, _felt: list[Exploration], /
     ) -> tuple[str, int] | None:
-        """Line of the program for a trial.
+        """Line of the program for a trial; None after its answer, with which the session ends.
 
         Raises
         ------
         InputError
             If it is neither an answer to the trial nor an order.
         """
-        line = self._give(trial)
+        asked = trial.practice, trial.number, attempt
+        line = None if asked == self._answered else self._give(trial)
         if line is None:
             return None
         try:
-            _read(self._protocol, trial, line)
+            self._answered = asked if _is_answer(self._protocol, trial, line) else None
         except ValueError as error:
             raise InputError(f"{line!r} for trial {trial.number}: {error}") from None
         return line, 0
@@ -83,17 +85,19 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
         if trial is None:
             raise InputError(f"{script.path} line {number}: there is no trial left to answer")
         try:
-            _read(protocol, trial, line)
+            _is_answer(protocol, trial, line)
         except ValueError as error:
             raise InputError(f"{script.path} line {number}: {error}") from None
         correcting, answered = None, trial if correcting is None else answered
 
 
-def _read(protocol: Protocol, trial: Trial, line: str) -> None:
-    """Read a line as its trial will; ValueError if it is an answer, and none to that."""
+def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
+    """Whether a line is an answer, and no order; ValueError if it is none to its trial."""
     # Here and not above: numba takes long to load, and the host starts meanwhile.
     from vbraille.sessions.running.console import read_line
 
     found = find_order(line)
-    if found is None or found[0].word == "answer":
+    answers = found is None or found[0].word == "answer"
+    if answers:
         read_line(protocol, trial, line if found is None else found[1])
+    return answers

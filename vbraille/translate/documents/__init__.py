@@ -1,6 +1,5 @@
-"""Files as paragraphs: encodings, and paragraphs that know their place in the source."""
+"""Files as blocks of text: how they are encoded, and where their paragraphs begin and end."""
 
 from vbraille.translate.documents.document import Document
-from vbraille.translate.documents.paragraphs import Paragraph
 
-__all__ = ["Document", "Paragraph"]
+__all__ = ["Document"]

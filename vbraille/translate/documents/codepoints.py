@@ -103,13 +103,3 @@ def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tu
 def kinds_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
     """Kind of each character: text, blank, newline, break, or one that is dropped."""
     return _KINDS[np.minimum(codes, _KINDS.size - 1)]
-
-
-def to_codes(text: str) -> NDArray[np.uint32]:
-    """Code points of a string, lone surrogates included."""
-    return np.frombuffer(text.encode("utf-32-le", "surrogatepass"), np.uint32)
-
-
-def to_text(codes: NDArray[np.uint32]) -> str:
-    """String of code points, lone surrogates included."""
-    return codes.astype("<u4").tobytes().decode("utf-32-le", "surrogatepass")

@@ -1,6 +1,6 @@
-"""A file as paragraphs, each knowing its place in the source.
+"""A file of plain text as blocks, each knowing its place in the file.
 
-The file is read a block at a time and only as far as somebody asks; a paragraph
+The file is read a chunk at a time and only as far as somebody asks; a block
 already passed is found again by seeking, so that a book need not fit in memory.
 """
 
@@ -13,10 +13,10 @@ from bisect import bisect_right
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate.documents.codepoints import Stretch, shorten_blanks, to_codes
+from vbraille.translate.documents.codepoints import Stretch, shorten_blanks
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
     Encoding,
@@ -26,33 +26,37 @@ from vbraille.translate.documents.encodings import (
     first_not_utf8,
     named_encoding,
 )
-from vbraille.translate.documents.paragraphs import Paragraph, split_paragraphs
+from vbraille.translate.documents.paragraphs import split_paragraphs
+from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
-BLOCK_BYTES = 65_536
+if TYPE_CHECKING:
+    from vbraille.translate.source import Block
+
+CHUNK_BYTES = 65_536
 
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """Where reading can go on: before a paragraph's first character.
+    """Where reading can go on: before a block's first character.
 
     Parameters
     ----------
-    paragraph
-        Number of the next paragraph, from 0.
+    block
+        Number of the next block, from 0.
     character
         Its place in the document.
     offset, state
         A place in the file at or before it, and the decoder's state there.
     skip
-        Characters between that place and the paragraph.
+        Characters between that place and the block.
     continues
-        Whether the paragraph is a further piece of the one before.
+        Whether the block is a further piece of the one before.
     item
         Number of the list item that it is a piece of; 0 for none.
     """
 
-    paragraph: int
+    block: int
     character: int
     offset: int
     state: tuple[bytes, int]
@@ -67,7 +71,7 @@ class _Mark:
 
 
 class Document:
-    """A text as paragraphs, read lazily.
+    """A plain text as a `Source` of paragraphs, or of its lines.
 
     Parameters
     ----------
@@ -79,7 +83,7 @@ class Document:
         Overrides what the bytes say: a name, or how the caller knows them to be written.
     keep_lines
         Keep the line breaks of the source (verse, code): each line is a
-        paragraph, its blanks kept; a run of empty lines is an empty paragraph.
+        block, its blanks kept; a run of empty lines is an empty block.
 
     Attributes
     ----------
@@ -126,9 +130,9 @@ class Document:
         self._found = encoding is None
         self._noted = self._grown = False
         start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
-        self._marks: list[_Mark] = [start]  # of each block, and of the one to be read next
+        self._marks: list[_Mark] = [start]  # of each chunk, and of the one to be read next
         self._complete = False
-        self._recent: dict[int, list[Paragraph]] = {}
+        self._recent: dict[int, list[Block]] = {}
 
     @classmethod
     def open(
@@ -196,7 +200,8 @@ class Document:
     def note(self) -> str | None:
         """What must be said of the file, each thing once after it is found; None if nothing is.
 
-        That the text is not UTF-8, and where; that the file has grown since it was opened.
+        It may be that the text is not UTF-8, and where, or that the file has grown since it was
+        opened.
         """
         if self._grown:
             self._grown = False
@@ -220,8 +225,8 @@ class Document:
             )
         return None
 
-    def paragraph(self, number: int) -> Paragraph | None:
-        """Paragraph of a number, from 0, or None past the end.
+    def block(self, number: int) -> Block | None:
+        """Block of a number, from 0; None past the end.
 
         Raises
         ------
@@ -230,45 +235,45 @@ class Document:
         VbrailleError
             If it is no longer what it was.
         """
-        while number >= self._marks[-1].paragraph and not self._complete:
-            self._read_block(len(self._marks) - 1)
-        if number >= self._marks[-1].paragraph or number < 0:
+        while number >= self._marks[-1].block and not self._complete:
+            self._read_chunk(len(self._marks) - 1)
+        if number >= self._marks[-1].block or number < 0:
             return None
-        block = bisect_right(self._marks, number, key=lambda mark: mark.paragraph) - 1
-        paragraphs = self._recent.get(block)
-        if paragraphs is None:
-            paragraphs = self._read_block(block)
-        index = number - self._marks[block].paragraph
-        if index >= len(paragraphs):
+        chunk = bisect_right(self._marks, number, key=lambda mark: mark.block) - 1
+        blocks = self._recent.get(chunk)
+        if blocks is None:
+            blocks = self._read_chunk(chunk)
+        index = number - self._marks[chunk].block
+        if index >= len(blocks):
             raise VbrailleError(f"{self.name} has changed since it was opened; open it again")
-        return paragraphs[index]
+        return blocks[index]
 
-    def paragraph_at(self, character: int) -> int | None:
-        """Number of the paragraph that holds a character of the source, or None past the end."""
+    def block_at(self, character: int) -> int | None:
+        """Number of the block that holds a character, or the first after it; None past the end."""
         while character >= self._marks[-1].character and not self._complete:
-            self._read_block(len(self._marks) - 1)
-        block = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
-        block = min(max(block, 0), len(self._marks) - 2)
-        number = self._marks[block].paragraph
-        while (paragraph := self.paragraph(number)) is not None:
-            if character < paragraph.end:
+            self._read_chunk(len(self._marks) - 1)
+        chunk = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
+        chunk = min(max(chunk, 0), len(self._marks) - 2)
+        number = self._marks[chunk].block
+        while (block := self.block(number)) is not None:
+            if character < block.text.end:
                 return number
             number += 1
         return None
 
-    def progress(self, paragraph: int) -> float:
-        """About how much of the file stands before a paragraph that was read, 0 to 1."""
-        block = bisect_right(self._marks, paragraph, key=lambda mark: mark.paragraph) - 1
-        here, after = self._marks[block], self._marks[min(block + 1, len(self._marks) - 1)]
-        share = (paragraph - here.paragraph) / max(after.paragraph - here.paragraph, 1)
+    def progress(self, number: int) -> float:
+        """About how much of the file stands before a block that was read, 0 to 1."""
+        chunk = bisect_right(self._marks, number, key=lambda mark: mark.block) - 1
+        here, after = self._marks[chunk], self._marks[min(chunk + 1, len(self._marks) - 1)]
+        share = (number - here.block) / max(after.block - here.block, 1)
         return min(1.0, (here.bytes + share * (after.bytes - here.bytes)) / self.size)
 
     def sha256(self) -> str:
         """SHA-256 of the bytes, in hexadecimal."""
         digest = hashlib.sha256()
         self._stream.seek(0)
-        while block := self._stream.read(BLOCK_BYTES):
-            digest.update(block)
+        while chunk := self._stream.read(CHUNK_BYTES):
+            digest.update(chunk)
         return digest.hexdigest()
 
     def close(self) -> None:
@@ -292,17 +297,17 @@ class Document:
         except OSError as error:
             raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
 
-    def _read_block(self, block: int) -> list[Paragraph]:
-        """Read the paragraphs of a block; mark where the next begins if that is not known yet."""
-        mark = self._marks[block]
-        paragraphs, after = self._parse(mark)
-        if block == len(self._marks) - 1:
+    def _read_chunk(self, chunk: int) -> list[Block]:
+        """Read the blocks of a chunk; mark where the next begins if that is not known yet."""
+        mark = self._marks[chunk]
+        blocks, after = self._parse(mark)
+        if chunk == len(self._marks) - 1:
             if after is None:
                 self._complete = True
                 self._grown = self._end() > self.size
                 after = _Mark(
-                    mark.paragraph + len(paragraphs),
-                    paragraphs[-1].end if paragraphs else mark.character,
+                    mark.block + len(blocks),
+                    blocks[-1].text.end if blocks else mark.character,
                     self.size,
                     (b"", 0),
                     0,
@@ -311,11 +316,11 @@ class Document:
             self._marks.append(after)
         if len(self._recent) >= 3:
             self._recent.pop(next(iter(self._recent)))
-        self._recent[block] = paragraphs
-        return paragraphs
+        self._recent[chunk] = blocks
+        return blocks
 
-    def _parse(self, mark: _Mark) -> tuple[list[Paragraph], _Mark | None]:
-        """Paragraphs from a mark on, none only if a stretch is blank; and the mark after them."""
+    def _parse(self, mark: _Mark) -> tuple[list[Block], _Mark | None]:
+        """Blocks from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
         parts: list[Stretch] = []
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
@@ -325,7 +330,7 @@ class Document:
         while True:
             while not final and (kept < wanted or not parts):
                 pieces.append((place, offset, self._decoder.state()))
-                read = self._read(offset, min(BLOCK_BYTES, self.size - offset))
+                read = self._read(offset, min(CHUNK_BYTES, self.size - offset))
                 if not read and offset < self.size:
                     raise VbrailleError(
                         f"{self.name} has become shorter since it was opened; open it again"
@@ -347,15 +352,15 @@ class Document:
                 keep_lines=self.keep_lines,
             )
             if final:
-                return split.paragraphs, None
-            if split.paragraphs or split.used:
+                return split.blocks, None
+            if split.blocks or split.used:
                 break
             # Twice as much every time: what is not done with is gone over again.
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
         after = _Mark(
-            mark.paragraph + len(split.paragraphs),
+            mark.block + len(split.blocks),
             used,
             offset,
             state,
@@ -363,7 +368,7 @@ class Document:
             split.continues,
             split.item,
         )
-        return split.paragraphs, after
+        return split.blocks, after
 
 
 def _kept(stream: BinaryIO) -> BinaryIO:
@@ -373,8 +378,8 @@ def _kept(stream: BinaryIO) -> BinaryIO:
     with ExitStack() as opened:
         kept = opened.enter_context(TemporaryFile())
         # Past Python's buffer, which asks a terminal for more after its end was typed.
-        while block := os.read(stream.fileno(), BLOCK_BYTES):
-            kept.write(block)
+        while chunk := os.read(stream.fileno(), CHUNK_BYTES):
+            kept.write(chunk)
         kept.flush()
         opened.pop_all()  # it is the caller's now
     return kept

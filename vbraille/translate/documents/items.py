@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.translate.documents.codepoints import to_text
+from vbraille.translate.text import to_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,12 +52,12 @@ def end_before_items(
     following = codes[np.minimum(at + 1, codes.size - 1)]
     leads = np.isin(codes[at], _LEADS) | (following == ord(")"))
     blank_lines = np.flatnonzero(ends)
-    block, item_now = 0, item or 0
+    passed, item_now = 0, item or 0
     for start in starts[leads].tolist():
         begins = bool(ends[start]) if start >= 0 else item is None
         here = int(np.searchsorted(blank_lines, start, "right"))
-        if here != block:
-            block, item_now = here, 0
+        if here != passed:
+            passed, item_now = here, 0
         found = _MARKER.match(to_text(codes[text[start + 1] : text[start + 1] + LONGEST_MARKER]))
         if found is None or (start < 0 and item is not None):
             continue
@@ -72,4 +72,4 @@ def end_before_items(
             item_now = number
             if start >= 0:
                 ends[start] = True
-    return item_now if block == blank_lines.size else 0
+    return item_now if passed == blank_lines.size else 0

@@ -15,10 +15,10 @@ from vbraille.translate.documents.codepoints import (
     NEWLINE,
     TEXT,
     kinds_of,
-    to_codes,
-    to_text,
 )
 from vbraille.translate.documents.items import LONGEST_MARKER, end_before_items
+from vbraille.translate.source import Block, Kind
+from vbraille.translate.text import NO_BREAK_SPACE, SPACE, Text, to_codes, to_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
 # A longer paragraph is handed on in pieces: no text may grow with the file.
 PIECE_CHARACTERS = 8_192
-
-SPACE = 0x20
-NO_BREAK_SPACE = 0xA0
 
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
@@ -46,60 +43,13 @@ _WORD = 5
 _LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Paragraph:
-    """A paragraph of text, or a piece of a very long one.
-
-    Parameters
-    ----------
-    codes : uint32[n]
-        Its characters as code points: hard-wrapped lines joined, white space folded.
-    source : int64[n]
-        Where each stands in the document, counted in characters from its first.
-    end : int
-        One past the document's last character that belongs to it.
-    continues : bool
-        Whether this piece goes on where the one before it broke off.
-    alphabet : frozenset of int
-        Code points among which all of its own are. They are gathered once for
-        many paragraphs: array scans between calls of liblouis slow it by a
-        fifth on processors that lower their clock for wide vectors.
-    """
-
-    codes: NDArray[np.uint32]
-    source: NDArray[np.int64]
-    end: int
-    continues: bool
-    alphabet: frozenset[int]
-
-    @property
-    def text(self) -> str:
-        """The paragraph as a string."""
-        return to_text(self.codes)
-
-    def __add__(self, piece: Paragraph) -> Paragraph:
-        return Paragraph(
-            np.concatenate((self.codes, piece.codes)),
-            np.concatenate((self.source, piece.source)),
-            piece.end,
-            self.continues,
-            self.alphabet | piece.alphabet,
-        )
-
-    def since(self, character: int) -> Paragraph:
-        """The part from a source character on; keeps nothing of the rest in memory."""
-        at = int(np.searchsorted(self.source, character))
-        codes, source = self.codes[at:].copy(), self.source[at:].copy()
-        return Paragraph(codes, source, self.end, True, self.alphabet)
-
-
 @dataclass(frozen=True, slots=True)
 class Split:
     """What `split_paragraphs` made of a stretch of characters.
 
     Parameters
     ----------
-    paragraphs
+    blocks
         The paragraphs that are complete.
     used
         Characters up to the first that belongs to none of them, or may begin another.
@@ -109,7 +59,7 @@ class Split:
         Number of the list item that it is a part of then; 0 for none.
     """
 
-    paragraphs: list[Paragraph]
+    blocks: list[Block]
     used: int
     continues: bool
     item: int = 0
@@ -176,39 +126,38 @@ def split_paragraphs(
         starts = text
         empty = np.zeros(text.size - 1, bool)
     kept = np.flatnonzero(keep)
-    own, source = codes[kept], stretch.place(kept)
+    own, places = codes[kept], stretch.place(kept)
     seen = np.zeros(int(own.max()) + 1, np.bool_)
     seen[own] = True
     alphabet = frozenset(np.flatnonzero(seen).tolist())
     accents = not alphabet.isdisjoint(_COMBINING)
+    kind = Kind.LINE if keep_lines else Kind.PARAGRAPH
 
-    def paragraph(start: int, end: int, continues: bool) -> Paragraph:
+    def block(start: int, end: int, continues: bool) -> Block:
         part = slice(start, end)
-        piece = Paragraph(own[part], source[part], int(source[end - 1]) + 1, continues, alphabet)
-        return _compose(piece) if accents else piece
+        text = Text(own[part], places[part], int(places[end - 1]) + 1, alphabet)
+        return Block(_compose(text) if accents else text, kind, continues=continues)
 
     last = np.flatnonzero(ends)
     begin = np.concatenate((starts[:1], starts[last + 1]))
     stop = np.concatenate((text[last] + 1, text[-1:] + 1))
     bounds = np.searchsorted(kept, [begin, stop]).T.tolist()
     is_empty = [*empty[last].tolist(), False]
-    paragraphs: list[Paragraph] = []
+    blocks: list[Block] = []
     for n, (start, end) in enumerate(bounds):
         complete = ended or n < len(bounds) - 1
         rest = start
         for cut in _cuts(codes, kept, start, end if complete else end - _LOOK_AHEAD):
-            paragraphs.append(paragraph(rest, cut, continues))
+            blocks.append(block(rest, cut, continues))
             rest, continues = cut, True
         if not complete:
             used = int(begin[-1]) if rest == start else int(kept[rest])
-            return Split(paragraphs, used, continues, item if continues else 0)
-        paragraphs.append(paragraph(rest, end, continues))
+            return Split(blocks, used, continues, item if continues else 0)
+        blocks.append(block(rest, end, continues))
         continues = False
         if is_empty[n]:
-            nothing = np.empty(0, np.int64)
-            at = int(stretch.place(stop[n] - 1)) + 1
-            paragraphs.append(Paragraph(nothing.astype(np.uint32), nothing, at, False, alphabet))
-    return Split(paragraphs, codes.size, continues=False)
+            blocks.append(Block(Text.empty(int(stretch.place(stop[n] - 1)) + 1), kind))
+    return Split(blocks, codes.size, continues=False)
 
 
 def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
@@ -285,16 +234,16 @@ def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: in
         yield start
 
 
-def _compose(paragraph: Paragraph) -> Paragraph:
+def _compose(text: Text) -> Text:
     """Make letters with combining accents one character where Unicode has one.
 
     Many tables know é and not e followed by U+0301.
     """
-    if _COMBINING.isdisjoint(paragraph.codes.tolist()):
-        return paragraph
+    if _COMBINING.isdisjoint(text.codes.tolist()):
+        return text
     composed: list[str] = []
     places: list[int] = []
-    for character, place in zip(paragraph.text, paragraph.source.tolist(), strict=True):
+    for character, place in zip(str(text), text.places.tolist(), strict=True):
         together = ""
         if composed and ord(character) in _COMBINING:
             together = unicodedata.normalize("NFC", composed[-1] + character)
@@ -304,10 +253,4 @@ def _compose(paragraph: Paragraph) -> Paragraph:
             composed.append(character)
             places.append(place)
     codes = to_codes("".join(composed))
-    return Paragraph(
-        codes,
-        np.array(places, np.int64),
-        paragraph.end,
-        paragraph.continues,
-        frozenset(codes.tolist()),
-    )
+    return Text(codes, np.array(places, np.int64), text.end, frozenset(codes.tolist()))

@@ -1,0 +1,119 @@
+"""A block in lines: which cells and which text each has, and what is left for its next piece."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from vbraille.braille.cells import Cells
+from vbraille.layout.indents import indents
+from vbraille.layout.wrapping import breaks_of, wrap
+from vbraille.translate.source import Kind
+
+if TYPE_CHECKING:
+    from vbraille.translate.source import Block
+    from vbraille.translate.text import Text
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """What a piece of a long block leaves for the next: its unfinished line.
+
+    Parameters
+    ----------
+    indent
+        Blank cells before the line.
+    text, cells
+        What is on it so far.
+    character
+        The first source character whose text is on it.
+    """
+
+    indent: int
+    text: Text
+    cells: Cells
+    character: int
+
+
+class LaidBlock:
+    """A block, or a piece of one with what the piece before it left, in lines.
+
+    Parameters
+    ----------
+    block, cells
+        What is laid out.
+    width
+        Cells a line.
+    carried
+        What the piece before it left; None if the block begins here.
+    goes_on
+        Whether another piece follows.
+
+    Attributes
+    ----------
+    bounds : list of (start, stop, indent)
+        The cells of each line, as [start, stop), and the blank cells before them.
+    carries : Carried or None
+        What is left for the next piece.
+    """
+
+    def __init__(
+        self, block: Block, cells: Cells, width: int, carried: Carried | None, *, goes_on: bool
+    ) -> None:
+        indent, runover = indents(block, width)
+        self._first = 0
+        if carried is not None:
+            indent = carried.indent
+            block = replace(block, text=carried.text + block.text)
+            cells = carried.cells + cells
+            self._first = block.text.index(carried.character)
+        self.block = block
+        self.cells = cells
+        breaks = breaks_of(block.text, cells)
+        self.bounds = wrap(breaks, width, indent, runover, cells.starts.data)
+        self._rest: int | None = None  # where the cells begin that are left
+        self.carries: Carried | None = None
+        if goes_on:
+            self.carries = self._carry(indent, runover)
+        elif self.bounds == [(0, 0, 0)] and (carried is not None or block.kind is Kind.PAGE):
+            self.bounds.clear()  # nothing but blanks after the last piece, or a page of no number
+
+    @cached_property
+    def edges(self) -> list[int]:
+        """Index of the character at which each line begins, and one past the last line's."""
+        starts = [start for start, _, _ in self.bounds[1:]]
+        starts += [] if self._rest is None or not self.bounds else [self._rest]
+        after = [stop for _, stop, _ in self.bounds]
+        edges = [self._edge(start, stop) for start, stop in zip(starts, after, strict=False)]
+        last = [] if len(edges) == max(len(self.bounds), 1) else [len(self.block.text)]
+        return [self._first, *edges, *last]
+
+    def _edge(self, start: int, stop: int) -> int:
+        """Where a line's text begins: the line has its cells from `start`, the last to `stop`."""
+        text, starts = self.block.text, self.cells.starts
+        if start == starts.size:
+            return len(text)
+        character = int(starts[start])
+        if stop and starts[stop - 1] == character:  # its text is on the line before
+            character = self.cells.source(start)[1]
+        at = text.index(character)
+        while at < len(text) and chr(text.codes[at]).isspace():
+            at += 1
+        return at
+
+    def _carry(self, indent: int, runover: int) -> Carried:
+        """Take the unfinished line; keeps nothing of what is before it in memory."""
+        text, cells = self.block.text, self.cells
+        start, stop, its_indent = self.bounds.pop()
+        if start == stop:  # blank so far
+            start, its_indent = len(cells), indent
+        elif stop < len(cells):  # the blanks after it have filled it
+            self.bounds.append((start, stop, its_indent))
+            start, its_indent = len(cells), runover
+        self._rest = start
+        first = int(cells.starts[start]) if start < len(cells) else text.end
+        edge = self.edges[-1]
+        character = int(text.places[edge]) if edge < len(text) else text.end
+        rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
+        return Carried(its_indent, text.since(first), rest, character)

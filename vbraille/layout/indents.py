@@ -1,0 +1,38 @@
+"""How far the lines of a block are indented, by its kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.translate.source import Kind
+
+if TYPE_CHECKING:
+    from vbraille.translate.source import Block
+
+STEP = 2  # cells
+
+
+def indents(block: Block, width: int) -> tuple[int, int]:
+    """Blank cells before a block's first line and before its others.
+
+    They are less than half of a line, so that there is room for words: where a kind's own
+    would be more, they are the most even number of cells that is.
+
+    Parameters
+    ----------
+    width
+        Cells a line.
+    """
+    match block.kind:
+        case Kind.PARAGRAPH:
+            first, others = STEP, 0
+        case Kind.HEADING:
+            first, others = 2 * STEP, 2 * STEP
+        case Kind.ITEM:
+            first, others = (block.level - 1) * STEP, block.level * STEP
+        case Kind.ROW | Kind.LINE:
+            first, others = 0, STEP
+        case Kind.PAGE:
+            first, others = 0, 0
+    most = (width - 1) // (2 * STEP) * STEP
+    return min(first, most), min(others, most)

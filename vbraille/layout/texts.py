@@ -1,0 +1,86 @@
+"""A text of a program's own as lines of a page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.layout.pages import Layout
+from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table
+
+if TYPE_CHECKING:
+    from vbraille.braille.geometry import Geometry
+    from vbraille.display import Display
+
+
+def cells_per_line(geometry: Geometry, display: Display) -> int:
+    """How many cells a line has on a display.
+
+    Raises
+    ------
+    InputError
+        If there is no room for one.
+    """
+    try:
+        return geometry.cells_per_line(display.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def choose_table(
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    undefined: Undefined | str = Undefined.MARK,
+) -> BrailleTable:
+    """A table by its name, or by a language and a grade.
+
+    Parameters
+    ----------
+    language
+        Such as "fr" or "pt-BR"; English if nothing is given.
+    grade
+        0 or 1 for uncontracted braille, 2 and up for contracted; None for what is usual.
+    table
+        Name of a liblouis table, instead of those.
+    undefined
+        What is written for a character that the table does not know.
+
+    Raises
+    ------
+    InputError
+        If there is no such table, or both a table and a language are given.
+    """
+    how = Undefined(undefined)
+    if table is None:
+        return BrailleTable(find_table("en" if language is None else language, grade), how)
+    if language is not None or grade is not None:
+        raise InputError("a table has its language and grade; give either a table or those")
+    return BrailleTable(table, how)
+
+
+def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool = False) -> Layout:
+    """Lay out a string.
+
+    Parameters
+    ----------
+    text
+        Its blank lines part paragraphs.
+    width
+        Cells a line.
+    table
+        How it is translated.
+    keep_lines
+        Whether each of its lines stays one, at the margin; else paragraphs are filled, each
+        with an indent.
+
+    Raises
+    ------
+    InputError
+        If it has nothing to show.
+    """
+    document = Document.from_text(text, keep_lines=keep_lines)
+    layout = Layout(Book(document, table), width)
+    if layout.line(1) is None:
+        raise InputError("the text has nothing to read in it; give some")
+    return layout

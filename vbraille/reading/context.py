@@ -1,0 +1,12 @@
+"""What the keys of a reader mean at the moment."""
+
+from enum import Enum
+
+
+class Context(Enum):
+    """What the reader is doing, which says what a key stands for."""
+
+    READING = "reading"
+    """A line is under the hand."""
+    PLACING = "placing"
+    """The device waits to be told that its carriage is at the left stop."""

@@ -1,0 +1,30 @@
+"""What is said of a line when it comes under the hand."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.layout.pages import Line
+
+
+class Echo(StrEnum):
+    """How much is said of each line."""
+
+    NONE = "none"
+    TEXT = "text"
+    CELLS = "cells"
+    BOTH = "both"
+
+    def sentences(self, line: Line) -> Iterator[str]:
+        """What is said of a line, one thing after the other."""
+        if self is Echo.NONE:
+            return
+        yield f"line: {line.number}"
+        if self in (Echo.CELLS, Echo.BOTH):
+            yield f"cells: {line.printed.to_unicode()}"
+        if self in (Echo.TEXT, Echo.BOTH):
+            yield f"text: {line.text.strip()}"

@@ -1,0 +1,137 @@
+"""A line of text as frames: what the actuators do as the array goes along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.render.braille.models import STRESS2, Model, model_of
+from vbraille.wording import count
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from vbraille.braille.cells import Cells
+    from vbraille.display import Display
+    from vbraille.layout.pages import Line
+    from vbraille.render.braille.style import BrailleStyle
+
+_MOST_FRAMES = 10_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RenderedLine:
+    """A line of text, and every frame along it.
+
+    Parameters
+    ----------
+    line
+        The line: its text, and which cell is which character.
+    display, style
+        What it is rendered for, and how.
+    positions_mm : float64[n]
+        Where the array's centre is in each frame; 0 is where the line begins.
+    frames : float64[n, rows, columns]
+        Deflections, 0 (rest) to 1 (full swing).
+    """
+
+    line: Line
+    display: Display
+    style: BrailleStyle
+    positions_mm: NDArray[np.float64]
+    frames: NDArray[np.float64]
+
+    @property
+    def cells(self) -> Cells:
+        """Cells of the line as it would be embossed."""
+        return self.line.printed
+
+    @property
+    def text(self) -> str:
+        """The text that the line stands for."""
+        return self.line.text
+
+    def __len__(self) -> int:
+        return self.positions_mm.size
+
+
+def render_text(
+    text: str,
+    display: Model | Display = STRESS2,
+    *,
+    style: BrailleStyle | None = None,
+    language: str | None = None,
+    grade: int | None = None,
+    table: str | None = None,
+    line: int | None = None,
+    step_mm: float = 0.06,
+) -> RenderedLine:
+    """Render a line of text: frames from the left stop until the whole array is past its end.
+
+    Parameters
+    ----------
+    text
+        What is to be read, from the margin.
+    display
+        What it is shown on: a `Model` such as `VBD` or `STRESS2`, or any `Display`.
+    style
+        How braille is shown; None for how the display is read unless told otherwise. Make others
+        with `BrailleStyle.replace`, as in ``VBD.style.replace(texture=0.5)``.
+    language, grade
+        Such as "fr" and 1; the usual table of the language is taken if no grade is given.
+    table
+        Name of a liblouis table, instead of a language.
+    line
+        Which line of the text, from 1, where it takes more than one.
+    step_mm
+        Between two frames: 0.06 mm is a hand at 60 mm/s and 1000 frames a second.
+
+    Raises
+    ------
+    InputError
+        If something cannot be used, or the text takes several lines and none is chosen.
+
+    Examples
+    --------
+    >>> import vbraille
+    >>> made = vbraille.render_text("Hello", display=vbraille.VBD)
+    >>> made.cells.to_unicode(), made.frames.shape[1:]
+    ('⠠⠓⠑⠇⠇⠕', (1, 12))
+    >>> float(made.frames.max())
+    1.0
+    """
+    model = display if isinstance(display, Model) else model_of(display)
+    if style is None:
+        geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)
+        style = model.style.replace(geometry=geometry)
+    layout = lay_out_text(
+        text,
+        cells_per_line(style.geometry, model.display),
+        choose_table(language, grade, table),
+        keep_lines=True,
+    )
+    if line is None and layout.line(2) is not None:
+        raise InputError(
+            f"the text takes {count(layout.count(), 'line')} on the {model.title}; say which with "
+            f"line=1, and so on"
+        )
+    found = layout.line(line or 1)
+    if found is None:
+        raise InputError(f"the text ends at line {layout.count()}; line {line} is past that")
+    half_mm = model.display.span_mm / 2
+    way_mm = style.geometry.extent_mm(len(found)) + 2 * half_mm
+    if not way_mm / _MOST_FRAMES <= step_mm <= way_mm:
+        raise InputError(
+            f"step_mm is {step_mm:g}; it must be {way_mm / _MOST_FRAMES:.2g} to {way_mm:.3g} mm"
+        )
+    positions_mm = np.arange(0.0, way_mm + step_mm / 2, step_mm) - half_mm
+    try:
+        program = style.render(found.masks, model.display)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    frames = program.path(positions_mm).astype(np.float64)
+    return RenderedLine(found, model.display, style, positions_mm, frames)

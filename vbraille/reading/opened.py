@@ -1,0 +1,371 @@
+"""A device that is open to be read on: what is shown on it, where the hand is, what happens."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Self
+
+from vbraille.devices.base import Device, Placing
+from vbraille.devices.saying import told
+from vbraille.engine.engine import placing_of
+from vbraille.engine.host import Host
+from vbraille.engine.record import Flag
+from vbraille.errors import DeviceError
+from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.pose import Pose
+from vbraille.reading.reader import Echo, Reader
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.simulated import SimulatedDevice
+from vbraille.simulation.specs import (
+    device_spec,
+    is_simulated,
+    parse_hand,
+    steering_of,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.devices.events import Event
+    from vbraille.display import Display
+    from vbraille.engine.clock import Clock
+    from vbraille.engine.local import LocalEngine
+    from vbraille.engine.tally import Tally
+    from vbraille.layout.pages import Layout, Line
+    from vbraille.render.braille.models import Model
+    from vbraille.render.braille.style import BrailleStyle
+
+HAND = "sweep:60"
+_POLL_S = 0.02
+_HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
+
+
+class OpenDevice:
+    """A device that somebody reads on. A context manager; on exit the actuators fade to rest.
+
+    `vbraille.open` makes one that is ready to `show`. A program with an order of its own makes
+    it of its parts: `find` the device, `start` it with a model, `show`.
+
+    Parameters
+    ----------
+    device
+        Spec of the device, which a process of its own then drives; or a device itself, which is
+        driven here, as long as it is polled.
+    wanted
+        The display that is asked for, at the rate that is: a simulated device is just so, a real
+        one is what it is.
+    hand, seed
+        What moves the simulated device, and what that is drawn from.
+    clock
+        What a device that is given itself goes by; None for the machine's.
+    say
+        Where to say what the reader should hear, one thing a call.
+    attended
+        Whether somebody is at a keyboard, who ends what no hand ends.
+
+    Attributes
+    ----------
+    placing : Placing
+        What the device waits for before it knows where its carriage is; see `set_zero`.
+    """
+
+    def __init__(
+        self,
+        device: str | Device,
+        wanted: Display,
+        *,
+        hand: str = HAND,
+        seed: int = 1,
+        clock: Clock | None = None,
+        say: Callable[[str], None] = lambda _: None,
+        attended: bool = False,
+    ) -> None:
+        self.placing = Placing.DONE
+        self._wanted = wanted
+        self._say = say
+        self._attended = attended
+        self._reader: Reader | None = None
+        self._newest: np.void | None = None
+        self._model: Model | None = None
+        self._device = device if isinstance(device, Device) else None
+        self._engine: Host | LocalEngine
+        # A hand that was recorded reads no more than it has recorded.
+        self._once = isinstance(parse_hand(hand, seed), Recorded)
+        self._simulated = isinstance(device, str) and is_simulated(device)
+        if isinstance(device, Device):
+            # Here and not above: what is imported is compiled code, which a host loads by itself.
+            from vbraille.engine.clock import RealClock
+            from vbraille.engine.local import LocalEngine
+
+            rate_hz = min(wanted.rate_hz, device.display.rate_hz)
+            self._steering = device.steering if isinstance(device, SimulatedDevice) else None
+            self._engine = LocalEngine(
+                device,
+                RealClock() if clock is None else clock,
+                rate_hz=rate_hz,
+                poll_ticks=max(1, round(_POLL_S * rate_hz)),
+            )
+        else:
+            self._steering = steering_of(device)
+            self._engine = Host(
+                device_spec(device, hand, seed, self._steering),
+                wanted,
+                pass_fds=() if self._steering is None else (self._steering.descriptor,),
+            )
+
+    def find(self) -> Display:
+        """What the device is; it is opened for that, unless it is the simulated one.
+
+        Raises
+        ------
+        VbrailleError
+            If it cannot be opened.
+        """
+        if self._simulated:
+            return self._wanted
+        return self._engine.open() if isinstance(self._engine, Host) else self._engine.display
+
+    def start(self, model: Model) -> None:
+        """Drive the device, for lines that are shown in the style of a model.
+
+        Raises
+        ------
+        VbrailleError
+            If it cannot be opened.
+        """
+        self._model = model
+        if isinstance(self._engine, Host):
+            width = cells_per_line(model.style.geometry, model.display)
+            self._engine.fit(model.display, model.style.room(model.display, width))
+        self._engine.start()
+
+    def start_again(self) -> None:
+        """Drive the device again, after a `vbraille.engine.host.HostDiedError`."""
+        self.placing = Placing.DONE
+        self._engine.start()
+        self.reader.steer()
+
+    def show(
+        self,
+        text: str | Layout,
+        *,
+        language: str | None = None,
+        grade: int | None = None,
+        table: str | None = None,
+        keep_lines: bool = False,
+        first: int = 1,
+        last: int | None = None,
+        advance: bool = True,
+        echo: Echo = Echo.NONE,
+    ) -> None:
+        """Put the first line of a text under the hand; the others come as it is polled.
+
+        Parameters
+        ----------
+        text
+            What is to be read, or a layout of it for this display.
+        language, grade, table
+            How it is translated, as for `vbraille.render_text`.
+        keep_lines
+            Whether each line of the text stays one; else its paragraphs are filled.
+        first, last
+            Lines to read, from 1, both included; None for the end.
+        advance
+            Whether the next line comes when the hand returns; else `reader` is told to go on.
+        echo
+            What is said of each line.
+
+        Raises
+        ------
+        InputError
+            If the text, or its table, cannot be used.
+        """
+        model = self.model
+        if isinstance(text, str):
+            width = cells_per_line(model.style.geometry, model.display)
+            chosen = choose_table(language, grade, table)
+            text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
+        self._reader = Reader(
+            text,
+            self._engine,
+            model=model,
+            say=self._say,
+            first=first,
+            last=last,
+            advance=advance,
+            stay=self._attended,
+            echo=echo,
+            steering=self._steering,
+        )
+        self._reader.start()
+
+    def read(self, text: str | Layout, **how: Any) -> Iterator[Line]:
+        """Show a text, and give each line as it comes under the hand, until all are read.
+
+        Parameters and errors are as of `show`, and of `poll`.
+        """
+        self.show(text, **how)
+        given = 0
+        while not self.done:
+            line = self.line
+            if line is not None and line.number != given:
+                given = line.number
+                yield line
+            self.poll()
+
+    def poll(self, wait_s: float = _POLL_S) -> list[Event]:
+        """Let a moment go by: what the device had to tell, by `vbraille.devices.events`.
+
+        Lines go on by this. A device that was given itself lives by it: poll it again and again.
+
+        Parameters
+        ----------
+        wait_s
+            How long the moment is; a device that was given itself has one of its own.
+
+        Raises
+        ------
+        VbrailleError
+            If the device is gone, or a line cannot be read to its end and nobody can see to it.
+        """
+        if wait_s and isinstance(self._engine, Host):
+            time.sleep(wait_s)
+        ticks = self._engine.poll()
+        events = list(self._engine.take_events())
+        for sentence in told(events):
+            self._say(sentence)
+        if ticks.size:
+            self._newest = ticks[-1]
+            self.placing = placing_of(ticks[-1])
+            if self._reader is not None:
+                self._step(self._reader, ticks)
+        return events
+
+    def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
+        """Have the reader look, and see to a simulated hand that cannot go on by itself."""
+        lines = reader.lines
+        reader.step(ticks)
+        if self._attended:
+            return
+        felt = not int(ticks["flags"][-1]) & _HELD
+        done = felt and reader.steered_till(ticks[-1])
+        if done and reader.lines == lines and not reader.done:
+            # The hand was at the end of the line between two ticks, or its recording is over.
+            if self._once:
+                reader.quit()
+            elif ticks["line"][-1] == reader.line_number:
+                reader.go_on()
+        if reader.hopeless is not None:
+            raise DeviceError(reader.hopeless)
+
+    @property
+    def display(self) -> Display:
+        """What the device is."""
+        return self.model.display
+
+    @property
+    def model(self) -> Model:
+        """The device and the style that lines are shown in."""
+        if self._model is None:
+            raise DeviceError("the device is not open; start it first")
+        return self._model if self._reader is None else replace(self._model, style=self.style)
+
+    @property
+    def style(self) -> BrailleStyle:
+        """How lines are shown; `tune` turns it."""
+        if self._reader is not None:
+            return self._reader.style
+        return self.model.style
+
+    @property
+    def reader(self) -> Reader:
+        """The reader of what is shown, who takes the commands of `vbraille read`."""
+        if self._reader is None:
+            raise DeviceError("nothing is shown; show a text first")
+        return self._reader
+
+    @property
+    def line(self) -> Line | None:
+        """The line under the hand; None before the first."""
+        return None if self._reader is None else self._reader.line
+
+    @property
+    def done(self) -> bool:
+        """Whether all that was shown has been read."""
+        return self._reader is None or self._reader.done
+
+    @property
+    def x_mm(self) -> float | None:
+        """Where the array's centre was along the line at the last poll; None if not known."""
+        return self._engine.x_mm
+
+    @property
+    def pose(self) -> Pose | None:
+        """Where the array was at the last poll, by the device's clock; None if not known."""
+        tick = self._newest
+        if tick is None or self._engine.x_mm is None:
+            return None
+        x_mm, y_mm, theta_rad = (float(tick[name]) for name in ("x_mm", "y_mm", "theta_rad"))
+        return Pose(int(tick["device_ns"]), x_mm, y_mm, theta_rad)
+
+    @property
+    def frame(self) -> NDArray[np.float32] | None:
+        """The frame sent last, float32[rows, columns], 0 to 1; None before the first poll."""
+        return None if self._newest is None else self._newest["frame"].copy()
+
+    @property
+    def paused(self) -> bool:
+        """Whether the array rests; set it to have it rest at once, or go on."""
+        return self._engine.paused
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        self._engine.paused = paused
+
+    @property
+    def tally(self) -> Tally:
+        """What the loop has done so far: ticks, and how many came late."""
+        return self._engine.tally
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """What went wrong with the device, by name; known after `close`."""
+        return self._engine.counts
+
+    def tune(self, **turned: float) -> None:
+        """Show lines with another texture or contrast from now on, each 0 to 1.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range.
+        """
+        if self._reader is not None:
+            self._reader.tune(**turned)
+        else:
+            self._model = replace(self.model, style=self.style.replace(**turned))
+
+    def set_zero(self) -> None:
+        """Say that the carriage is at its left stop now, which `placing` may wait for."""
+        self._engine.set_zero()
+
+    def close(self) -> None:
+        """Bring the array to rest, then let the device go. Further calls do nothing."""
+        if isinstance(self._engine, Host):
+            self._engine.close()
+        elif self._device is not None:
+            device, self._device = self._device, None
+            try:
+                self._engine.close()
+            finally:
+                device.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

@@ -1,0 +1,69 @@
+"""Text that is braille already, such as a BRF file's: blocks of ready cells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from vbraille.braille.cells import Cells, masks_of
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from vbraille.translate.source import Block, Source
+
+
+class CellsSource:
+    """A source whose characters are cells, in ASCII braille (BRF) or Unicode braille patterns.
+
+    Each character is the source of one cell, and what is printed as its text.
+
+    Parameters
+    ----------
+    source
+        The characters. A `Document` of a braille file keeps the lines of the file.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+
+    @property
+    def name(self) -> str:
+        """What to call it in messages."""
+        return self._source.name
+
+    def block(self, number: int) -> Block | None:
+        """Block of a number, from 0, with its cells; None past the end.
+
+        Raises
+        ------
+        InputError
+            If a character is no braille, or it cannot be read any more.
+        """
+        block = self._source.block(number)
+        if block is None:
+            return None
+        text = block.text
+        try:
+            cells = Cells(masks_of(text.codes), text.places, text.end)
+        except ValueError as error:
+            raise InputError(
+                f"{self.name} is not all braille: {error}; give a file of braille, or have a text "
+                f"translated by a table"
+            ) from None
+        return replace(block, cells=cells)
+
+    def block_at(self, character: int) -> int | None:
+        """Number of the block that holds a character, or the first after it; None past the end."""
+        return self._source.block_at(character)
+
+    def progress(self, number: int) -> float:
+        """About how much of the source stands before a block that was read, 0 to 1."""
+        return self._source.progress(number)
+
+    def note(self) -> str | None:
+        """What must be said of the source, each thing once after it is found; None if nothing."""
+        return self._source.note()
+
+    def sha256(self) -> str:
+        """SHA-256 of the bytes that it was read from, in hexadecimal."""
+        return self._source.sha256()
