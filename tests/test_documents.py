@@ -104,6 +104,8 @@ def test_each_module_and_what_it_is_said_to_have_is_there(page):
             if parts and (place / f"{parts[0]}.py").is_file():
                 place /= f"{parts.pop(0)}.py"
             source = (place if place.is_file() else place / "__init__.py").read_text()
+            if place == ROOT / "vbraille":
+                parts = parts[:1]  # what a name of the front door has stands where it comes from
             assert all(re.search(rf"\b{part}\b", source) for part in parts), name
 
 
@@ -114,8 +116,12 @@ def test_a_picture_has_words():
 
 
 def test_a_name_stands_for_one_thing():
-    """No two classes are called the same, and the glossary's names are in the program."""
-    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "vbraille").rglob("*.py")]
+    """No two classes are called the same, and the glossary's names are in the program.
+
+    Events of the journal are called as the journal calls them, and written `events.Answer`.
+    """
+    paths = set((ROOT / "vbraille").rglob("*.py")) - {ROOT / "vbraille/sessions/record/events.py"}
+    sources = [path.read_text(encoding="utf-8") for path in paths]
     classes = Counter(name for text in sources for name in _CLASS.findall(text))
     assert [name for name, number in classes.items() if number > 1] == []
     aliases = {name for text in sources for name in _ALIAS.findall(text)}

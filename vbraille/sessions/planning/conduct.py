@@ -168,7 +168,7 @@ class Question(Table, frozen=True):
                 raise ValueError(f"choices have {choice!r} twice; leave one out")
 
 
-class Faults(Table, frozen=True):
+class FaultRules(Table, frozen=True):
     """What becomes of a trial in which the device failed.
 
     Parameters

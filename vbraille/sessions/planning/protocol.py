@@ -17,7 +17,7 @@ from vbraille.render import MODELS
 from vbraille.sessions.planning.agreement import check_agreement
 from vbraille.sessions.planning.appearance import Appearance, Condition
 from vbraille.sessions.planning.conduct import (
-    Faults,
+    FaultRules,
     Question,
     SessionPace,
     SignalSound,
@@ -27,7 +27,7 @@ from vbraille.sessions.planning.conduct import (
 from vbraille.sessions.planning.design import Choice, Combinations, Rules, StringList
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, read_file
-from vbraille.sessions.planning.spellings import Keys, read_keys, spelled
+from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
 from vbraille.sessions.planning.tomlfile import Table, TomlFile, which
 
 if TYPE_CHECKING:
@@ -51,14 +51,14 @@ class _File(Table, frozen=True, kw_only=True):
     model_name: str = field(name="model")
     medium: Literal["device", "paper"] = "device"
     display: Appearance = Appearance()
-    keys: Keys = field(default_factory=Keys)
+    keys: SpellingKeys = field(default_factory=SpellingKeys)
     design: Combinations | StringList | Choice
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     rules: Rules = Rules()
     practice: Practice = Practice()
     trial: TrialPace = TrialPace()
     session: SessionPace = SessionPace()
-    faults: Faults = Faults()
+    faults: FaultRules = FaultRules()
     sound: SignalSound = SignalSound()
     fields: tuple[Question, ...] = ()
 
@@ -261,4 +261,4 @@ class _Format(msgspec.Struct):
 class _Keyed(msgspec.Struct):
     """What is read before the strings that are spelled by it."""
 
-    keys: Keys = field(default_factory=Keys)
+    keys: SpellingKeys = field(default_factory=SpellingKeys)

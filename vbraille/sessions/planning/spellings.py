@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-class Keys(dict[str, int]):
+class SpellingKeys(dict[str, int]):
     """Dot mask of each spelling that ``[keys]`` adds to a to z."""
 
 
@@ -25,7 +25,7 @@ class Masks(tuple[int, ...]):
     __slots__ = ()
 
 
-def spelled(keys: Keys, *, planned: bool) -> Callable[[type, Any], Any]:
+def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
     """What makes the types of this module from what `tomllib` read, for `msgspec.convert`.
 
     Parameters
@@ -37,7 +37,7 @@ def spelled(keys: Keys, *, planned: bool) -> Callable[[type, Any], Any]:
     """
 
     def read(kind: type, value: Any) -> Any:
-        if kind is Keys:
+        if kind is SpellingKeys:
             return keys
         if not isinstance(value, str):
             raise TypeError("Expected `str`, got another")
@@ -51,8 +51,8 @@ def spelled(keys: Keys, *, planned: bool) -> Callable[[type, Any], Any]:
     return read
 
 
-def read_keys(_kind: type, table: Any) -> Keys:
-    """Make the `Keys` of a table, for `msgspec.convert`.
+def read_keys(_kind: type, table: Any) -> SpellingKeys:
+    """Make the `SpellingKeys` of a table, for `msgspec.convert`.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def read_keys(_kind: type, table: Any) -> Keys:
     """
     if not isinstance(table, dict):
         raise TypeError("Expected `object`, got another")
-    keys = Keys()
+    keys = SpellingKeys()
     for key, spelling in table.items():
         if len(key) != 1 or not key.isprintable() or key in f"{UNREAD} -0123456789":
             raise ValueError(
