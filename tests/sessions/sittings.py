@@ -10,6 +10,7 @@ from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import FORMAT, check_end, create, load, versions
 from vbraille.sessions.record.journal import Journal
 from vbraille.sessions.record.progress import Progress
@@ -92,11 +93,15 @@ class Sat:
 class Session:
     """A session on the disk, sat at once or several times."""
 
-    def __init__(self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150"):
+    def __init__(
+        self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150",
+        procedure=None,
+    ):  # fmt: skip
         self.folder = folder
         self.protocol = parse_protocol(toml, "test")
         self.plan = make_plan(self.protocol, participant, seed)
         self.hand = hand
+        self.procedure = procedure
         head = {
             "format": FORMAT, "protocol": self.protocol.name, "participant": participant,
             "seed": seed, "order": self.plan.order, "model": self.protocol.model.name,
@@ -111,7 +116,8 @@ class Session:
 
     def sit(self, *script, engine=BatchEngine, noise=0.0):
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
-        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
+        given = bool(script) and hasattr(script[0], "next")
+        person = script[0] if given else self.person(*script)
         said, played = person.said, []
         answers = person if script else Simulated(self.protocol, self.plan, noise)
         model, display = self.protocol.model, None
@@ -133,7 +139,7 @@ class Session:
         with Journal(self.folder) as journal:
             check_end(self.folder, journal.told)
             torn = journal.set_torn_aside()
-            progress = Progress(self.plan, journal.told.events)
+            progress = Progress(self.plan, journal.told.events, self.procedure)
             course = Course(
                 self.protocol, self.plan, journal, progress, display, waits=answers.typed,
                 corrects=answers.typed, say=said.append, play=played.append,
@@ -147,7 +153,7 @@ class Session:
                 if display is not None:
                     display.close()
         record = load(self.folder)
-        progress = Progress(self.plan, record.told.events)
+        progress = Progress(self.plan, record.told.events, self.procedure)
         return Sat(said, record.told.events, played, record, progress, course)
 
 
@@ -170,5 +176,5 @@ def crash(folder, size):
 
 
 def of(events, name):
-    """Events of a kind."""
-    return [event for event in events if event["event"] == name]
+    """Events of a kind, as the journal has them."""
+    return [to_json(event) for event in events if event.kind == name]

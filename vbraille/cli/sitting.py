@@ -9,6 +9,7 @@ from vbraille.cli.wanted import TRAVEL_TOLERANCE_MM, device_spec, say_if_compili
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
+from vbraille.sessions.record import events
 from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
 from vbraille.sessions.record.folder import check_end
 from vbraille.sessions.record.journal import NAME, Journal, sum_of
@@ -144,7 +145,7 @@ class Sitting:
                 )
                 if "practice" in told:
                     self._say("practice: left out, since answers are not typed")
-                    course.log("begin")
+                    course.book.log(events.Begin)
                 Console(course, answers, say=self._say, real=self._real).run()
             finally:
                 EAR.close()  # so that the array goes to rest
@@ -153,9 +154,7 @@ class Sitting:
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
-                course.log(
-                    "closed", durable=True, lost=lost, counts=counts, **display.close_trace()
-                )
+                course.book.log(events.Closed, lost=lost, counts=counts, **display.close_trace())
             self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         return 0
 
