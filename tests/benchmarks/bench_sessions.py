@@ -21,6 +21,7 @@ from tests.conftest import SEED
 from tests.sessions.planning.rulebook import broken_rules
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
+from vbraille.sessions.record.events import Answer, Closed
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace
 
@@ -246,19 +247,19 @@ def _recorded(folder: Path) -> Result:
     subprocess.run(vbraille("session", "run", *arguments), check=True, stdout=subprocess.PIPE)
     events = load(session).told.events
     closed = events[-1]
-    assert closed["event"] == "closed"
+    assert isinstance(closed, Closed)
     trace = read_trace(session / "trace-001.gz")
     assert trace.damage is None
     ticks = trace.ticks["tick"]
     missing = int(ticks[0] + (np.diff(ticks) - 1).sum())
     late = int(trace.ticks["late"][-1])
-    trials = sum(event["event"] == "answer" for event in events)
+    trials = sum(isinstance(event, Answer) for event in events)
     return Result(
         f"ticks missing from the trace while recording {trials} trials at 1 kHz for "
         f"{RECORDED_S:g} s, beyond the engine's own late ticks; lost, as the journal says",
         "0, 0",
         f"{missing}, {closed['lost']} ({ticks.size} ticks; {late} deadlines late)",
-        not missing and not closed["lost"] and ticks.size > 0.9 * RECORDED_S * 1000,
+        not missing and not closed.lost and ticks.size > 0.9 * RECORDED_S * 1000,
     )
 
 

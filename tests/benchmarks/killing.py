@@ -18,6 +18,7 @@ import numpy as np
 from tests.benchmarks.timing import vbraille
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.check import check
+from vbraille.sessions.record.events import to_json
 from vbraille.sessions.record.folder import PLAN, load
 from vbraille.sessions.record.traces import read_last_tie
 
@@ -207,7 +208,7 @@ class _Killed:
     def _compare(self) -> None:
         """What must hold at the end, beside the session that nobody disturbed."""
         tally, events = self._tally, self._events()
-        whole = load(self._whole).told.events
+        whole = [to_json(event) for event in load(self._whole).told.events]
         tally.acknowledged += len(_acknowledged(self._said))
         if (self._folder / PLAN).read_bytes() != (self._whole / PLAN).read_bytes():
             self._add(self._others, "the plan is another one")
@@ -281,8 +282,8 @@ class _Killed:
         Only one that came after those before, of the run that said these lines.
         """
         told = self._told()
-        happened = Counter(event["event"] for event in told.events[before:])
-        last = told.events[-1]["event"]
+        happened = Counter(event.kind for event in told.events[before:])
+        last = told.events[-1].kind
         said = Counter(line.partition(":")[0] for line in lines)
         loose = last in _NOT_DURABLE
         loose |= last in ("answer", "undo", "note") and happened[last] > said[last]
@@ -297,11 +298,11 @@ class _Killed:
         start = content.rindex(b"\n", 0, -1) + 1
         os.truncate(path, start + 1 + int(share * (len(content) - start - 1)))
 
-    def _told(self) -> journal.Told:
+    def _told(self) -> journal.JournalContents:
         return journal.decode((self._folder / journal.NAME).read_bytes())
 
     def _events(self) -> list[Event]:
-        return self._told().events
+        return [to_json(event) for event in self._told().events]
 
     def _over(self) -> bool:
         return self._folder.exists() and bool(_of(self._events(), "end"))

@@ -8,8 +8,9 @@ import pytest
 
 from tests.cli.test_bad_input import refused
 from tests.sessions.sittings import MINI, Session
-from vbraille.sessions.record import journal
-from vbraille.sessions.record.journal import first_lines
+from vbraille.sessions.record import events, journal
+from vbraille.sessions.record.folder import FORMAT
+from vbraille.sessions.record.journal import encode, first_lines
 
 FAST = ("--participant", "P07", "--seed", "1", "--answers", "simulated", "--fast")
 
@@ -197,11 +198,12 @@ def test_an_undone_answer_is_not_counted_twice(call, tmp_path):
 
 
 def of_a_newer_format(room):
-    (room / journal.NAME).write_bytes(first_lines([{"event": "session", "format": 4, "t_s": 0}]))
+    first = events.Session(format=FORMAT + 1, sha256={}, t_s=0.0)
+    (room / journal.NAME).write_bytes(first_lines(first))
 
 
 def of_something_else(room):
-    (room / journal.NAME).write_bytes(first_lines([{"event": "party", "t_s": 0}]))
+    (room / journal.NAME).write_bytes(encode(events.Begin(n=1, t_s=0.0), 0)[0])
 
 
 def of_no_event(room):

@@ -80,25 +80,21 @@ def test_notes_are_in_the_report(call, noted, tmp_path):
 
 
 def test_a_note_between_trials_and_in_practice_is_tied_to_what_is_beside_it():
+    from vbraille.sessions.record import events
     from vbraille.sessions.record.notes import read_notes
 
-    events = [
-        {"event": "note", "text": "first"},
-        {"event": "presented", "trial": 1, "practice": True},
-        {"event": "note", "text": "practice", "trial": 1, "practice": True},
-        {"event": "presented", "trial": 1},
-        {"event": "answer", "trial": 1},
-        {"event": "note", "text": "between"},
-        {"event": "note", "text": "too"},
-        {"event": "presented", "trial": 2},
-        {"event": "stop"},
-        {"event": "note", "text": "shown again"},
-        {"event": "presented", "trial": 2},
-        {"event": "note", "text": "in", "trial": 2},
-        {"event": "answer", "trial": 2},
-        {"event": "note", "text": "last"},
-    ]
-    notes = read_notes({**event, "n": n, "t_s": 0.0} for n, event in enumerate(events, 1))
+    def shown(trial, **more):
+        return events.Presented(t_s=0.0, trial=trial, attempt=1, stimulus=0, **more)
+
+    def note(text, trial=0, **more):
+        return events.Note(t_s=0.0, text=text, trial=trial, **more)
+
+    happened = [
+        note("first"), shown(1, practice=True), note("practice", 1, practice=True), shown(1),
+        note("between"), note("too"), shown(2), events.Stop(t_s=0.0), note("shown again"),
+        shown(2), note("in", 2), note("last"),
+    ]  # fmt: skip
+    notes = read_notes(happened)
     told = [(note.text, note.before, note.trial, note.after, note.practice) for note in notes]
     assert told == [
         ("first", 0, 0, 1, False), ("practice", 0, 0, 1, True), ("between", 1, 0, 2, False),

@@ -3,6 +3,7 @@
 import csv
 import re
 import shutil
+from zlib import crc32
 
 import pytest
 from hypothesis import given
@@ -12,16 +13,17 @@ from tests.cli import program
 from tests.cli.test_session import words
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI
+from vbraille.sessions.record import events
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.journal import decode, first_lines
 from vbraille.sessions.record.salvage import salvage
 from vbraille.wording import spelled
 
 LONG = MINI.replace("length = 1", "length = 2\nrepeats = 2")  # 32 trials
-EVENTS = [{"event": "session", "format": 2, "sha256": {}, "t_s": 0.0}] + [
-    {"event": "note", "text": "x" * n, "t_s": 1.0 + n} for n in range(12)
-]
-WHOLE = first_lines(EVENTS)
+WHOLE = first_lines(
+    events.Session(format=2, sha256={}, t_s=0.0),
+    *(events.Note(text="x" * n, t_s=1.0 + n) for n in range(12)),
+)
 
 
 @pytest.fixture(scope="module")
@@ -100,6 +102,55 @@ def test_one_damage_is_one_complaint(call, folder, tmp_path, pattern, by):
     assert sum(row["answered"] != "" for row in table(tmp_path / "t.csv")) >= 31
 
 
+def rewrite(folder, old, new):
+    """Put something else into the first line of the journal that has it, with right checksums."""
+    path, crc, made, at = folder / "journal.jsonl", 0, [], 0
+    for n, line in enumerate(path.read_bytes().splitlines(), 1):
+        told = line.rpartition(b',"crc"')[0]
+        if not at and old in told:
+            at, told = n, told.replace(old, new)
+        crc = crc32(told, crc)
+        made.append(b'%s,"crc":"%08x"}\n' % (told, crc))
+    path.write_bytes(b"".join(made))
+    return at
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        (b'"event":"cue","trial":5', b'"event":"fly","trial":5',
+         "has an event of the kind 'fly', which this vbraille does not know"),
+        (b'"event":"cue","trial":5', b'"event":"cue","flew":5,"trial":5',
+         "has an event of the kind 'cue' with an unknown field, 'flew'"),
+        (b'"event":"cue","trial":5', b'"event":"cue"',
+         "has an event of the kind 'cue' that cannot be read: it is of no trial"),
+        (b'"event":"cue","trial":5', b'"event":"cue","trial":"5"',
+         "has an event of the kind 'cue' that cannot be read: Expected `int`, got `str`"),
+    ],
+)  # fmt: skip
+def test_an_event_that_there_is_not_is_damage(call, folder, tmp_path, old, new, why):
+    line = rewrite(folder, old, new)
+    (folder / "trace-001.gz").unlink()  # it is tied to what was there
+    before = contents(folder)
+    said = call("session", "resume", folder)
+    assert (said.code, said.out) == (1, "")
+    assert said.err.startswith(f"vbraille: {folder} is damaged: of journal.jsonl line {line} {why}")
+    assert said.err.count("\n") == 1
+    said = call("session", "check", folder)
+    assert said.code == 1
+    assert f"fault: journal.jsonl: damaged, line {line} {why}" in said.out
+    assert said.out.count("journal.jsonl: damaged") == 1
+    said = call("session", "export", folder, "--out", tmp_path / "t.csv")
+    assert said.code == 1
+    assert f"journal.jsonl is damaged, line {line} {why}" in said.err
+    assert sum(row["answered"] != "" for row in table(tmp_path / "t.csv")) == 4
+    said = call("session", "export", folder, "--salvage", "--out", tmp_path / "u.csv")
+    assert said.code == 1
+    assert f"of journal.jsonl, line {line} is not whole" in said.err
+    assert sum(row["answered"] != "" for row in table(tmp_path / "u.csv")) == 32
+    assert contents(folder) == before
+
+
 def test_what_comes_after_a_damaged_chunk_of_a_trace_is_used_too(call, ended, folder, tmp_path):
     path = folder / "trace-001.gz"
     trace = bytearray(path.read_bytes())
@@ -126,14 +177,14 @@ def test_a_bit_costs_two_events_at_most_and_what_is_kept_is_what_was_written(bit
     flipped[bit // 8] ^= 1 << bit % 8
     told = salvage(bytes(flipped))
     assert told.damage is not None
-    kept = [event for event in told.events if event["event"] != "lost"]
+    kept = [event for event in told.events if event.kind != "lost"]
     written = decode(WHOLE).events
     first = bool(told.bad) and told.bad[0] == 1
     assert all(event in written for event in kept[first:])
     assert len(kept) >= len(written) - 2
     assert told.bad
-    lost = {event["n"] for event in told.events if event["event"] == "lost"}
-    assert lost | {event["n"] for event in kept} == set(range(1, len(written) + 1))
+    lost = {event.n for event in told.events if event.kind == "lost"}
+    assert lost | {event.n for event in kept} == set(range(1, len(written) + 1))
 
 
 def test_of_a_whole_journal_salvage_is_all(call, ended, tmp_path):

@@ -162,7 +162,7 @@ def test_a_chunk_names_the_last_event_that_is_on_the_disk(tmp_path):
     assert trace.ties == tuple(dict.fromkeys(trace.ties))
     for number, crc in trace.ties:
         assert crc == (told.crcs[number - 1] if number else 0)
-    assert told.events[trace.ties[-1].number - 1]["event"] == "end"
+    assert told.events[trace.ties[-1].number - 1].kind == "end"
     assert read_last_tie(session.folder / "trace-001.gz") == trace.ties[-1]
     with Journal(session.folder) as journal:
         assert journal.durable == Tie(0, 0)  # nobody knows what of the others is

@@ -21,9 +21,10 @@ from tests.cli.test_session_bad_input import contents
 from vbraille.braille.cells import Cells
 from vbraille.recording import poses_of
 from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.record.events import Presented
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.replay import frames
-from vbraille.sessions.record.traces import LEFT_TRACE, read_trace
+from vbraille.sessions.record.traces import LEFT_TRACE, TRACE, read_trace
 
 WRITTEN = Path(__file__).parent.parent / "written-by"
 SESSIONS = sorted(WRITTEN.glob("*/sessions/*"))
@@ -63,14 +64,14 @@ def test_there_is_of_every_kind():
     assert protocols == {
         "control", "legibility", "letters", "tuning-spacing", "tuning-width", "words",
     }  # fmt: skip
-    happened = {event["event"] for folder in SESSIONS for event in load(folder).told.events}
+    happened = {event.kind for folder in SESSIONS for event in load(folder).told.events}
     assert happened >= {
         "answer", "undo", "repeat", "fault", "pause", "go", "note", "stop", "end", "tuning",
         "break", "device", "closed",
     }  # fmt: skip
     assert {folder.name for folder in SESSIONS if load(folder).told.torn} == {"letters-torn"}
-    of = {form: sum(load(folder).told.format == form for folder in SESSIONS) for form in (1, 2)}
-    assert of == {1: 9, 2: 9}
+    of = {form: sum(load(folder).told.format == form for folder in SESSIONS) for form in (1, 2, 3)}
+    assert of == {1: 9, 2: 9, 3: 9}
     assert {ended(folder) for folder in SESSIONS} == {True, False}
     assert len({h5py.File(path).attrs["model"] for path in RECORDINGS}) == 2
 
@@ -179,13 +180,14 @@ def test_a_session_is_gone_on_with_in_its_own_format(call, folder, tmp_path):
             assert after.startswith(before)
         else:
             assert after == before
-    formats = load(folder).head["format"], load(copy).told.events[0]["format"]
+    formats = load(folder).head["format"], load(copy).told.format
     assert formats[0] == formats[1]
     if formats[1] == 1:
-        assert not any("up_s" in event for event in load(copy).told.events)
+        assert not any(event.up_s for event in load(copy).told.events)
         assert not any(read_trace(path).ties for path in copy.glob("trace-*.gz"))
     for path in copy.glob("trace-*.gz"):
-        assert read_trace(path).ticks.dtype == LEFT_TRACE
+        assert read_trace(path).ticks.dtype == (LEFT_TRACE if formats[1] < 3 else TRACE)
+    assert not any(event.shown for event in load(copy).told.events if isinstance(event, Presented))
 
 
 @pytest.mark.parametrize("folder", [f for f in SESSIONS if ended(f)], ids=named)

@@ -173,7 +173,7 @@ def test_cut_at_every_byte_of_its_last_4_kb_a_journal_is_a_state_to_go_on_from(f
         assert told.events == record.told.events[: sum(end <= cut for end in ends)], cut
         assert told.damage is None
         progress = Progress(record.plan, told.events)
-        answers = sum(e["event"] == "answer" for e in told.events)
+        answers = sum(e.kind == "answer" for e in told.events)
         assert progress.done == answers
         if (cut - least) % by_tier(192, 48, 1) and cut not in ends:
             continue

@@ -6,6 +6,7 @@ from datetime import UTC, datetime, timedelta
 from tests.sessions.sittings import Session
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
+from vbraille.sessions.record.events import Run, Stop
 from vbraille.sessions.record.journal import encode, up_s
 
 NOON = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -39,8 +40,8 @@ def test_of_a_machine_that_was_started_anew_the_wall_clock_tells_if_it_can():
 
 
 def test_an_event_has_both_clocks():
-    event = {"wall": "2026-11-21T12:00:00.000000Z", "up_s": 5.0}
-    assert Moment.of(event, {"boot": "a"}) == moment(0, 5.0)
+    event = Stop(t_s=0.0, wall="2026-11-21T12:00:00.000000Z", up_s=5.0)
+    assert Moment.of(event, Run(t_s=0.0, why="start", boot="a")) == moment(0, 5.0)
     now = Moment.now()
     assert now.boot == boot()
     assert 0 < up_s() - now.up_s < 60

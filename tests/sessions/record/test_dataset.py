@@ -122,7 +122,7 @@ def test_a_dataset_that_cannot_be_finished_is_not_begun(record, tmp_path, monkey
 
 def test_without_times_no_file_tells_when_or_where(record, tmp_path):
     dataset.write(record, tmp_path / "set", without_times=True)
-    year = record.told.events[0]["wall"][:4]
+    year = record.told.events[0].wall[:4]
     for path in (tmp_path / "set").rglob("*"):
         if path.suffix in (".tsv", ".json") or path.name == "README":
             text = path.read_text()

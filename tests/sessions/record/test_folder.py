@@ -9,6 +9,7 @@ from tests.sessions.sittings import MINI, Session
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.record.events import Closed
 from vbraille.sessions.record.folder import create, load, read_told_trace
 
 
@@ -31,7 +32,7 @@ def test_what_was_put_comes_back(tmp_path, put):
     assert record.protocol == parse_protocol(MINI, "test")
     assert record.plan == make_plan(record.protocol, "P1", 1)
     assert record.head == {"fields": {"café": "\udcff"}}
-    assert [event["event"] for event in record.told.events] == ["session"]
+    assert [event.kind for event in record.told.events] == ["session"]
     assert (tmp_path / "s" / "protocol.toml").read_text() == MINI
 
 
@@ -116,7 +117,7 @@ def test_a_trace_is_held_against_what_the_journal_tells_of_it(tmp_path):
     def damage(told=told):
         return read_told_trace(session.folder, "trace-001.gz", told).damage
 
-    assert ended.events[-1]["event"] == "closed"
+    assert isinstance(ended.events[-1], Closed)
     assert (damage(), damage(ended)) == (None, None)
     path.write_bytes(whole[:-1])
     assert damage() is None  # as a crash leaves it

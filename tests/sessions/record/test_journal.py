@@ -8,27 +8,28 @@ import pytest
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.record import journal
+from vbraille.sessions.record.events import Answer, Cue, Note, Session
 from vbraille.sessions.record.journal import Journal, decode, first_lines
 
 
 @pytest.fixture
 def folder(tmp_path):
     """A session's directory with a journal of one event."""
-    (tmp_path / journal.NAME).write_bytes(first_lines([{"event": "session", "t_s": 0.0}]))
+    (tmp_path / journal.NAME).write_bytes(first_lines(Session(format=2, sha256={}, t_s=0.0)))
     return tmp_path
 
 
 def fill(folder, count=5):
     with Journal(folder) as book:
         for n in range(count):
-            book.append({"event": "note", "text": f"é {n}\n", "t_s": float(n)})
+            book.append(Note(text=f"é {n}\n", t_s=float(n)))
     return (folder / journal.NAME).read_bytes()
 
 
 def test_what_was_appended_is_told_in_order(folder):
     told = decode(fill(folder))
-    assert [event.get("text") for event in told.events] == [None, *(f"é {n}\n" for n in range(5))]
-    assert [event["n"] for event in told.events] == [1, 2, 3, 4, 5, 6]
+    assert [event.text for event in told.events[1:]] == [*(f"é {n}\n" for n in range(5))]
+    assert [event.n for event in told.events] == [1, 2, 3, 4, 5, 6]
     assert (told.torn, told.damage) == (b"", None)
 
 
@@ -83,12 +84,12 @@ def test_a_torn_tail_is_set_aside_and_the_journal_goes_on(folder):
     with Journal(folder) as book:
         assert len(book.told.events) == 5
         length = book.set_torn_aside()
-        book.append({"event": "note", "text": "after", "t_s": 9.0})
+        book.append(Note(text="after", t_s=9.0))
     torn = whole[:-9].rpartition(b"\n")[2]
     assert length == len(torn) > 0
     assert (folder / journal.TORN).read_bytes() == torn + b"\n"
     told = decode((folder / journal.NAME).read_bytes())
-    assert (told.events[-1]["text"], told.damage, told.torn) == ("after", None, b"")
+    assert (told.events[-1].text, told.damage, told.torn) == ("after", None, b"")
 
 
 def test_a_whole_journal_has_nothing_to_set_aside(folder):
@@ -119,6 +120,7 @@ def test_a_full_disk_is_said_and_the_event_is_not_in(folder):
 import resource, signal
 from pathlib import Path
 from vbraille.errors import VbrailleError
+from vbraille.sessions.record.events import Note
 from vbraille.sessions.record.journal import Journal
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 with Journal(Path({str(folder)!r})) as book:
@@ -126,7 +128,7 @@ with Journal(Path({str(folder)!r})) as book:
     done = 0
     try:
         while True:
-            book.append({{"event": "note", "text": "x" * 100, "t_s": 0.0}})
+            book.append(Note(text="x" * 100, t_s=0.0))
             done += 1
     except VbrailleError as error:
         print(done, error)
@@ -146,7 +148,7 @@ def test_an_answer_is_synced_before_it_is_said_to_be_in(folder, monkeypatch):
     real = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (synced.append(1), real(file)))
     with Journal(folder) as book:
-        book.append({"event": "answer", "t_s": 0.0})
+        book.append(Answer(trial=1, attempt=1, answer="⠁", t_s=0.0))
         assert len(synced) == 1
-        book.append({"event": "cue", "t_s": 0.0}, durable=False)
+        book.append(Cue(trial=1, t_s=0.0))
         assert len(synced) == 1

@@ -86,7 +86,7 @@ def test_pause_rests_the_array_at_once_and_enter_goes_on(session):
     sat = session.sit(
         ("cue: trial 1", "pause"), ("pause", ""), ("read:", "c"), *ALL[1:], ("last", "")
     )
-    assert [e["event"] for e in sat.events if e["event"] in ("pause", "go")] == ["pause", "go"]
+    assert [e.kind for e in sat.events if e.kind in ("pause", "go")] == ["pause", "go"]
     told = sat.progress.trials[1]
     assert told.paused_s == pytest.approx(
         of(sat.events, "go")[0]["t_s"] - of(sat.events, "pause")[0]["t_s"]
@@ -102,7 +102,7 @@ def test_a_break_comes_after_the_open_trial_and_waits_for_enter(session):
         *ALL[1:],
         ("last", ""),
     )
-    order = [e["event"] for e in sat.events if e["event"] in ("break", "answer", "presented")]
+    order = [e.kind for e in sat.events if e.kind in ("break", "answer", "presented")]
     assert order[:4] == ["presented", "answer", "break", "presented"]
 
 
@@ -120,7 +120,7 @@ def test_stop_leaves_the_open_trial_to_be_shown_again(session):
     sat = session.sit(*ALL[2:], ("last", ""))
     shown = [(e["trial"], e["attempt"], e["line"]) for e in of(sat.events, "presented")]
     assert shown == [(1, 1, 1), (2, 1, 2), (3, 1, 3), (3, 2, 4), (4, 1, 5)]
-    assert [run["trace"] for run in sat.progress.runs] == ["trace-001.gz", "trace-002.gz"]
+    assert [run.trace for run in sat.progress.runs] == ["trace-001.gz", "trace-002.gz"]
     assert len(of(sat.events, "answer")) == 4
 
 
@@ -305,7 +305,7 @@ def test_paper_is_timed_by_key(tmp_path):
     session = Session(tmp_path / "s", toml)
     script = [("ready", ""), ("cue", ""), ("read: .* s; type", "c")] * 4
     sat = session.sit(*script, ("last", ""))
-    kinds = [e["event"] for e in sat.events if e.get("trial") == 1]
+    kinds = [e.kind for e in sat.events if getattr(e, "trial", 0) == 1]
     assert kinds == ["presented", "cue", "read", "answer"]
     assert not list(session.folder.glob("trace*"))
     assert sat.progress.done == 4

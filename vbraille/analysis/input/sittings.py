@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.notes import Note
+    from vbraille.sessions.record.notes import PlacedNote
 
 MOST_PICKED = 600
 EXAMPLE_RULE = (
@@ -111,7 +111,7 @@ class SessionTrials:
     faults: list[str]
     state: str
     versions: dict[str, str]
-    notes: tuple[Note, ...] = ()
+    notes: tuple[PlacedNote, ...] = ()
 
 
 def read_sitting(folder: Path) -> SessionTrials:
@@ -224,7 +224,7 @@ def _state(progress: Progress) -> str:
 
 def _versions(record: Record, progress: Progress) -> dict[str, str]:
     told: dict[str, list[str]] = defaultdict(list)
-    for versions in (record.head.get("versions", {}), *(run["versions"] for run in progress.runs)):
+    for versions in (record.head.get("versions", {}), *(run.versions for run in progress.runs)):
         for name, version in versions.items():
             if version not in told[name]:
                 told[name].append(version)

@@ -86,7 +86,7 @@ def files(
         f"{stem}_beh.json": _json(_beh(record, table[0])),
     }
     for number, run in enumerate(runs_of(record), 1):
-        ticks = traces.read(run.event["trace"]).ticks if "trace" in run.event else None
+        ticks = traces.read(run.event.trace).ticks if run.event.trace else None
         first_ns = None if ticks is None or not ticks.size else int(ticks["time_ns"][0])
         name = f"{stem}_run-{number:02}"
         made[f"{name}_events.tsv"] = encode(run.table(first_ns, without_times=without_times))
@@ -104,8 +104,8 @@ def files(
                     column: {"Units": unit, "Description": what} if unit else {"Description": what}
                     for column, (_, _, unit, what) in _RECORDED.items()
                 },
-                **({} if without_times else {"Trace": run.event["trace"]}),
-                "Manufacturer": run.event["device"]["name"],
+                **({} if without_times else {"Trace": run.event.trace}),
+                "Manufacturer": run.event.device["name"],
             }
         )
     return made

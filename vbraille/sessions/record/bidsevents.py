@@ -6,12 +6,25 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vbraille.sessions.record.anonymous import without_paths
+from vbraille.sessions.record.events import (
+    Answer,
+    AnyTime,
+    BreakWanted,
+    Closed,
+    Device,
+    End,
+    Event,
+    Fault,
+    Lost,
+    Note,
+    Run,
+    Tuning,
+)
 from vbraille.sessions.record.export import to_csv
-from vbraille.sessions.record.notes import Note, read_notes
+from vbraille.sessions.record.notes import PlacedNote, read_notes
 
 if TYPE_CHECKING:
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.journal import Event
 
 EVENT_COLUMNS = {
     "onset": {"Description": "from the first row of the run's recording", "Units": "s"},
@@ -23,12 +36,7 @@ EVENT_COLUMNS = {
     "trial_after": {"Description": "of a note: the trial that was shown next"},
     "value": {"Description": "of an answer, what was answered; of a note, its text; else what"},
 }
-# What is told of in each, and where the words are.
-_VALUES = {
-    "presented": "", "cue": "", "contact": "", "read": "", "warning": "", "answer": "answer",
-    "undo": "", "repeat": "", "fault": "what", "well": "", "device": "what", "pause": "", "go": "",
-    "break": "", "begin": "", "note": "text", "stop": "", "end": "why",
-}  # fmt: skip
+_LEFT_OUT = (Run, BreakWanted, Tuning, Closed, Lost)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,16 +46,16 @@ class BidsRun:
     Parameters
     ----------
     event
-        The ``run`` of the journal.
+        The event that it began with.
     events
         What happened in it.
     notes
-        Of the session, by the numbers of their events.
+        All notes of the session, by the numbers of their events.
     """
 
-    event: Event
+    event: Run
     events: list[Event]
-    notes: dict[int, Note]
+    notes: dict[int, PlacedNote]
 
     def table(self, first_ns: int | None, *, without_times: bool) -> str:
         """Events as a table, with tabs between columns.
@@ -63,7 +71,7 @@ class BidsRun:
         rows = [
             self._row(event, begun_s, without_times)
             for event in self.events
-            if event["event"] in _VALUES and not (without_times and event["event"] == "note")
+            if not isinstance(event, (*_LEFT_OUT, Note) if without_times else _LEFT_OUT)
         ]
         # Some are written down a little after what was felt later.
         rows.sort(key=lambda row: row["onset"])
@@ -73,24 +81,39 @@ class BidsRun:
 
     def _begun_s(self, first_ns: int | None) -> float:
         """Time of the first tick, in seconds of the session."""
-        timed = next((event for event in self.events if "time_ns" in event), None)
-        if first_ns is None or timed is None:
-            return self.event["t_s"]
-        return timed["t_s"] - (timed["time_ns"] - first_ns) / 1e9
+        for event in self.events:
+            time_ns = getattr(event, "time_ns", None)
+            if first_ns is not None and time_ns is not None:
+                return event.t_s - (time_ns - first_ns) / 1e9
+        return self.event.t_s
 
     def _row(self, event: Event, begun_s: float, without_times: bool) -> dict[str, Any]:
-        note = self.notes.get(event["n"])
-        text = str(event.get(_VALUES[event["event"]], ""))
+        note = self.notes.get(event.n)
+        text = _text_of(event)
         return {
-            "onset": round(event["t_s"] - begun_s, 6),
+            "onset": round(event.t_s - begun_s, 6),
             "duration": "",
-            "trial_type": event["event"],
-            "practice": int(event.get("practice", False)),
-            "trial": event.get("trial", ""),
+            "trial_type": event.kind,
+            "practice": int(isinstance(event, AnyTime) and event.practice),
+            "trial": (isinstance(event, AnyTime) and event.trial) or "",
             "trial_before": note.before or "" if note else "",
             "trial_after": note.after or "" if note else "",
             "value": without_paths(text) if without_times else text,
         }
+
+
+def _text_of(event: Event) -> str:
+    """Words that there are in an event."""
+    match event:
+        case Answer():
+            return event.answer
+        case Note():
+            return event.text
+        case Fault() | Device():
+            return event.what
+        case End():
+            return event.why
+    return ""
 
 
 def runs_of(record: Record) -> list[BidsRun]:
@@ -98,7 +121,7 @@ def runs_of(record: Record) -> list[BidsRun]:
     notes = {note.event: note for note in read_notes(record.told.events)}
     runs: list[BidsRun] = []
     for event in record.told.events:
-        if event["event"] == "run":
+        if isinstance(event, Run):
             runs.append(BidsRun(event, [], notes))
         elif runs:
             runs[-1].events.append(event)

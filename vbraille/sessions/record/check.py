@@ -12,6 +12,7 @@ import numpy as np
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.plan import check_plan
 from vbraille.sessions.record import journal
+from vbraille.sessions.record.events import Closed, Lost, Run
 from vbraille.sessions.record.folder import (
     FILES,
     load,
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from vbraille.sessions.record.events import Event
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.journal import Event, Told
+    from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace
 
 
@@ -81,7 +83,7 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
     yield from _check_journal(told)
     yield from _check_torn(folder, told)
     yield from _check_sum(folder, expected)
-    runs = [event for event in told.events if event["event"] == "run"]
+    runs = [event for event in told.events if isinstance(event, Run)]
     for name in _trace_names(folder, runs):
         yield _describe(name, read_told_trace(folder, name, told))
 
@@ -103,11 +105,11 @@ def check(record: Record) -> Iterator[Finding]:
     yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")
 
 
-def _check_journal(told: Told) -> Iterator[Finding]:
+def _check_journal(told: JournalContents) -> Iterator[Finding]:
     if told.damage is not None:
         before = len(told.crcs)
         whole = f"the {before} events before it are whole"
-        after = sum(event["event"] != "lost" for event in told.events[before:])
+        after = sum(not isinstance(event, Lost) for event in told.events[before:])
         if after:
             whole += f", and {after} after it, which session export {setting('salvage')} has too"
         yield Finding(f"{journal.NAME}: damaged, {told.damage}; {whole}", good=False)
@@ -125,16 +127,14 @@ def _check_journal(told: Told) -> Iterator[Finding]:
     yield from _check_clock(told)
 
 
-def _check_clock(told: Told) -> Iterator[Finding]:
+def _check_clock(told: JournalContents) -> Iterator[Finding]:
     """Say where the wall clock was set back; durations do not go by it."""
     before: Event | None = None
     for event in told.events:
-        if event["event"] == "lost":
+        if isinstance(event, Lost):
             continue
         if before is not None and (back_s := _seconds_between(event, before)) > 0:
-            yield Finding(
-                f"clock: it was set back by {back_s:g} s or more before event {event['n']}"
-            )
+            yield Finding(f"clock: it was set back by {back_s:g} s or more before event {event.n}")
         before = event
 
 
@@ -156,7 +156,7 @@ def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
     yield Finding(f"expected: the sum is not that of this journal; {what}", good=False)
 
 
-def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
+def _check_torn(folder: Path, told: JournalContents) -> Iterator[Finding]:
     """Look whether what was set aside begins with all that the journal tells of."""
     try:
         torn = (folder / journal.TORN).read_bytes()
@@ -165,7 +165,7 @@ def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
     except OSError as error:
         yield Finding(f"{journal.TORN} cannot be read: {error.strerror}", good=False)
         return
-    sums = [event["torn_file"] for event in told.events if event.get("torn_file")]
+    sums = [run.torn_file for run in told.events if isinstance(run, Run) and run.torn_file]
     good = all(journal.sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
     if not good:
         yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
@@ -175,10 +175,10 @@ def _check_torn(folder: Path, told: Told) -> Iterator[Finding]:
 
 def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
     told = record.told
-    expected = {run["trace"] for run in progress.runs if "trace" in run}
+    expected = {run.trace for run in progress.runs if run.trace}
     answered, known = _answered_lines(progress), _known_lines(progress)
     # A crash may leave a trace that goes on where the journal has lost its end.
-    open_end = bool(told.torn) or not told.events or told.events[-1]["event"] != "closed"
+    open_end = bool(told.torn) or not told.events or not isinstance(told.events[-1], Closed)
     for name in _trace_names(record.folder, progress.runs):
         trace = read_told_trace(record.folder, name, told)
         yield _describe(name, trace)
@@ -196,7 +196,7 @@ def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
         )
 
 
-def _check_tie(path: Path, trace: Trace, told: Told) -> Iterator[Finding]:
+def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Finding]:
     """Look whether the journal has the lines that a trace was written after."""
     if told.format == 1:
         return
@@ -204,15 +204,15 @@ def _check_tie(path: Path, trace: Trace, told: Told) -> Iterator[Finding]:
         yield Finding(f"{path.name}: {fault}", good=False)
     elif trace.loose:
         yield Finding(f"{path.name}: a part of it is not tied to the journal", good=False)
-    closed = (event for event in told.events if event["event"] == "closed")
-    sums = [e.get("trace_sha256") for e in closed if e.get("trace") == path.name]
+    closed = [event for event in told.events if isinstance(event, Closed)]
+    sums = [event.trace_sha256 for event in closed if event.trace == path.name]
     if sums and sums[-1] != sha256(path.read_bytes()).hexdigest():
         yield Finding(f"{path.name}: it is not what it was when it was closed", good=False)
 
 
-def _trace_names(folder: Path, runs: list[Event]) -> list[str]:
+def _trace_names(folder: Path, runs: list[Run]) -> list[str]:
     """Names of all traces that there are, or should be."""
-    told = {run["trace"] for run in runs if "trace" in run}
+    told = {run.trace for run in runs if run.trace}
     return sorted(told | {path.name for path in folder.glob("trace-*.gz")})
 
 
@@ -254,7 +254,7 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
 
 def _seconds_between(earlier: Event, later: Event) -> float:
     """From one event to another by the wall clock; below 0 if they are the other way about."""
-    first, last = (datetime.fromisoformat(event["wall"]) for event in (earlier, later))
+    first, last = (datetime.fromisoformat(event.wall) for event in (earlier, later))
     return (last - first).total_seconds()
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from vbraille.sessions.record.journal import up_s
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.journal import Event
+    from vbraille.sessions.record.events import Event, Run
 
 _MOVED_S = 1.0  # less than that is a clock that is kept right
 
@@ -39,10 +39,9 @@ class Moment:
         return cls(datetime.now(UTC), up_s(), boot())
 
     @classmethod
-    def of(cls, event: Event, run: Event) -> Self:
+    def of(cls, event: Event, run: Run) -> Self:
         """Moment of an event of a run."""
-        wall = datetime.fromisoformat(event["wall"])
-        return cls(wall, event.get("up_s"), run.get("boot", ""))
+        return cls(datetime.fromisoformat(event.wall), event.up_s, run.boot)
 
 
 def boot() -> str:

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.record.notes import Note
-    from vbraille.sessions.record.progress import TrialsTold
+    from vbraille.sessions.record.notes import PlacedNote
+    from vbraille.sessions.record.progress import TrialRecord
     from vbraille.sessions.record.traces import Trace
 
 _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
@@ -182,6 +182,7 @@ def walk(
     notes = read_notes(record.told.events)
     for trial in record.plan.trials:
         told = progress.trials[trial.number]
+        trial = told.shown
         row, seen = _row(record, trial, told), None
         row |= _noted(notes, trial.number)
         strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
@@ -198,7 +199,7 @@ def walk(
         yield row | fields, seen
 
 
-def _row(record: Record, trial: Trial, told: TrialsTold) -> dict[str, Any]:
+def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     """Row of a trial, without what its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
@@ -256,7 +257,7 @@ def _string_set(record: Record, trial: Trial) -> str:
     return "" if listed is None else to_braille(listed)
 
 
-def _noted(notes: list[Note], trial: int) -> dict[str, str]:
+def _noted(notes: list[PlacedNote], trial: int) -> dict[str, str]:
     """Cells of a trial for the notes in it and around it."""
     between = [note for note in notes if not note.trial]
     return {
@@ -287,7 +288,9 @@ def _chosen(values: list[str], answer: str | None) -> str:
     return "" if answer is None else values[int(answer) - 1]
 
 
-def _trajectory(record: Record, trial: Trial, told: TrialsTold, traces: Traces) -> Trajectory | str:
+def _trajectory(
+    record: Record, trial: Trial, told: TrialRecord, traces: Traces
+) -> Trajectory | str:
     """What the trace tells of the last attempt; why, if it tells nothing."""
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)

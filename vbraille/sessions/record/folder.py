@@ -22,6 +22,7 @@ from vbraille.files import write_folder
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
+from vbraille.sessions.record.events import Closed, Session
 from vbraille.sessions.record.salvage import salvage
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
 from vbraille.version import __version__
@@ -30,10 +31,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from vbraille.sessions.record.journal import Tie, Told
+    from vbraille.sessions.record.journal import JournalContents, Tie
 
-FORMAT = 3
+FORMAT = 4
 _CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
+SHOWN_FROM = 4  # the first format whose journal has what was shown
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")
@@ -59,7 +61,7 @@ class Record:
     head: dict[str, Any]
     protocol: Protocol
     plan: Plan
-    told: Told
+    told: JournalContents
 
     @property
     def centred(self) -> bool:
@@ -87,12 +89,11 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     }
     sums = {name: sha256(content).hexdigest() for name, content in files.items()}
     # The others' checksums are in the journal, as its first event.
-    first = {"event": "session", "format": FORMAT, "sha256": sums, "t_s": 0.0}
-    files[journal.NAME] = journal.first_lines([first])
+    files[journal.NAME] = journal.first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
     write_folder(folder, files, durable=True, clear=_clear)
 
 
-def read_journal(folder: Path, *, salvaged: bool = False) -> Told:
+def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
     """Journal of a session, up to what is damaged or torn; salvaged, what is whole after it too.
 
     Raises
@@ -112,16 +113,16 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> Told:
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
     first = told.events[0]
     if 1 in told.bad and not (
-        isinstance(first.get("sha256"), dict)
-        and first["sha256"].keys() >= set(FILES)
-        and first["format"] in range(1, FORMAT + 1)
+        isinstance(first, Session)
+        and first.sha256.keys() >= set(FILES)
+        and first.format in range(1, FORMAT + 1)
     ):
         raise VbrailleError(f"{path} is damaged in its first line; there is nothing to go by")
-    if first.get("event") != "session":
+    if not isinstance(first, Session):
         raise InputError(f"{path} is not the journal of a session")
-    if first["format"] > FORMAT:
+    if first.format > FORMAT:
         raise InputError(
-            f"{folder} is a session of format {first['format']}, and this vbraille knows format "
+            f"{folder} is a session of format {first.format}, and this vbraille knows format "
             f"{FORMAT}; use the vbraille that made it, or a newer one"
         )
     return told
@@ -142,7 +143,7 @@ def whole_lines(folder: Path) -> bytes:
     return content[: content.rfind(b"\n") + 1]
 
 
-def read_file(folder: Path, name: str, told: Told) -> bytes:
+def read_file(folder: Path, name: str, told: JournalContents) -> bytes:
     """One of `FILES`, as it was when the session began.
 
     Raises
@@ -155,7 +156,7 @@ def read_file(folder: Path, name: str, told: Told) -> bytes:
         content = path.read_bytes()
     except OSError as error:
         raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
-    if sha256(content).hexdigest() != told.events[0]["sha256"][name]:
+    if sha256(content).hexdigest() != told.session.sha256[name]:
         raise VbrailleError(
             f"{path} is not what it was when the session began; "
             f"put it back as it was, nothing else was changed"
@@ -184,7 +185,7 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     )
 
 
-def read_told_trace(folder: Path, name: str, told: Told) -> Trace:
+def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
     """Trace of a session, to its last whole chunk.
 
     What makes it another than the journal tells of is damage too: that it is missing,
@@ -196,16 +197,16 @@ def read_told_trace(folder: Path, name: str, told: Told) -> Trace:
         size = path.stat().st_size
     except (VbrailleError, OSError):
         return Trace(np.zeros(0, TRACE), 0, "it cannot be read" if path.exists() else "it is gone")
-    closed = {event.get("trace"): event for event in told.events if event["event"] == "closed"}
+    closed = {event.trace: event.trace_bytes for event in told.events if isinstance(event, Closed)}
     damage = trace.damage
-    if damage is None and name in closed and size != closed[name]["trace_bytes"]:
-        damage = f"it has {size} bytes, and had {closed[name]['trace_bytes']} when it was closed"
+    if damage is None and name in closed and size != closed[name]:
+        damage = f"it has {size} bytes, and had {closed[name]} when it was closed"
     elif damage is None and trace.torn_bytes and (name in closed or _is_member(path, trace)):
         damage = "its last chunk has a wrong length"
     return replace(trace, damage=damage)
 
 
-def missed_tie(ties: Iterable[Tie], told: Told) -> str | None:
+def missed_tie(ties: Iterable[Tie], told: JournalContents) -> str | None:
     """Say what the journal has lost that a trace was written after; None if it has all."""
     for number, crc in ties:
         if number > len(told.events):
@@ -221,7 +222,7 @@ def missed_tie(ties: Iterable[Tie], told: Told) -> str | None:
     return None
 
 
-def check_end(folder: Path, told: Told) -> None:
+def check_end(folder: Path, told: JournalContents) -> None:
     """See that a journal has not lost what its traces were written after.
 
     Raises

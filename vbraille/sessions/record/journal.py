@@ -2,7 +2,7 @@
 
 What was said to be in is on the disk. A line that a crash cut short is the
 journal's torn tail; anything else that does not match is damage. Neither is
-mended here. `docs/session-format.md` describes the events.
+mended here. `vbraille.sessions.record.events` has the kinds of events.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 from zlib import crc32
 
+import msgspec
+
 from vbraille.errors import InputError, VbrailleError
+from vbraille.sessions.record.events import Session, read, to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
-    Event = dict[str, Any]
+    from vbraille.sessions.record.events import Event
 
 NAME = "journal.jsonl"
 TORN = "journal.torn"
@@ -37,7 +39,7 @@ class Tie(NamedTuple):
     Parameters
     ----------
     number
-        Of its event, from 1; 0 before there was one that was sure to be on the disk.
+        Number of its event, from 1; 0 before there was one that was sure to be on the disk.
     crc
         Its checksum.
     """
@@ -47,13 +49,13 @@ class Tie(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What a journal tells.
+class JournalContents:
+    """What a journal holds.
 
     Parameters
     ----------
     events
-        Of its lines, up to the first that is not whole.
+        The events of its lines, up to the first line that is not whole.
     good_bytes
         Length of those lines.
     crcs
@@ -61,10 +63,11 @@ class Told:
     torn
         A last line without an end, as a crash leaves it.
     damage
-        What is wrong with the first line that has an end and is not whole; None if nothing is.
+        What is wrong with the first line that has an end and is not whole, or that has an event
+        which there is not; None if nothing is.
     bad
-        Numbers of all lines that are not whole, if it was salvaged; its events are then those of
-        all others, `vbraille.sessions.record.salvage`.
+        Numbers of all such lines, if it was salvaged; its events are then those of all others,
+        `vbraille.sessions.record.salvage`.
     """
 
     events: list[Event]
@@ -80,21 +83,28 @@ class Told:
         return self.crcs[-1] if self.crcs else 0
 
     @property
+    def session(self) -> Session:
+        """The first event of all, which every journal of a session has."""
+        first = self.events[0]
+        assert isinstance(first, Session), "a journal that is no session's is refused"
+        return first
+
+    @property
     def format(self) -> int:
         """Format that the session began in, which it is gone on with in."""
-        return self.events[0].get("format", 1) if self.events else 1
+        return self.session.format
 
 
 def encode(event: Event, crc: int) -> tuple[bytes, int]:
-    """Line of an event after one with that checksum, and its own."""
-    text = json.dumps(event, ensure_ascii=False, separators=(",", ":"))[:-1]
+    """Line of an event after one with that checksum, and its own checksum."""
+    text = json.dumps(to_json(event), ensure_ascii=False, separators=(",", ":"))[:-1]
     body = text.encode("utf-8", "backslashreplace")  # as JSON spells a lone surrogate too
     crc = crc32(body, crc)
     return b'%s,"crc":"%08x"}\n' % (body, crc), crc
 
 
-def decode(journal: bytes) -> Told:
-    """Events of a journal, as far as it is whole."""
+def decode(journal: bytes) -> JournalContents:
+    """Read the events of a journal, as far as it is whole and all of them are known."""
     events: list[Event] = []
     crcs: list[int] = []
     good = crc = 0
@@ -102,18 +112,22 @@ def decode(journal: bytes) -> Told:
         found = LINE.fullmatch(journal[good:end])
         if found is None or crc32(found[1], crc) != int(found[2], 16):
             damage = f"line {len(events) + 1} does not match its checksum"
-            return Told(events, good, crcs, b"", damage)
+            return JournalContents(events, good, crcs, b"", damage)
+        try:
+            events.append(read(found[1] + b"}"))
+        except ValueError as fault:
+            damage = f"line {len(events) + 1} {fault}"
+            return JournalContents(events, good, crcs, b"", damage)
         crc = int(found[2], 16)
         crcs.append(crc)
-        events.append(json.loads(found[1] + b"}"))
         good = end + 1
     tail = journal[good:]
     found = LINE.match(tail)
     if found is not None and found.end() < len(tail) and crc32(found[1], crc) == int(found[2], 16):
         # No crash leaves that: the line is whole, and its line break is something else.
         damage = f"line {len(events) + 1} does not end where it should"
-        return Told(events, good, crcs, b"", damage)
-    return Told(events, good, crcs, tail, None)
+        return JournalContents(events, good, crcs, b"", damage)
+    return JournalContents(events, good, crcs, tail, None)
 
 
 def sum_of(journal: bytes) -> str:
@@ -133,11 +147,11 @@ class Journal:
     Parameters
     ----------
     folder
-        The session's.
+        The session's directory.
 
     Attributes
     ----------
-    told : Told
+    told : JournalContents
         What was in it when it was opened.
     durable : Tie
         The last event of this run that is sure to be on the disk.
@@ -212,32 +226,34 @@ class Journal:
             ) from None
         return len(torn)
 
-    def append(self, event: Event, *, durable: bool = True) -> Event:
-        """Add an event; it is on the disk when this returns, unless it need not be yet.
+    def append(self, event: Event) -> Event:
+        """Add an event, and return it with its number and its times.
+
+        It is on the disk when this returns, if its kind is durable.
 
         Raises
         ------
         VbrailleError
             If the disk does not take it: it is then not in.
         """
-        numbered = {"n": self._count + 1, **event, **stamp(self.told.format)}
+        numbered = _numbered(event, self._count + 1, self.told.format)
         line, crc = encode(numbered, self._crc)
         try:
             written = os.write(self._file, line)
             if written < len(line):
                 os.write(self._file, line[written:])  # says why not
-            if durable:
+            if event.durable:
                 os.fsync(self._file)
         except OSError as error:
             self._take_back()
             raise VbrailleError(
-                f"{self._path} cannot be written: {error.strerror}; the {event['event']} is not "
+                f"{self._path} cannot be written: {error.strerror}; the {event.kind} is not "
                 f"in, all before it is: make room, then session resume goes on"
             ) from None
         self._count += 1
         self._crc = crc
         self._length += len(line)
-        if durable:
+        if event.durable:
             self.durable = Tie(self._count, crc)
         return numbered
 
@@ -269,19 +285,19 @@ class Journal:
         self.close()
 
 
-def first_lines(events: Iterable[Event]) -> bytes:
-    """Write a journal that begins with these events; the first tells the format."""
-    lines, crc, form = [], 0, 1
-    for n, event in enumerate(events, 1):
-        form = event.get("format", form)
-        line, crc = encode({"n": n, **event, **stamp(form)}, crc)
+def first_lines(session: Session, *events: Event) -> bytes:
+    """Write a journal that begins with these events."""
+    lines, crc = [], 0
+    for number, event in enumerate((session, *events), 1):
+        line, crc = encode(_numbered(event, number, session.format), crc)
         lines.append(line)
     return b"".join(lines)
 
 
-def stamp(form: int) -> Event:
-    """When an event was, by the clocks that a format has."""
-    return {"wall": _now()} if form == 1 else {"wall": _now(), "up_s": up_s()}
+def _numbered(event: Event, number: int, form: int) -> Event:
+    """Event with its number, and the time by the clocks that a format has."""
+    machine_s = up_s() if form > 1 else None
+    return msgspec.structs.replace(event, n=number, wall=_now(), up_s=machine_s)
 
 
 def up_s() -> float:

@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from vbraille.sessions.record.events import AnyTime, Note, Presented
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.sessions.record.journal import Event
+    from vbraille.sessions.record.events import Event
 
 
 @dataclass(frozen=True, slots=True)
-class Note:
-    """A note.
+class PlacedNote:
+    """A note, and the trials around it.
 
     Parameters
     ----------
@@ -42,21 +44,20 @@ class Note:
     practice: bool = False
 
 
-def read_notes(events: Iterable[Event]) -> list[Note]:
+def read_notes(events: Iterable[Event]) -> list[PlacedNote]:
     """Notes of a session, in their order."""
-    notes: list[Note] = []
+    notes: list[PlacedNote] = []
     before, waiting = 0, 0  # how many of the notes have their next trial still to come
     for event in events:
-        practice = event.get("practice", False)
-        trial = 0 if practice else event.get("trial", 0)
-        if event["event"] == "note":
-            told = (event["text"], event["n"], event["t_s"])
+        trial = event.trial if isinstance(event, AnyTime) and not event.practice else 0
+        if isinstance(event, Note):
+            told = (event.text, event.n, event.t_s)
             if trial:
-                notes.append(Note(*told, trial, trial, trial))
+                notes.append(PlacedNote(*told, trial, trial, trial))
             else:
-                notes.append(Note(*told, before, 0, 0, practice))
+                notes.append(PlacedNote(*told, before, 0, 0, event.practice))
                 waiting += 1
-        elif event["event"] == "presented" and trial:
+        elif isinstance(event, Presented) and trial:
             for n, note in enumerate(notes) if waiting else ():
                 if not note.after:
                     # Of a trial that is shown again, the note is in it.
@@ -66,6 +67,6 @@ def read_notes(events: Iterable[Event]) -> list[Note]:
     return notes
 
 
-def texts(notes: Iterable[Note]) -> str:
+def texts(notes: Iterable[PlacedNote]) -> str:
     """Write notes in one cell of a table."""
     return "; ".join(note.text for note in notes)

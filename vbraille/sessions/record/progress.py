@@ -5,12 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.errors import VbrailleError
+from vbraille.sessions.planning.planfile import stimulus_from_json
+from vbraille.sessions.planning.procedure import Answered, FixedOrder
+from vbraille.sessions.record import events
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.sessions.planning.plan import Plan, Trial
-
-    Event = dict[str, Any]
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.procedure import Procedure
+    from vbraille.sessions.planning.stimuli import Stimulus, Trial
+    from vbraille.sessions.record.events import Event
 
 
 @dataclass(slots=True)
@@ -20,7 +26,7 @@ class Showing:
     Parameters
     ----------
     attempt
-        Of the trial, from 1.
+        Which attempt of the trial it was, from 1.
     stimulus
         0, or 1 for the second of two to compare.
     line
@@ -28,7 +34,9 @@ class Showing:
     trace
         File of the trace; None on paper.
     tuning
-        What the experimenter had set it to, where that is not the plan's.
+        What the experimenter had set, instead of the stimulus's own.
+    shown
+        The stimulus as the journal has it; empty before format 4.
     """
 
     attempt: int
@@ -36,14 +44,35 @@ class Showing:
     line: int
     trace: str | None
     tuning: dict[str, float]
+    shown: dict[str, Any]
+
+    def stimulus_of(self, trial: Trial) -> Stimulus:
+        """What was shown: as the journal has it, and before format 4 as the trial was planned.
+
+        Raises
+        ------
+        VbrailleError
+            If what the journal has is no stimulus.
+        """
+        if not self.shown:
+            return trial.stimuli[self.stimulus]
+        try:
+            return stimulus_from_json(self.shown)
+        except ValueError as error:
+            raise VbrailleError(
+                f"the journal is damaged: it says of trial {trial.number} that it has shown what "
+                f"cannot be: {error}"
+            ) from None
 
 
 @dataclass(slots=True)
-class TrialsTold:
+class TrialRecord:
     """What is known of a trial.
 
     Parameters
     ----------
+    trial
+        The trial as it was planned.
     attempts
         How often it was begun.
     answer
@@ -56,8 +85,8 @@ class TrialsTold:
     faults
         What went wrong with the device while it ran.
     t_s
-        When, in seconds of the session, things last happened, by the event's name: presented, cue,
-        contact, read, answer, corrected, warning.
+        When, in seconds of the session, things last happened, by the kind of the event: presented,
+        cue, contact, read, answer, warning; corrected for an answer after an undo.
     wall
         The same, by the wall clock.
     paused_s
@@ -70,6 +99,7 @@ class TrialsTold:
         Numbers of events that are not whole in a journal that was salvaged, and may be of it.
     """
 
+    trial: Trial
     attempts: int = 0
     answer: str | None = None
     first_answer: str | None = None
@@ -89,8 +119,16 @@ class TrialsTold:
 
     @property
     def tuning(self) -> dict[str, float]:
-        """What the experimenter had set it to in the end."""
+        """What the experimenter had set in the end."""
         return self.showings[-1].tuning if self.showings else {}
+
+    @property
+    def shown(self) -> Trial:
+        """The trial with what was shown in its last attempt."""
+        stimuli = list(self.trial.stimuli)
+        for showing in self.last_attempt:
+            stimuli[showing.stimulus] = showing.stimulus_of(self.trial)
+        return replace(self.trial, stimuli=tuple(stimuli))
 
 
 class Progress:
@@ -101,23 +139,28 @@ class Progress:
     plan
         What is to be done.
     events
-        Of its journal.
+        The events of its journal.
+    procedure
+        What says which trial comes next; without one, the order of the plan does.
 
     Attributes
     ----------
-    trials : dict[int, Told]
-        Of the planned trials, by their numbers.
-    practice : dict[int, Told]
-        Of the practice trials.
+    history : list[Answered]
+        The trials that were answered, in their order, practice left out.
+    trials : dict[int, TrialRecord]
+        What is known of the trials, by their numbers: of all that are planned, or if the procedure
+        goes by the answers, of all that it has asked for.
+    practice : dict[int, TrialRecord]
+        The same of the practice trials.
     begun : bool
         Whether practice is over.
     correcting : Trial or None
-        Whose answer was undone, and has not been given again.
+        The trial whose answer was undone, and has not been given again.
     broken : int
         Trials that were done when the last break was taken.
     tuning : dict[str, float]
         What the experimenter has set.
-    runs : list of events
+    runs : list[events.Run]
         Each time the session was run, or its engine started again.
     line : int
         Largest line number used so far.
@@ -131,15 +174,19 @@ class Progress:
         Length of what was set aside of the journal, in all.
     """
 
-    def __init__(self, plan: Plan, events: Iterable[Event] = ()) -> None:
+    def __init__(
+        self, plan: Plan, events: Iterable[Event] = (), procedure: Procedure | None = None
+    ) -> None:
         self.plan = plan
-        self.trials = {trial.number: TrialsTold() for trial in plan.trials}
-        self.practice = {trial.number: TrialsTold() for trial in plan.practice}
+        self.procedure = FixedOrder(plan.trials) if procedure is None else procedure
+        self.history: list[Answered] = []
+        self.trials = {trial.number: TrialRecord(trial) for trial in self.procedure.trials or ()}
+        self.practice = {trial.number: TrialRecord(trial) for trial in plan.practice}
         self.begun = not plan.practice
         self.correcting: Trial | None = None
         self.broken = 0
         self.tuning: dict[str, float] = {}
-        self.runs: list[Event] = []
+        self.runs: list[events.Run] = []
         self.line = 0
         self.script_lines: dict[str, int] = {}
         self.t_s = 0.0
@@ -149,7 +196,7 @@ class Progress:
         self._trial = 0
         self._lost: list[int] = []
         self._paused_s: float | None = None
-        self._answered = 0
+        self._next = self._ask()
         for event in events:
             self.take(event)
 
@@ -157,139 +204,162 @@ class Progress:
     def next_trial(self) -> Trial | None:
         """The trial that comes next, or is open; None after the last."""
         if not self.begun:
-            for trial in self.plan.practice:
-                if self.practice[trial.number].answer is None:
-                    return trial
-        if self._answered < len(self.plan.trials):
-            return self.plan.trials[self._answered]
-        return None
+            for record in self.practice.values():
+                if record.answer is None:
+                    return record.trial
+        return self._next
 
     @property
     def last_answered(self) -> Trial | None:
-        """The planned trial answered last, which an undo is about."""
-        return self.plan.trials[self._answered - 1] if self._answered else None
+        """The trial answered last, which an undo is about; practice cannot be undone."""
+        return self.history[-1].trial if self.history else None
 
     @property
     def done(self) -> int:
-        """Planned trials that have an answer."""
-        return self._answered
+        """Trials that have an answer, practice left out."""
+        return len(self.history)
 
-    def told(self, trial: Trial) -> TrialsTold:
+    @property
+    def planned(self) -> int | None:
+        """How many trials there are in all, practice left out; None if the answers say it."""
+        trials = self.procedure.trials
+        return None if trials is None else len(trials)
+
+    def told(self, trial: Trial) -> TrialRecord:
         """What is known of a trial."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
     def take(self, event: Event) -> None:
-        """Go on by an event."""
-        self.t_s = max(self.t_s, event["t_s"])
-        if "script_line" in event:
-            self.script_lines[self._answers] = event["script_line"]
-        handler = getattr(self, f"_take_{event['event']}", None)
-        if handler is not None:
-            handler(event)
-        told = self._of(event)
-        if told is not None:
-            name = "corrected" if event.get("corrects") else event["event"]
-            told.t_s[name] = event["t_s"]
-            told.wall[name] = event["wall"]
-        if "trial" in event and "practice" not in event:
-            self._mark_lost(event["trial"])
-            self._trial = event["trial"]
+        """Go on by an event.
 
-    def _of(self, event: Event) -> TrialsTold | None:
-        if "trial" not in event:
-            return None
-        return (self.practice if event.get("practice") else self.trials)[event["trial"]]
+        Raises
+        ------
+        VbrailleError
+            If it is of a trial that there is not.
+        """
+        self.t_s = max(self.t_s, event.t_s)
+        if event.script_line:
+            self.script_lines[self._answers] = event.script_line
+        record = (
+            self._record_of(event) if isinstance(event, events.AnyTime) and event.trial else None
+        )
+        if record is None:
+            self._take_between(event)
+            return
+        self._take_in(event, record)
+        kind = "corrected" if isinstance(event, events.Answer) and event.corrects else event.kind
+        record.t_s[kind] = event.t_s
+        record.wall[kind] = event.wall
+        if not record.trial.practice:
+            self._mark_lost(record.trial.number)
+            self._trial = record.trial.number
 
-    def _told(self, event: Event) -> TrialsTold:
-        told = self._of(event)
-        assert told is not None, f"a {event['event']} is of a trial"
-        return told
+    def _ask(self) -> Trial | None:
+        """Ask which trial comes after those that were answered."""
+        trial = self.procedure.next(self.history)
+        if self.procedure.trials is None:
+            self.trials.pop(self.done + 1, None)  # what came before an answer was corrected
+            if trial is not None:
+                self.trials[trial.number] = TrialRecord(trial)
+        return trial
+
+    def _record_of(self, event: events.AnyTime) -> TrialRecord:
+        record = (self.practice if event.practice else self.trials).get(event.trial)
+        if record is None:
+            which = "practice trial" if event.practice else "trial"
+            raise VbrailleError(
+                f"the journal is damaged: event {event.n} is of {which} {event.trial}, which there "
+                f"is not; nothing was changed"
+            )
+        return record
 
     def _mark_lost(self, trial: int) -> None:
         """Mark the trials that events before one of this trial may be of."""
         first, last = sorted((self._trial or trial, trial))
         for number in range(first, last + 1) if self._lost else ():
-            told = self.trials[number]
-            told.lost = sorted({*told.lost, *self._lost})
+            record = self.trials[number]
+            record.lost = sorted({*record.lost, *self._lost})
         self._lost = []
 
-    def _take_lost(self, event: Event) -> None:
-        self._lost.append(event["n"])
-        if self._trial:
-            self.trials[self._trial].lost.append(event["n"])
+    def _take_between(self, event: Event) -> None:
+        """Take an event that is of no trial."""
+        match event:
+            case events.Run():
+                self.runs.append(event)
+                self._answers = event.answers or self._answers
+                self.torn_bytes += event.torn_bytes
+                self._paused_s = None
+            case events.Tuning():
+                self.tuning = event.tuning
+            case events.Pause():
+                self._paused_s = event.t_s
+            case events.Go():
+                self._paused_s = None
+            case events.Break():
+                self.broken = self.done
+            case events.Begin():
+                self.begun = True
+            case events.End():
+                self.ended = True
+            case events.Lost():
+                self._lost.append(event.n)
+                if self._trial:
+                    self.trials[self._trial].lost.append(event.n)
 
-    def _take_run(self, event: Event) -> None:
-        self.runs.append(event)
-        self._answers = event.get("answers", self._answers)
-        self.torn_bytes += event.get("torn_bytes", 0)
-        self._paused_s = None
+    def _take_in(self, event: Event, record: TrialRecord) -> None:
+        """Take an event that is of a trial."""
+        match event:
+            case events.Presented():
+                self._take_presented(event, record)
+            case events.Answer():
+                self._take_answer(event, record)
+            case events.Undo():
+                self.correcting = self.last_answered
+                record.first_answer = record.first_answer or record.answer
+                record.answer = None
+            case events.Fault():
+                record.faults.append(event.what)
+            case events.Pause():
+                self._paused_s = event.t_s
+            case events.Go():
+                self._end_pause(record, event)
+            case events.Tuning():
+                self.tuning = event.tuning
+                self.line = max(self.line, event.line)
+                if record.showings and event.line:
+                    last = record.showings[-1]
+                    record.showings.append(replace(last, line=event.line, tuning=event.tuning))
 
-    def _take_presented(self, event: Event) -> None:
-        told = self._told(event)
-        if event["stimulus"] == 0 and event["attempt"] != told.attempts:
-            told.attempts = event["attempt"]
-            told.t_s.clear()
-            told.wall.clear()
-            told.paused_s = 0.0
-        showing = Showing(
-            event["attempt"],
-            event["stimulus"],
-            event.get("line", 0),
-            self.runs[-1].get("trace") if self.runs else None,
-            event.get("tuning", {}),
+    def _take_presented(self, event: events.Presented, record: TrialRecord) -> None:
+        if event.stimulus == 0 and event.attempt != record.attempts:
+            record.attempts = event.attempt
+            record.t_s.clear()
+            record.wall.clear()
+            record.paused_s = 0.0
+        trace = self.runs[-1].trace or None if self.runs else None
+        record.showings.append(
+            Showing(event.attempt, event.stimulus, event.line, trace, event.tuning, event.shown)
         )
-        told.showings.append(showing)
-        self.line = max(self.line, event.get("line", 0))
-        self.begun |= not event.get("practice", False)
+        self.line = max(self.line, event.line)
+        self.begun |= not event.practice
 
-    def _take_begin(self, _event: Event) -> None:
-        self.begun = True
-
-    def _take_answer(self, event: Event) -> None:
-        told = self._told(event)
-        told.answer = event["answer"]
-        told.source = self._answers
+    def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
+        record.answer = event.answer
+        record.source = self._answers
+        answered = Answered(record.trial, event.answer)
         if self.correcting is not None:
             self.correcting = None
+            self.history[-1] = answered
+            if self._next is None or not self.told(self._next).attempts:
+                self._next = self._ask()  # what was shown already stays, whatever would be now
             return
-        told.early = event.get("early", False)
-        self._end_pause(told, event)  # what is not gone on with is over all the same
-        if not event.get("practice"):
-            self._answered += 1
+        record.early = event.early
+        self._end_pause(record, event)  # what is not gone on with is over all the same
+        if not event.practice:
+            self.history.append(answered)
+            self._next = self._ask()
 
-    def _take_undo(self, event: Event) -> None:
-        told = self._told(event)
-        self.correcting = self.last_answered
-        if told.first_answer is None:
-            told.first_answer = told.answer
-        told.answer = None
-
-    def _take_fault(self, event: Event) -> None:
-        told = self._of(event)
-        if told is not None:
-            told.faults.append(event["what"])
-
-    def _take_pause(self, event: Event) -> None:
-        self._paused_s = event["t_s"]
-
-    def _take_go(self, event: Event) -> None:
-        self._end_pause(self._of(event), event)
-
-    def _end_pause(self, told: TrialsTold | None, event: Event) -> None:
-        if told is not None and self._paused_s is not None:
-            told.paused_s += event["t_s"] - self._paused_s
+    def _end_pause(self, record: TrialRecord, event: Event) -> None:
+        if self._paused_s is not None:
+            record.paused_s += event.t_s - self._paused_s
         self._paused_s = None
-
-    def _take_break(self, _event: Event) -> None:
-        self.broken = self._answered
-
-    def _take_tuning(self, event: Event) -> None:
-        self.tuning = event["tuning"]
-        self.line = max(self.line, event.get("line", 0))
-        told = self._of(event)
-        if told is not None and told.showings and "line" in event:
-            last = told.showings[-1]
-            told.showings.append(replace(last, line=event["line"], tuning=event["tuning"]))
-
-    def _take_end(self, _event: Event) -> None:
-        self.ended = True

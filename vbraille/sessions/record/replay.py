@@ -117,9 +117,9 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
     progress = Progress(record.plan, record.told.events)
     pictures = _Pictures(record, progress)
     for run in progress.runs:
-        if "trace" not in run:
+        if not run.trace:
             continue
-        ticks = read_trace(record.folder / run["trace"]).ticks
+        ticks = read_trace(record.folder / run.trace).ticks
         replay = Replay(pictures.of, record.protocol.model.display)
         ends = np.flatnonzero(np.diff(ticks["line"])) + 1
         for part in np.split(ticks, ends):
@@ -134,13 +134,14 @@ class _Pictures:
         self._protocol = record.protocol
         self._anchor_mm = None if record.centred else 0.0
         self._shown = {
-            showing.line: (trial.stimuli[showing.stimulus], showing.tuning)
-            for trial in (*record.plan.practice, *record.plan.trials)
-            for showing in progress.told(trial).showings
+            showing.line: (told.trial, showing)
+            for told in (*progress.practice.values(), *progress.trials.values())
+            for showing in told.showings
         }
 
     def of(self, line: int) -> Program:
         """Picture of a line number."""
-        stimulus, tuning = self._shown[line]
-        tuning = replace(stimulus.tuning, **tuning)
+        trial, showing = self._shown[line]
+        stimulus = showing.stimulus_of(trial)
+        tuning = replace(stimulus.tuning, **showing.tuning)
         return render(self._protocol, stimulus, tuning, anchor_mm=self._anchor_mm)

@@ -11,82 +11,85 @@ import json
 from typing import TYPE_CHECKING
 from zlib import crc32
 
-from vbraille.sessions.record.journal import LINE, Told, decode
+import msgspec
+
+from vbraille.sessions.record.events import Lost, Session, read
+from vbraille.sessions.record.journal import LINE, JournalContents, decode
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.journal import Event
+    from vbraille.sessions.record.events import Event
 
 
-def salvage(content: bytes) -> Told:
-    """Events of a journal, as far as they are whole, damaged or not.
+def salvage(content: bytes) -> JournalContents:
+    """Read the events of a journal, as far as they are whole and known, damaged or not.
 
-    In the place of each event that is not, there is one that is called ``lost``, with its number.
+    In the place of each event that is not, there is a `Lost` with its number.
     """
     told = decode(content)
     if told.damage is None:
         return told
     *lines, torn = content.split(b"\n")
-    sound, whole = _whole(lines)
+    whole, found = _read_lines(lines)
     events: list[Event] = []
-    if lines and not whole[0] and (first := _first(lines[0])):
+    if lines and found[0] is None and (first := _first(lines[0])):
         # It is not sure itself: but who has the files that it has the checksums of, knows.
-        events.append({**first, "n": 1})
-    for line, good in zip(lines, whole, strict=True):
-        if good:
-            event = _parse(line)
-            events += _lost(events, event["n"] - 1, event)
+        events.append(first)
+    for event in found:
+        if event is not None:
+            events += _lost(events, event.n - 1, event)
             events.append(event)
-    after = whole[::-1].index(True) if True in whole else 0
+    after = next((n for n, event in enumerate(reversed(found)) if event is not None), 0)
     if after and events:
-        events += _lost(events, events[-1]["n"] + after, events[-1])
-    bad = [number for number, good in enumerate(sound, 1) if not good]
+        events += _lost(events, events[-1].n + after, events[-1])
+    bad = [number for number, good in enumerate(whole, 1) if not good]
     if not bad:  # the last line has lost its end
         bad, torn = [len(lines) + 1], b""
-        events += _lost(events, events[-1]["n"] + 1, events[-1]) if events else []
-    return Told(events, told.good_bytes, told.crcs, torn, told.damage, tuple(bad))
+        events += _lost(events, events[-1].n + 1, events[-1]) if events else []
+    return JournalContents(events, told.good_bytes, told.crcs, torn, told.damage, tuple(bad))
 
 
-def _whole(lines: list[bytes]) -> tuple[list[bool], list[bool]]:
-    """Whether each line verifies, and whether its event does, if only its checksum was hit."""
-    sound: list[bool] = []
+def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[Event | None]]:
+    """Whether each line is whole; and its event, which is kept if only its checksum was hit."""
     whole: list[bool] = []
+    events: list[Event | None] = []
     written, reckoned = {0}, set[int]()  # checksums that the line before may have
+    before: Event | None = None
     for line in lines:
         found = LINE.fullmatch(line)
         if found is None:
-            sound.append(False)
             whole.append(False)
-            written, reckoned = set(), set()
+            events.append(None)
+            written, reckoned, before = set(), set(), None
             continue
-        sums = {before: crc32(found[1], before) for before in written | reckoned}
+        event = _read(found[1] + b"}")
+        sums = {crc: crc32(found[1], crc) for crc in written | reckoned}
         stored = int(found[2], 16)
-        by = [before for before, crc in sums.items() if crc == stored]
-        sound.append(bool(by))
-        whole.append(bool(by))
-        if by and not set(by) & written:
-            whole[-2] = True  # its checksum alone was hit
-        written, reckoned = {stored}, set(sums.values()) - {stored}
-    return sound, whole
+        by = {crc for crc, made in sums.items() if made == stored}
+        whole.append(bool(by) and event is not None)
+        events.append(event if by else None)
+        if by and not by & written:
+            events[-2] = before  # its checksum alone was hit
+        written, reckoned, before = {stored}, set(sums.values()) - {stored}, event
+    return whole, events
 
 
-def _parse(line: bytes) -> Event:
-    found = LINE.fullmatch(line)
-    assert found is not None, "a line that verifies is one"
-    return json.loads(found[1] + b"}")
-
-
-def _first(line: bytes) -> Event | None:
-    """First event, if it can be read."""
+def _read(line: bytes) -> Event | None:
+    """Event that a line tells of; None if there is no such event."""
     try:
-        event = json.loads(line)
+        return read(line)
     except ValueError:
         return None
-    good = isinstance(event, dict) and event.get("event") == "session"
-    return event if good and {"n", "format", "sha256", "t_s", "wall"} <= event.keys() else None
+
+
+def _first(line: bytes) -> Session | None:
+    """First event, if it can be read."""
+    try:
+        return msgspec.structs.replace(msgspec.convert(json.loads(line), Session), n=1)
+    except ValueError:  # msgspec's is one too
+        return None
 
 
 def _lost(events: list[Event], last: int, near: Event) -> list[Event]:
     """Events that are lost, from after those that there are to the one with that number."""
-    first = events[-1]["n"] + 1 if events else 1
-    when = {"t_s": near["t_s"], "wall": near["wall"]}
-    return [{"n": n, "event": "lost", **when} for n in range(first, last + 1)]
+    first = events[-1].n + 1 if events else 1
+    return [Lost(n=n, t_s=near.t_s, wall=near.wall) for n in range(first, last + 1)]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
+from vbraille.sessions.record import events
 from vbraille.sessions.running.course import POLL_S, Phase
 from vbraille.sessions.running.orders import ORDERS, find_order
 
@@ -104,7 +105,7 @@ class Console:
             If a line of a file cannot be used.
         """
         line = line.strip()
-        self._course.script_line = number
+        self._course.book.script_line = number
         found = find_order(line)
         if not line:
             self.go_on()
@@ -171,8 +172,10 @@ class Console:
         try:
             answer = read_line(course.protocol, trial, line)
         except ValueError as error:
-            if course.script_line:
-                raise InputError(f"line {course.script_line} of the answers: {error}") from None
+            if course.book.script_line:
+                raise InputError(
+                    f"line {course.book.script_line} of the answers: {error}"
+                ) from None
             self._say(f"no answer: {error}")
             return
         told: dict[str, Any] = {"attempt": self._progress.told(trial).attempts, "answer": answer}
@@ -184,11 +187,12 @@ class Console:
             told["early"] = True
         if correcting is None:
             course.withdraw()
-        course.log("answer", trial, durable=True, **told)
+        course.book.log(events.Answer, trial, **told)
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
         if trial.practice:
             self._tell(trial, answer)
-        if correcting is None or course.trial is None:
+        # Where the next trial goes by the answers, a corrected one may be followed by one more.
+        if correcting is None or course.trial is None or course.phase is Phase.LAST:
             course.paused = False
             course.next()
 
@@ -214,7 +218,7 @@ class Console:
         if trial is None or self._progress.correcting is not None:
             self._say("undo: there is no answer to take back")
             return
-        self._course.log("undo", trial, durable=True)
+        self._course.book.log(events.Undo, trial)
         self._say(f"undo: {self._course.name(trial)}; type its answer")
 
     def repeat(self, _: str = "") -> None:
@@ -223,7 +227,7 @@ class Console:
         if trial is None:
             self._say("repeat: no trial is open")
             return
-        self._course.log("repeat", trial, durable=True)
+        self._course.book.log(events.Repeat, trial)
         self._course.again()
 
     def note(self, text: str) -> None:
@@ -231,7 +235,7 @@ class Console:
         if not text:
             self._say("note: type what is to be noted after it")
             return
-        self._course.log("note", self._course.open_trial, durable=True, text=text)
+        self._course.book.log(events.Note, self._course.open_trial, text=text)
         self._say("note: is in")
 
     def pause(self, _: str = "") -> None:
@@ -243,7 +247,7 @@ class Console:
         if course.display is not None:
             course.display.rest()
         course.paused = True
-        course.log("pause", course.open_trial, durable=True)
+        course.book.log(events.Pause, course.open_trial)
         self._say("pause: the array is at rest; Enter goes on")
 
     def go_on(self, _: str = "") -> None:
@@ -253,12 +257,12 @@ class Console:
             return
         if course.paused:
             course.paused = False
-            course.log("go", course.open_trial)
+            course.book.log(events.Go, course.open_trial)
             if course.display is not None and course.open_trial is not None:
                 course.display.go()
             self._say("go: on")
         elif course.phase is Phase.BREAK:
-            course.log("go")
+            course.book.log(events.Go)
             course.next(gap=False)
         elif course.phase is Phase.LAST and self._progress.correcting is None:
             course.end("all trials are done")
@@ -267,7 +271,7 @@ class Console:
 
     def have_break(self, _: str = "") -> None:
         """Have a break, after the open trial."""
-        self._course.log("break_wanted", self._course.open_trial)
+        self._course.book.log(events.BreakWanted, self._course.open_trial)
         self._course.want_break()
 
     def begin(self, _: str = "") -> None:
@@ -276,7 +280,7 @@ class Console:
             self._say("begin: practice is over already")
             return
         self._course.withdraw()
-        self._course.log("begin", durable=True)
+        self._course.book.log(events.Begin)
         self._course.next()
 
     def texture(self, text: str) -> None:
@@ -288,14 +292,14 @@ class Console:
         self._retune("contrast", text)
 
     def _retune(self, name: str, text: str) -> None:
-        plan = self._course.plan
-        planned = {getattr(s.tuning, name) for trial in plan.trials for s in trial.stimuli}
-        if len(planned) > 1 or self._course.display is None:
+        trials = self._progress.procedure.trials
+        planned = {getattr(s.tuning, name) for trial in trials or () for s in trial.stimuli}
+        if trials is None or len(planned) > 1 or self._course.display is None:
             self._say(f"{name}: the plan sets it")
             return
         try:
             tuning = {**self._progress.tuning, name: float(text)}
-            replace(plan.trials[0].stimuli[0].tuning, **tuning)
+            replace(trials[0].stimuli[0].tuning, **tuning)
         except ValueError:
             self._say(f"{name}: type a number from 0 to 1 after it")
             return
@@ -306,11 +310,9 @@ class Console:
         """End for now."""
         course = self._course
         course.withdraw()
-        course.log("stop", durable=True)
-        self._say(
-            f"stopped: {self._progress.done} of {len(course.plan.trials)} trials have answers; "
-            f"session resume goes on"
-        )
+        course.book.log(events.Stop)
+        done = course.of_all(self._progress.done)
+        self._say(f"stopped: {done} trials have answers; session resume goes on")
         course.phase = Phase.OVER
 
     def help(self, _: str = "") -> None:

@@ -13,7 +13,10 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
-from vbraille.sessions.record.folder import versions
+from vbraille.sessions.planning.planfile import stimulus_to_json
+from vbraille.sessions.record import events
+from vbraille.sessions.record.folder import SHOWN_FROM, versions
+from vbraille.sessions.running.logbook import Logbook
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -70,8 +73,8 @@ class Course:
         What is waited for.
     paused : bool
         Whether the array rests until told otherwise.
-    script_line : int
-        Line of an answers file that is being done; the event that comes of it keeps its number.
+    book : Logbook
+        Where all that happens is written down.
     read_said : bool
         Whether somebody has been told that the trial is read; on paper, whether it is.
     """
@@ -96,21 +99,18 @@ class Course:
         self.display = display
         self.phase = Phase.READY
         self.paused = False
-        self.script_line = 0
         self.read_said = False
-        self._journal = journal
         self._waits = waits
         self._corrects = corrects
         self._say = say
         self._play = play
         self._real = real
+        self.book = Logbook(journal, progress, self._now_ns)
         self._break_wanted = False
         self._stimulus = 0
         self._attempt = 0
         self._ready_ns = 0
         self._cue_ns = 0
-        self._begun_ns = 0
-        self._begun_s = progress.t_s
         self._deaths = 0
 
     @property
@@ -142,14 +142,19 @@ class Course:
         trial = self.open_trial
         return trial is not None and self._stimulus + 1 < len(trial.stimuli)
 
+    def of_all(self, number: int) -> str:
+        """Say a number of trials, and of how many, if that is known."""
+        planned = self.progress.planned
+        return f"{number}" if planned is None else f"{number} of {planned}"
+
     def name(self, trial: Trial) -> str:
         """What to call a trial."""
         if trial.practice:
             return f"practice {trial.number} of {len(self.plan.practice)}"
-        return f"trial {trial.number} of {len(self.plan.trials)}"
+        return f"trial {self.of_all(trial.number)}"
 
     def start(self, **started: Any) -> None:
-        """Begin a run with the engine started; the journal is told of it, and of all versions."""
+        """Begin a run with the engine started; `started` are more fields of the journal's `Run`."""
         display = self.display
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
@@ -157,28 +162,13 @@ class Course:
             while not display.now_ns:  # its clock is the session's
                 display.poll()
                 self.sleep()
-        self._begun_ns, self._begun_s = self._now_ns(), self.progress.t_s
-        self.log("run", durable=True, **started, versions=versions())
+        self.book.begin()
+        self.book.log(events.Run, **started, versions=versions())
 
     def sleep(self) -> None:
         """Wait a little for the device to go on, if time does not go by polling."""
         if self._real:
             time.sleep(POLL_S)
-
-    def log(
-        self, event: str, trial: Trial | None = None, *, durable: bool = False, **fields: Any
-    ) -> None:
-        """Write an event down; it is on the disk when this returns if it is to be durable."""
-        of: dict[str, Any] = {} if trial is None else {"trial": trial.number}
-        if trial is not None and trial.practice:
-            of["practice"] = True
-        at_ns = fields.get("time_ns", self._now_ns())  # of a tick, or now
-        t_s = self._begun_s + (at_ns - self._begun_ns) / 1e9
-        if self.script_line:
-            of["script_line"] = self.script_line
-            self.script_line = 0
-        told = {"event": event, **of, **fields, "t_s": round(t_s, 6)}
-        self.progress.take(self._journal.append(told, durable=durable))
 
     def next(self, *, gap: bool = True) -> None:
         """Get the next trial ready, have a break, or end."""
@@ -196,14 +186,14 @@ class Course:
 
     def end(self, why: str) -> None:
         """End the session for good."""
-        self.log("end", durable=True, why=why)
-        self._say(f"end: {why}; {self.progress.done} of {len(self.plan.trials)} have answers")
+        self.book.log(events.End, why=why)
+        self._say(f"end: {why}; {self.of_all(self.progress.done)} have answers")
         self.phase = Phase.OVER
 
     def have_break(self) -> None:
         """Have a break, before the trial that comes next."""
         self._break_wanted = False
-        self.log("break", durable=True)
+        self.book.log(events.Break)
         if self._waits:
             self.phase = Phase.BREAK
             self._say(f"break: {self.progress.done} trials are done; Enter goes on")
@@ -247,7 +237,7 @@ class Course:
             self.begin()
         elif self.phase is Phase.OPEN and not self.read_said:
             self.read_said = True
-            self.log("read", trial, attempt=self._attempt, stimulus=0)
+            self.book.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.told(trial)
             self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
 
@@ -255,10 +245,9 @@ class Course:
         """Show this trial and those to come with another contrast or texture."""
         trial = self.open_trial
         if trial is None or self.display is None:
-            self.log("tuning", durable=True, tuning=tuning)
+            self.book.log(events.Tuning, tuning=tuning)
             return
-        line = self.display.line + 1
-        self.log("tuning", trial, durable=True, tuning=tuning, line=line)
+        self.book.log(events.Tuning, trial, tuning=tuning, line=self.display.line + 1)
         self.display.retune(self._tuning(trial))
 
     def look(self) -> bool:
@@ -332,7 +321,7 @@ class Course:
         if trial.practice or done == self.progress.broken:
             return False
         every = self.protocol.session.break_every
-        in_block = sum(t.block == trial.block for t in self.plan.trials[:done])
+        in_block = sum(past.trial.block == trial.block for past in self.progress.history)
         return not in_block or (every is not None and in_block % every == 0)
 
     def _show(self, trial: Trial, stimulus: int) -> None:
@@ -343,29 +332,29 @@ class Course:
             shown["line"] = self.display.line + 1
         if self.progress.tuning:
             shown["tuning"] = self.progress.tuning
-        self.log("presented", trial, **shown)
+        if self.book.format >= SHOWN_FROM:
+            shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
+        self.book.log(events.Presented, trial, **shown)
         if self.display is not None:
             self.display.show(trial.stimuli[stimulus], self._tuning(trial), first=not stimulus)
         self._cue_ns = self._now_ns()
         self._play(self.protocol.sound.cue)
-        self.log("cue", trial)
+        self.book.log(events.Cue, trial)
         self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
 
     def _tuning(self, trial: Trial) -> Tuning:
         return replace(trial.stimuli[self._stimulus].tuning, **self.progress.tuning)
 
     def _take(self, happened: Happened) -> None:
-        what, fields = happened
+        kind, fields = happened
         trial = self.open_trial
-        if what == "note":
-            self.log("device", **fields)
+        if kind is events.Device:
+            self.book.log(events.Device, **fields)
             self._say(fields["what"])
         elif trial is not None:
-            of = {"attempt": self._attempt, "stimulus": self._stimulus, **fields}
-            if what == "fault":
-                self._fault(trial, of)
-            else:
-                self.log(what, trial, **of)
+            self.book.log(kind, trial, attempt=self._attempt, stimulus=self._stimulus, **fields)
+            if kind is events.Fault:
+                self._repeat_faulty(trial, fields["what"])
 
     def _watch(self, trial: Trial) -> None:
         """Look whether the second stimulus, or the warning, is due."""
@@ -374,7 +363,7 @@ class Course:
         waited_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
         if warning_s is not None and "warning" not in told.t_s and waited_s >= warning_s:
             self._play(self.protocol.sound.warning)
-            self.log("warning", trial)
+            self.book.log(events.Warning, trial)
             self._say(f"warning: {self.name(trial)}, {warning_s:g} s")
         display = self.display
         if display is None or not display.read:
@@ -386,12 +375,11 @@ class Course:
             self.read_said = True
             self._say("read: type the answer")
 
-    def _fault(self, trial: Trial, fields: dict[str, Any]) -> None:
-        """Mark the open trial, and have it shown again if the protocol says so."""
+    def _repeat_faulty(self, trial: Trial, what: str) -> None:
+        """Have the open trial shown again after a fault, if the protocol says so."""
         repeats = self.protocol.repeat_faults
-        self.log("fault", trial, durable=True, **fields)
         how = "is repeated" if repeats else "goes on"
-        self._say(f"fault: {fields['what']}; {self.name(trial)} {how}")
+        self._say(f"fault: {what}; {self.name(trial)} {how}")
         if repeats:
             self.again()
 
@@ -400,14 +388,14 @@ class Course:
         self._deaths += 1
         trial = self.open_trial
         if trial is None:
-            self.log("device", what=str(fault))
+            self.book.log(events.Device, what=str(fault))
         else:
-            self.log("fault", trial, durable=True, what=str(fault), attempt=self._attempt)
+            self.book.log(events.Fault, trial, what=str(fault), attempt=self._attempt)
         if self._deaths >= MOST_DEATHS:
             raise fault
         self._say(f"fault: {fault}; it is started again")
         assert self.display is not None, "paper has no engine"
-        self.log("closed", **self.display.close_trace())
+        self.book.log(events.Closed, **self.display.close_trace())
         self.display.engine.start()
         self.start(why="fault")
         if trial is not None:

@@ -12,6 +12,7 @@ from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.programs import render
+from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
 from vbraille.sessions.simulated.skin import Exploration
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.record.events import Event
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
@@ -74,15 +76,15 @@ class Happened(NamedTuple):
 
     Parameters
     ----------
-    what
-        ``contact``: the array came to the first dot. ``read``: the hand went to the end and
-        back. ``fault``, ``well``: what is shown is not felt, is felt again. ``note``: the device
-        has something to say.
+    kind
+        ``Contact``: the array came to the first dot. ``Read``: the hand went to the end and
+        back. ``Fault``, ``Well``: what is shown is not felt, is felt again. ``Device``: the
+        device has something to say.
     fields
-        Of the journal's event.
+        What is known of it here, by the fields of that kind.
     """
 
-    what: str
+    kind: type[Event]
     fields: dict[str, Any]
 
 
@@ -266,7 +268,7 @@ class OnDevice:
         """
         ticks = self.engine.poll()
         sentences = told(self.engine.take_events())
-        happened = [Happened("note", {"what": sentence}) for sentence in sentences]
+        happened = [Happened(events.Device, {"what": sentence}) for sentence in sentences]
         if not ticks.size:
             return happened
         before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
@@ -281,7 +283,7 @@ class OnDevice:
         placing = placing_of(self._newest)
         if placing is not self._placing:
             self._placing = placing
-            happened.append(Happened("note", {"what": _PLACES[placing]}))
+            happened.append(Happened(events.Device, {"what": _PLACES[placing]}))
         if self._stimulus is not None:
             happened += sorted(
                 self._unfelt(ticks, lost) + self._follow(ticks),
@@ -329,11 +331,11 @@ class OnDevice:
             if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
                 return []
             self._away, self._told_ns = True, time_ns
-            happened.append(Happened("fault", {"what": _why(fault), **_when(fault)}))
+            happened.append(Happened(events.Fault, {"what": _why(fault), **_when(fault)}))
         if self._away and not unfelt[-1]:
             self._away = False
             well = int(at[-1]) + 1 if at.size else 0
-            happened.append(Happened("well", _when(ticks[well])))
+            happened.append(Happened(events.Well, _when(ticks[well])))
         return happened
 
     def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
@@ -361,11 +363,11 @@ class OnDevice:
             on = np.flatnonzero(ticks["x_mm"] >= self._edge_mm)
             if on.size:
                 self._touched = True
-                happened.append(Happened("contact", _when(ticks[int(on[0])])))
+                happened.append(Happened(events.Contact, _when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
         if not self._read and (self._end.find(ticks["x_mm"]) is not None or steered):
             self._read = True
-            happened.append(Happened("read", _when(ticks[-1])))
+            happened.append(Happened(events.Read, _when(ticks[-1])))
         return happened
 
 

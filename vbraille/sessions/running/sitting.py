@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.caching import compiling_note
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM
 from vbraille.errors import InputError
+from vbraille.sessions.record import events
 from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
 from vbraille.sessions.record.folder import check_end
 from vbraille.sessions.record.journal import NAME, Journal, sum_of
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
@@ -83,13 +85,17 @@ class Sitting:
         self._opened = True
         check_room(self._engine.display, protocol, plan)
 
-    def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
+    def run(
+        self, record: Record, procedure: Procedure, *, why: str, spec: str, hand: str
+    ) -> Progress:
         """Conduct the session until its end, or until it is stopped; how far it has come.
 
         Parameters
         ----------
         record
             What is there of the session.
+        procedure
+            Says which trial comes next.
         why, spec, hand
             What the journal tells of the run: start or resume, the device, and its hand.
         """
@@ -97,7 +103,7 @@ class Sitting:
             check_end(record.folder, book.told)
             torn_bytes = book.set_torn_aside()
             self.open(record.protocol, record.plan)
-            progress = Progress(record.plan, book.told.events)
+            progress = Progress(record.plan, book.told.events, procedure)
             display = self._display(record, book)
             sound = self._sound()
             course = Course(
@@ -122,7 +128,7 @@ class Sitting:
                 course.start(**told, clock="machine" if self._real else "manual")
                 if not practises:
                     self._say("practice: left out, since answers are not typed")
-                    course.log("begin")
+                    course.book.log(events.Begin)
                 Console(course, self._answers, say=self._say, real=self._real).run()
             finally:
                 self._before_rest()
@@ -131,9 +137,7 @@ class Sitting:
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
-                course.log(
-                    "closed", durable=True, lost=lost, counts=counts, **display.close_trace()
-                )
+                course.book.log(events.Closed, lost=lost, counts=counts, **display.close_trace())
             self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         return progress
 
