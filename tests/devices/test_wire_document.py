@@ -25,7 +25,7 @@ from vbraille.devices.wire.fields import (
     Number,
     OneOf,
     PerActuator,
-    Text,
+    ShortText,
     fields_of,
 )
 from vbraille.devices.wire.messages import (
@@ -107,7 +107,7 @@ def type_and_values(field):
         case OneOf():
             choices = [f"{int(choice)} {choice.name.lower()}" for choice in field.of]
             return TYPES[field.code], ", ".join(choices)
-        case Text():
+        case ShortText():
             return "text", f"{field.fewest} … {field.most} bytes"
         case PerActuator():
             return "u8[rows·columns]", f"0 … {field.high}"

@@ -1,6 +1,6 @@
 """A source that is a list of blocks, for what no text file has."""
 
-from vbraille.translate import Block, Document, Kind, Text
+from vbraille.translate import Block, BlockKind, Document, Text
 
 
 def text_of(string: str) -> Text:
@@ -9,7 +9,7 @@ def text_of(string: str) -> Text:
     return Text.empty() if block is None else block.text
 
 
-def block_of(string: str, kind: Kind = Kind.PARAGRAPH, level: int = 0) -> Block:
+def block_of(string: str, kind: BlockKind = BlockKind.PARAGRAPH, level: int = 0) -> Block:
     """Block of a kind, whose text begins at the source's first character."""
     return Block(text_of(string) if string else Text.empty(), kind, level)
 

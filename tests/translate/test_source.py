@@ -11,7 +11,7 @@ from tests.laid import cuts_inside, laid_out, rebuilt
 from tests.translate.blocks import BlockList, block_of
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
-from vbraille.translate import Book, BrailleTable, Cells, CellsSource, Document, Kind, Source
+from vbraille.translate import BlockKind, Book, BrailleTable, Cells, CellsSource, Document, Source
 
 VERSE = """\
   ,! 9vi*t]
@@ -30,10 +30,10 @@ class TestBlock:
     @pytest.mark.parametrize(
         ("kind", "level", "wanted"),
         [
-            (Kind.HEADING, 0, "level of kind heading is 0; it must be 1 or more"),
-            (Kind.ITEM, -1, "level of kind item is -1; it must be 1 or more"),
-            (Kind.PARAGRAPH, 1, "level of kind paragraph is 1; it must be 0"),
-            (Kind.ROW, -1, "level of kind row is -1; it must be 0"),
+            (BlockKind.HEADING, 0, "level of kind heading is 0; it must be 1 or more"),
+            (BlockKind.ITEM, -1, "level of kind item is -1; it must be 1 or more"),
+            (BlockKind.PARAGRAPH, 1, "level of kind paragraph is 1; it must be 0"),
+            (BlockKind.ROW, -1, "level of kind row is -1; it must be 0"),
         ],
     )
     def test_levels_are_of_headings_and_items(self, kind, level, wanted):

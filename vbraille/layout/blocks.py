@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.braille.cells import Cells
 from vbraille.layout.indents import indents
 from vbraille.layout.wrapping import breaks_of, wrap
-from vbraille.translate.source import Kind
+from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
     from vbraille.translate.source import Block
@@ -76,7 +76,7 @@ class LaidBlock:
         self.carries: Carried | None = None
         if goes_on:
             self.carries = self._carry(indent, runover)
-        elif self.bounds == [(0, 0, 0)] and (carried is not None or block.kind is Kind.PAGE):
+        elif self.bounds == [(0, 0, 0)] and (carried is not None or block.kind is BlockKind.PAGE):
             self.bounds.clear()  # nothing but blanks after the last piece, or a page of no number
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.translate.source import Kind
+from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
     from vbraille.translate.source import Block
@@ -24,15 +24,15 @@ def indents(block: Block, width: int) -> tuple[int, int]:
         Cells a line.
     """
     match block.kind:
-        case Kind.PARAGRAPH:
+        case BlockKind.PARAGRAPH:
             first, others = STEP, 0
-        case Kind.HEADING:
+        case BlockKind.HEADING:
             first, others = 2 * STEP, 2 * STEP
-        case Kind.ITEM:
+        case BlockKind.ITEM:
             first, others = (block.level - 1) * STEP, block.level * STEP
-        case Kind.ROW | Kind.LINE:
+        case BlockKind.ROW | BlockKind.LINE:
             first, others = 0, STEP
-        case Kind.PAGE:
+        case BlockKind.PAGE:
             first, others = 0, 0
     most = (width - 1) // (2 * STEP) * STEP
     return min(first, most), min(others, most)

@@ -6,18 +6,18 @@ from vbraille.translate.cellssource import CellsSource
 from vbraille.translate.documents.document import Document
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
 from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
-from vbraille.translate.source import Block, Kind, Source
+from vbraille.translate.source import Block, BlockKind, Source
 from vbraille.translate.text import Text
 from vbraille.translate.undefined import Undefined
 
 __all__ = [
     "Block",
+    "BlockKind",
     "Book",
     "BrailleTable",
     "Cells",
     "CellsSource",
     "Document",
-    "Kind",
     "Source",
     "TableInfo",
     "Text",

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from vbraille.translate.text import Text
 
 
-class Kind(Enum):
+class BlockKind(Enum):
     """What a block is in its text."""
 
     PARAGRAPH = "paragraph"
@@ -27,7 +27,7 @@ class Kind(Enum):
     """The place where a page of the printed book begins; its text is the page's number, if any."""
 
 
-_LEVELLED = (Kind.HEADING, Kind.ITEM)
+_LEVELLED = (BlockKind.HEADING, BlockKind.ITEM)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +38,7 @@ class Block:
     ----------
     text : Text
         Its characters. Those of ready cells are how the source writes the cells.
-    kind : Kind
+    kind : BlockKind
         What it is.
     level : int
         How deep a heading or an item stands, from 1; 0 for all other kinds.
@@ -54,7 +54,7 @@ class Block:
     """
 
     text: Text
-    kind: Kind = Kind.PARAGRAPH
+    kind: BlockKind = BlockKind.PARAGRAPH
     level: int = 0
     cells: Cells | None = None
     continues: bool = False

@@ -30,7 +30,7 @@ from vbraille.devices.wire.fields import (
     OneOf,
     Packed,
     PerActuator,
-    Text,
+    ShortText,
     WrongLengthError,
     fields_of,
 )
@@ -99,7 +99,7 @@ def values(field, actuators):
             return numbers if field.none is None else st.none() | numbers
         case OneOf():
             return st.sampled_from(field.of)
-        case Text():
+        case ShortText():
             texts = st.text(PRINTABLE, min_size=field.fewest, max_size=20)
             return texts.filter(lambda text: text.strip() or not field.fewest)
         case PerActuator():
@@ -358,7 +358,7 @@ def test_a_new_field_is_encoded_decoded_and_checked():
     @dataclass(frozen=True, slots=True)
     class StateWithSkin(State):
         skin_ck: Annotated[int, Number("H", 0, 40_000, "cK")]
-        mood: Annotated[str, Text(fewest=1)]
+        mood: Annotated[str, ShortText(fewest=1)]
         pulse: Annotated[int | None, Number("H", 0, 300, none=0xFFFF)]
 
     codec = BodyCodec(0x82, StateWithSkin)

@@ -19,7 +19,7 @@ from tests.conftest import SEED
 from tests.tiers import examples, heavy
 from tests.translate.model import Piece, pieces_of
 from vbraille.errors import InputError, VbrailleError
-from vbraille.translate import Block, Document, Kind
+from vbraille.translate import Block, BlockKind, Document
 from vbraille.translate.documents.document import CHUNK_BYTES
 
 GAPS = [" "] * 40 + ["\n"] * 8 + ["\r\n", "\r", "  ", "\t", "-\n", "\xad\n", "\x85", "\u2028"]
@@ -294,7 +294,7 @@ class TestLazy:
 
 class TestSource:
     def test_its_blocks_are_paragraphs_or_the_lines_that_are_kept(self):
-        for keep_lines, kind in ((False, Kind.PARAGRAPH), (True, Kind.LINE)):
+        for keep_lines, kind in ((False, BlockKind.PARAGRAPH), (True, BlockKind.LINE)):
             found = blocks(document(b"one\n\ntwo\nthree", keep_lines=keep_lines))
             assert {(block.kind, block.level, block.cells) for block in found} == {(kind, 0, None)}
 

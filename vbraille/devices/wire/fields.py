@@ -131,7 +131,7 @@ class OneOf(Fixed):
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class ShortText:
     """A byte with a length in bytes, then so many bytes of printable UTF-8.
 
     Bytes that are no UTF-8 and characters that are not printable are read as U+FFFD:

@@ -15,7 +15,7 @@ from vbraille.devices.wire.fields import (
     OneOf,
     Packed,
     PerActuator,
-    Text,
+    ShortText,
 )
 
 VERSION: Final = 1
@@ -127,8 +127,8 @@ class Info(Message):
     count_sign: Annotated[CountSign, OneOf("b", CountSign)]
     count_bits: Annotated[int, Number("B", 8, 32, "bits")]
     left_stop_count: Annotated[int, U32]
-    name: Annotated[str, Text(fewest=1)]
-    firmware: Annotated[str, Text(fewest=0)]
+    name: Annotated[str, ShortText(fewest=1)]
+    firmware: Annotated[str, ShortText(fewest=0)]
     inverted: Annotated[bytes, PerActuator(high=1)]
     gain: Annotated[bytes, PerActuator(high=0xFF)]
     enabled: Annotated[bytes, PerActuator(high=1)]
@@ -180,7 +180,7 @@ class Error(Message):
     """Device: what is wrong with it; `ErrorCode`, or a code of its maker's own."""
 
     code: Annotated[int, U8]
-    text: Annotated[str, Text(fewest=0)]
+    text: Annotated[str, ShortText(fewest=0)]
 
 
 # Types from 0x80 on are a device's.

@@ -17,7 +17,7 @@ from vbraille.translate.documents.codepoints import (
     kinds_of,
 )
 from vbraille.translate.documents.items import LONGEST_MARKER, end_before_items
-from vbraille.translate.source import Block, Kind
+from vbraille.translate.source import Block, BlockKind
 from vbraille.translate.text import NO_BREAK_SPACE, SPACE, Text, to_codes, to_text
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ def split_paragraphs(
     seen[own] = True
     alphabet = frozenset(np.flatnonzero(seen).tolist())
     accents = not alphabet.isdisjoint(_COMBINING)
-    kind = Kind.LINE if keep_lines else Kind.PARAGRAPH
+    kind = BlockKind.LINE if keep_lines else BlockKind.PARAGRAPH
 
     def block(start: int, end: int, continues: bool) -> Block:
         part = slice(start, end)
