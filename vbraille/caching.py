@@ -1,4 +1,4 @@
-"""Where compiled kernels and lists of fonts are kept, also for a user without a writable home.
+"""Places for compiled kernels and lists of fonts, also for a user without a writable home.
 
 numba refuses to compile for a cache that it cannot write, and matplotlib complains on
 standard error. Both are given a private folder among the system's temporary files then; where
@@ -19,17 +19,17 @@ from hashlib import sha256
 from pathlib import Path
 
 _log = logging.getLogger(__name__)
-# Where kernels are, and what they call.
+# The files that hold kernels, and what kernels call.
 _ROOMS = ("render/**/*.py", "devices/**/*.py", "engine/*.py")
 
 
 @cache
 def keep_compiled() -> bool:
-    """Whether numba can keep what it compiles; to be called before anything is compiled.
+    """Tell numba where to keep what it compiles, before it compiles anything; False if nowhere.
 
-    It is kept in the package's own ``__pycache__``, else among the user's caches, else in the
-    private folder: there in a folder of this very source. numba looks only at the file of a
-    function, and would keep what has one of another file compiled into it that has changed.
+    That is the package's own ``__pycache__``, else the user's caches, else a private folder. In
+    each, the folder is named by the source of all kernels: numba compares the file of a function
+    only, and would go on using one that has a changed function of another file compiled into it.
     """
     _leave_scipy_out()
     folder = _compiled_folder()
@@ -39,7 +39,7 @@ def keep_compiled() -> bool:
     _log.info("what is compiled is kept in %s", folder)
     from numba import config
 
-    # Not in the environment, where a child would take it for its user's wish.
+    # Not in the environment, where a child process would take it for a wish of its user.
     config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
     for other in folder.parent.glob("vbraille-compiled-*"):
         if other != folder:
@@ -48,14 +48,21 @@ def keep_compiled() -> bool:
 
 
 def is_compiled() -> bool:
-    """Whether what drives actuators was compiled before, which takes a minute."""
+    """Whether the code that drives actuators is compiled already; compiling takes a minute."""
     folder = _compiled_folder()
     return folder is not None and any(folder.glob("*/serialtick.run-*.nbc"))
 
 
+def compiling_note() -> str | None:
+    """What to say before a first reading, which takes a while; None if nothing is to compile."""
+    if is_compiled():
+        return None
+    return "compiling: what drives the actuators, once, in up to a minute; then it begins"
+
+
 @cache
 def _compiled_folder() -> Path | None:
-    """Folder for what is compiled of this source; None if none can be written."""
+    """Find the folder for compiled code of this source; None if none can be written."""
     if given := os.environ.get("NUMBA_CACHE_DIR"):
         places = [Path(given)]
     else:
@@ -65,10 +72,10 @@ def _compiled_folder() -> Path | None:
 
 
 def _leave_scipy_out() -> None:
-    """Have numba not import scipy.linalg, which takes as long as loading all that is compiled here.
+    """Keep numba from importing scipy.linalg, which takes as long as loading all compiled code.
 
-    It looks for scipy's linear algebra once, when it loads its arithmetic of arrays, and does
-    without it where there is none; no kernel of ours needs it. Others may import scipy later.
+    numba looks for scipy's linear algebra once, when it loads its array arithmetic, and does
+    without it where there is none. No kernel here needs it. It can still be imported later.
     """
     if "scipy.linalg" in sys.modules:
         return
@@ -80,7 +87,7 @@ def _leave_scipy_out() -> None:
 
 
 def _source() -> str:
-    """What all that kernels are made of is known by: the names, sizes and times of its files."""
+    """Name the source of all kernels by the names, sizes and times of its files."""
     root = Path(__file__).parent
     files = [root / "libc.py", *(file for room in _ROOMS for file in sorted(root.glob(room)))]
     told = [(file.name, file.stat().st_size, file.stat().st_mtime_ns) for file in files]
@@ -102,7 +109,7 @@ def keep_fonts() -> None:
 
 
 def _user_folder(kind: str, name: str) -> Path:
-    """Folder of a user's files of a kind, by the XDG base directory specification."""
+    """Find the folder for a kind of the user's files, by the XDG base directory specification."""
     given = os.environ.get(f"XDG_{kind}_HOME")
     try:
         return Path(given) if given else Path.home() / name
@@ -111,7 +118,7 @@ def _user_folder(kind: str, name: str) -> Path:
 
 
 def _is_writable(folder: Path) -> bool:
-    """Whether files can be made in a folder, which is made if it is not there."""
+    """Whether files can be made in a folder, which is made first if it is not there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
@@ -121,9 +128,9 @@ def _is_writable(folder: Path) -> bool:
 
 
 def _private_folder() -> Path | None:
-    """Folder among the temporary files that nobody else can write to; None if there is none.
+    """Make a temporary folder that only this user can write to; None if that is not possible.
 
-    Code is loaded from it: a folder that somebody else has made there is never used.
+    Code is loaded from it, so a folder there that somebody else has made is never used.
     """
     try:
         folder = Path(tempfile.gettempdir()) / f"vbraille-{os.getuid()}"

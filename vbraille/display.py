@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.errors import InputError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -20,25 +22,25 @@ REST_SIDES = ("left", "right")
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """The hardware, as a value. Row 0 is far from the reader, column 0 is the left one.
+    """The hardware as a value; row 0 is far from the reader, column 0 is the left one.
 
     Parameters
     ----------
     name
-        What people call it.
+        What people call the display.
     rows, columns
         How many actuators there are, at least 1 each.
     column_pitch_mm, row_pitch_mm
-        Between neighbouring columns (along x) and rows (along y); with one row the row pitch has
-        no meaning.
+        Distance between neighbouring columns (along x) and rows (along y), in mm; with one row
+        the row pitch has no meaning.
     levels
-        Deflections that an actuator can tell apart, at least 2: 1024 for 10 bits.
+        Number of deflections that an actuator can stand at, at least 2: 1024 for 10 bits.
     rest_side
-        "left" or "right": where an actuator at deflection 0 stands.
+        The side at which an actuator stands at deflection 0, "left" or "right".
     travel_mm
         How far the carriage goes along x.
     counts_per_mm
-        Resolution of the carriage's encoders.
+        Resolution of the carriage's encoders, in counts a mm.
     rate_hz
         Frames a second that the display is made for.
     height_mm
@@ -46,7 +48,7 @@ class Display:
     turns
         Whether the carriage measures which way the array is turned.
     contactor_mm
-        Width and height of what touches the skin; None if that is not known.
+        Width and height of what touches the skin, in mm; None if that is not known.
 
     Raises
     ------
@@ -94,12 +96,12 @@ class Display:
 
     @property
     def span_mm(self) -> float:
-        """From the left column to the right one: S = (columns - 1) · pitch."""
+        """Distance from the left column to the right one: S = (columns - 1) · pitch."""
         return (self.columns - 1) * self.column_pitch_mm
 
     @property
     def depth_mm(self) -> float:
-        """From row 0 to the row nearest to the reader."""
+        """Distance from row 0 to the row nearest to the reader."""
         return (self.rows - 1) * self.row_pitch_mm
 
     @property
@@ -113,9 +115,22 @@ class Display:
         return "x" + "y" * (self.height_mm > 0) + "θ" * self.turns
 
     def column_offsets_mm(self) -> NDArray[np.float64]:
-        """Where each column is, right of the left one; float64[columns]."""
+        """How far each column is right of the left one; float64[columns]."""
         return np.arange(self.columns, dtype=np.float64) * self.column_pitch_mm
 
     def row_offsets_mm(self) -> NDArray[np.float64]:
-        """Where each row is, towards the reader from row 0; float64[rows]."""
+        """How far each row is from row 0, towards the reader; float64[rows]."""
         return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
+
+
+def check_rate(rate_hz: float) -> float:
+    """Frames a second, if a loop can have so many.
+
+    Raises
+    ------
+    InputError
+        If it is not 1 to 10,000.
+    """
+    if not 1 <= rate_hz <= 10_000:
+        raise InputError(f"rate is {rate_hz:g} Hz; it must be 1 to 10000 Hz")
+    return rate_hz

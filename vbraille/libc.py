@@ -1,10 +1,10 @@
 """The system calls of a tick, for compiled code: read, write, wait and the clocks.
 
-They are called from functions of numba's that hold no lock of Python's (``nogil``), and only from
-those. Each is the C library's own, which the process has loaded anyway: its name is looked up when
-a kernel is loaded, so that kernels that call it can be kept on disk. A failure is the negative
-number of its error (``-errno.EAGAIN``), as in the kernel's own interface; an interrupted call
-is not begun again (``-errno.EINTR``), for the signal's handler runs in Python and is waited for.
+Only functions that numba compiles without Python's lock (``nogil``) call them. Each is a function
+of the C library, which the process has loaded anyway: its name is looked up when compiled code is
+loaded, so that the code can be kept on disk. A call that fails returns the negative number of its
+error (``-errno.EAGAIN``), as calls of the system do. An interrupted call is not begun again
+(``-errno.EINTR``): Python has to run the signal's handler first.
 """
 
 import errno
@@ -36,12 +36,12 @@ _POLLFD = ir.LiteralStructType((_I32, _I16, _I16))
 
 
 def _intrinsic(typed: Callable[..., Any]) -> Any:
-    """Make an intrinsic of numba's, which type checkers take for the function that makes it."""
+    """Make an intrinsic; type checkers would take it for the function that makes it."""
     return intrinsic(typed)
 
 
 def _call(builder, name, result, *given):
-    """Call a function of the C library's."""
+    """Call a function of the C library."""
     function = builder.module.globals.get(name)
     if function is None:
         kind = ir.FunctionType(result, [value.type for value in given])
@@ -50,7 +50,7 @@ def _call(builder, name, result, *given):
 
 
 def _local(builder, kind):
-    """Room on the stack; made on entry to the function, since a loop would take more each time."""
+    """Make room on the stack, on entry to the function: made in a loop it would grow each time."""
     with builder.goto_entry_block():
         return builder.alloca(kind)
 
@@ -60,7 +60,7 @@ def _field(builder, struct, number):
 
 
 def _set_time(builder, ns):
-    """Time, as a struct timespec; it must not be negative."""
+    """Put a time, which must not be negative, into a struct timespec."""
     time = _local(builder, _TIMESPEC)
     builder.store(builder.udiv(ns, _I64(_NS_PER_S)), _field(builder, time, 0))
     builder.store(builder.urem(ns, _I64(_NS_PER_S)), _field(builder, time, 1))
@@ -68,17 +68,17 @@ def _set_time(builder, ns):
 
 
 def _or_error(builder, result):
-    """Result of a call, or its errno, negative; int64."""
+    """Take the result of a call, or -errno if it failed; int64."""
     if result.type != _I64:
         result = builder.sext(result, _I64)
-    # Errno is the thread's own, and asked for at once: nothing comes between.
+    # Each thread has its errno, and no call comes between: it is that of this call.
     where = _call(builder, "__errno_location", _I32.as_pointer())
     error = builder.neg(builder.sext(builder.load(where), _I64))
     return builder.select(builder.icmp_signed("<", result, _I64(0)), error, result)
 
 
 def _transfer(name):
-    """A call that moves bytes between a descriptor and memory."""
+    """Make a call that moves bytes between a descriptor and memory."""
 
     def typed(_context, _descriptor, _address, _size):
         def generate(_context, builder, _signature, given):
@@ -98,7 +98,7 @@ _write = _transfer("write")
 
 @_intrinsic
 def clock_ns(_context, _clock):
-    """Time by a clock, int64, ns; its number is int32 and one of the above."""
+    """Tell the time by a clock, int64, ns; its number is an int32, such as CLOCK_MONOTONIC."""
 
     def generate(_context, builder, _signature, given):
         time = _local(builder, _TIMESPEC)
@@ -115,7 +115,7 @@ def _sleep(_context, _deadline_ns):
         time = _set_time(builder, given[0])
         none = ir.Constant(_TIMESPEC.as_pointer(), None)
         clock, absolute = _I32(CLOCK_MONOTONIC), _I32(_TIMER_ABSTIME)
-        # Of all of them, this one returns its error.
+        # Unlike the others, this call returns its error itself.
         error = _call(builder, "clock_nanosleep", _I32, clock, absolute, time, none)
         return builder.neg(builder.sext(error, _I64))
 
@@ -149,15 +149,15 @@ def read(descriptor, out, start):
     descriptor : int64
         The descriptor of an open file that does not block.
     out : uint8[bytes]
-        Contiguous.
+        Memory for the bytes, contiguous.
     start : int64
-        Where to begin, in it.
+        Where in ``out`` to begin.
 
     Returns
     -------
     int64
-        How many bytes, 0 at the end of the file; negative errno if that fails, EINVAL where
-        ``start`` is outside.
+        How many bytes were read, 0 at the end of the file; -errno if that fails, -EINVAL if
+        ``start`` is outside ``out``.
     """
     if start < 0 or start > out.size:
         return _INVALID
@@ -166,7 +166,7 @@ def read(descriptor, out, start):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def write(descriptor, source, start, end):
-    """Write ``source[start:end]``, contiguous; as many bytes as were taken, or negative errno."""
+    """Write ``source[start:end]``, contiguous; return how many bytes were taken, or -errno."""
     if start < 0 or start > end or end > source.size:
         return _INVALID
     return _write(descriptor, source.ctypes.data + start, end - start)
@@ -174,26 +174,26 @@ def write(descriptor, source, start, end):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def sleep_until_ns(deadline_ns):
-    """Wait until a time of the monotonic clock; 0, or negative errno: EINTR by a signal."""
+    """Wait until a time of the monotonic clock; return 0, or -errno: -EINTR after a signal."""
     return _sleep(max(deadline_ns, 0))
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def poll(descriptor, events, wait_ns):
-    """Wait for something of a descriptor, for so long at most.
+    """Wait for an event on a descriptor, for so long at most.
 
     Parameters
     ----------
     descriptor : int64
-        What to wait for.
+        The descriptor of an open file.
     events : int64
         POLLIN to wait for bytes; POLLERR and POLLHUP are waited for in any case.
     wait_ns : int64
-        0 or less asks and does not wait.
+        How long to wait at most, in ns; 0 or less looks and does not wait.
 
     Returns
     -------
     int64
-        What has happened, as bits; 0 if nothing has; negative errno: EINTR by a signal.
+        What has happened, as bits; 0 if nothing has; -errno if that fails: -EINTR after a signal.
     """
     return _poll(descriptor, events, max(wait_ns, 0))

@@ -1,7 +1,8 @@
-"""The log for developers, which a program keeps when it is asked to; modules only write to it.
+"""The log for developers, which the program keeps where it is asked to.
 
-Each line is written at once and whole, so that several processes may share a file. Nothing is
-written in a tick: what is logged are transitions, devices opened, processes begun and ended.
+Modules write to it by `logging`. Each line is written at once and whole, so that several processes
+may share a file. Ticks are not logged; changes of state are, such as a device that was opened or a
+process that ended.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _STDERR_DESCRIPTOR = 2
 
 
 class LineHandler(logging.Handler):
-    """Writes each record as one line, by one call of the system's.
+    """Write each record as one line, by one system call.
 
     Parameters
     ----------
@@ -40,11 +41,11 @@ class LineHandler(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         """Write a line; one that cannot be written is lost, and ends nothing."""
         line = " ".join(self.format(record).split("\n"))
-        with suppress(OSError):  # a full disk, or a closed output, must not stop who reads
+        with suppress(OSError):  # a full disk, or a closed output, must not stop a reader
             os.write(self._descriptor, line.encode(errors="backslashreplace") + b"\n")
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         super().close()
         if self.where != _STDERR and self._descriptor != _STDERR_DESCRIPTOR:
             os.close(self._descriptor)
@@ -80,7 +81,7 @@ def keep(where: str) -> LineHandler:
 
 
 def kept() -> str | None:
-    """Where the log of this process is kept, for a process that it starts; None if it is not."""
+    """Tell where this process keeps its log, so that processes it starts may; None if nowhere."""
     for handler in logging.getLogger("vbraille").handlers:
         if isinstance(handler, LineHandler):
             return handler.where
@@ -88,7 +89,7 @@ def kept() -> str | None:
 
 
 def stop(handler: LineHandler) -> None:
-    """Keep no log there any more."""
+    """Stop keeping the log that `keep` began."""
     logger = logging.getLogger("vbraille")
     logger.removeHandler(handler)
     handler.close()

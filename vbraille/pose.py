@@ -1,4 +1,4 @@
-"""Where the array is, and where that puts its actuators: the one place that says so.
+"""Where the array is, and where its actuators are then; nothing else in the program says so.
 
 The canvas is the surface that a picture stands on, in mm: its origin is the top left, x grows to
 the reader's right, and y grows down, towards the reader, as in images. On a canvas of braille
@@ -25,13 +25,13 @@ class Pose(NamedTuple):
     Parameters
     ----------
     time_ns
-        When it was there, by the device's clock.
+        When it was there, in ns of the device's clock.
     x_mm, y_mm
         The array's centre on the canvas. At the left stop of a slider the whole array stands
-        before the line: x = -(columns - 1) / 2 · pitch. A slider has no y of its own: it says 0,
-        and is at the picture's own.
+        before the line: x = -(columns - 1) / 2 · pitch. A slider measures no y: it says 0, and
+        the picture is shown where it has its dots.
     theta_rad
-        How far the array is turned; 0 where that is not measured.
+        How far the array is turned, in radians; 0 where that is not measured.
     """
 
     time_ns: int

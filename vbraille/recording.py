@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import json
 import os
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,6 +18,7 @@ import numpy as np
 
 from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
+from vbraille.files import whole_file
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -244,8 +245,7 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
         If writing fails, as on a full disk.
     """
     path = Path(path)
-    partial = path.with_name(f".{path.name}.partial")
-    try:
+    with whole_file(path, replace=True) as partial:
         try:
             if path.is_dir():
                 raise InputError(f"{path} is a directory; give the name of a file in it")
@@ -258,14 +258,10 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
             with target, NewFile(target) as file:
                 yield file
             target.check()
-            if not replace:  # somebody may have made one meanwhile
-                _refuse_existing(path)
-            partial.replace(path)
         except _DiskError as error:
             raise VbrailleError(f"{path} could not be written: {error}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
+        if not replace:  # somebody may have made one meanwhile
+            _refuse_existing(path)
 
 
 def _refuse_existing(path: Path) -> None:

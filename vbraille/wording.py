@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 _NAMES = {0: "null", 7: "bell", 8: "backspace", 9: "tab", 10: "line feed", 11: "vertical tab"}
 _NAMES |= {12: "form feed", 13: "carriage return", 27: "escape", 127: "delete"}
 _CONTROLS = {
@@ -40,6 +45,29 @@ def spelled(message: str) -> str:
     import re  # takes longer to load than all else that a command line needs to begin
 
     return re.sub("\u2039([a-z]+)\u203a", r"--\1", message)
+
+
+def nearest(name: str, names: Iterable[str], most: int = 1) -> str:
+    """What comes nearest to a name that is not there, the nearest first.
+
+    Parameters
+    ----------
+    name
+        What somebody wrote.
+    names
+        All that there are, at least one.
+    most
+        How many of them are said.
+
+    >>> nearest("lenght", ["length", "repeats"])
+    'the nearest is length'
+    >>> nearest("lenght", ["length", "repeats", "strength"], 2)
+    'the nearest are length, strength'
+    """
+    import difflib  # like re
+
+    close = difflib.get_close_matches(name, names, most, cutoff=0.0)
+    return f"the nearest {'is' if len(close) == 1 else 'are'} {', '.join(close)}"
 
 
 def count(number: int, noun: str) -> str:

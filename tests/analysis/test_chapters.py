@@ -65,7 +65,7 @@ def test_sessions_of_all_kinds_together(sessions):
     study = load_study([sessions / name for name in ("read-P10", "compared", "read-P2")])
     results = analyse(study, Options())
     found = tables(results)
-    assert [section.title for section in results.sections] == [
+    assert [chapter.title for chapter in results.chapters] == [
         "Legibility",
         "Characters and strings",
         "Confusions",
@@ -85,9 +85,9 @@ def test_sessions_of_all_kinds_together(sessions):
     assert "numba" in about["Versions of compared, read-P2, read-P10"]
     assert about["Excluded"] == "nothing"
     assert any("no data about people" in warning for warning in results.warnings)
-    names = [picture.name for picture in results.pictures()]
+    names = [figure.name for figure in results.figures()]
     assert len(names) == len(set(names)) == 8
-    assert all(picture.table in found for picture in results.pictures())
+    assert all(figure.table in found for figure in results.figures())
 
 
 def test_durations_are_those_of_the_export(sessions):
@@ -165,7 +165,7 @@ def test_only_one_protocol(sessions):
     assert study.trials is None
     assert [sitting.head["protocol"] for sitting in study.sittings] == ["widths"]
     results = analyse(study, Options())
-    assert [section.title for section in results.sections] == ["Which of two was chosen"]
+    assert [chapter.title for chapter in results.chapters] == ["Which of two was chosen"]
     assert "protocols other than widths" in dict(results.about)["Excluded"]
     with pytest.raises(InputError, match="no protocol 'letters'"):
         load_study(paths, protocol="letters")
@@ -242,8 +242,8 @@ def test_scores(tmp_path):
     )
     scores, about = load_scores(path)
     results = analyse_scores(scores, about, Options(correction="holm"))
-    (section,) = results.sections
-    names = [table.name for table in section.tables]
+    (chapter,) = results.chapters
+    names = [table.name for table in chapter.tables]
     assert names == ["level_means", "level_scores", "t_tests", "anova"]
     told = dict(results.about)
     assert told["Excluded"] == "participant C, of the analysis of score: no 1"

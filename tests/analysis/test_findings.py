@@ -118,16 +118,16 @@ def test_characters_errors_and_runs(results):
 
 def test_the_main_figure_has_the_participants_points(results):
     assert results.main == "means_condition"
-    picture = results.main_picture()
-    (series,) = picture.chart.panels[0][1]
+    figure = results.main_figure()
+    (series,) = figure.chart.panels[0][1]
     own = [r for r in rows(results, "level_scores") if r["measure"] == "legibility of strings"]
     assert len(series.points) == 6
     assert sorted(100 * row["mean"] for row in own) == pytest.approx(
         sorted(value for points in series.points for value in points)
     )
-    assert "95 % interval" in picture.text
+    assert "95 % interval" in figure.text
     for name in ("dots", "errors"):
-        chart = next(p.chart for p in results.pictures() if p.name == name)
+        chart = next(p.chart for p in results.figures() if p.name == name)
         assert len(chart.panels[0][1][0].points) == 6
 
 
@@ -176,7 +176,7 @@ def test_choices_are_told_with_the_preferred_value():
     assert f"is {to_print(row['preferred'], Kind.NUMBER)} mm" in said
     assert "80 comparisons of 4 participants" in said
     assert results.main == "choices_dot_width_mm"
-    (series,) = results.main_picture().chart.panels[0][1]
+    (series,) = results.main_figure().chart.panels[0][1]
     assert len(series.points) == 4
 
 

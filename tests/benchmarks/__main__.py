@@ -1,4 +1,4 @@
-"""Print the README's table of speeds, or the parts of it that are named."""
+"""Print the table of speeds of docs/measured.md, or the parts of it that are named."""
 
 import sys
 from importlib import import_module

@@ -35,9 +35,10 @@ _SETTLED_S = 30.0
 _HISTOGRAM_US = 100_000
 _TRANSLATE = """
 from vbraille.layout.pages import Layout
-from vbraille.translate import Book, Document, Table
+from vbraille.translate import Book, BrailleTable, Document
 while True:
-    list(Layout(Book(Document.open("texts/english.txt"), Table("en-ueb-g2.ctb")), 26).lines())
+    document = Document.open("texts/english.txt")
+    list(Layout(Book(document, BrailleTable("en-ueb-g2.ctb")), 26).lines())
 """
 
 INFO = STRESS2.on(STRESS2.style.geometry)

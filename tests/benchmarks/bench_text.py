@@ -19,8 +19,8 @@ FIRST_PAGE = ("--lines", "1-25")
 _PAGE_THROUGH = """
 import resource, sys
 from vbraille.layout.pages import Layout
-from vbraille.translate import Book, Document, Table
-layout = Layout(Book(Document.open(sys.argv[1]), Table("en-ueb-g2.ctb")), 26)
+from vbraille.translate import Book, BrailleTable, Document
+layout = Layout(Book(Document.open(sys.argv[1]), BrailleTable("en-ueb-g2.ctb")), 26)
 lines = sum(1 for _ in layout.lines())
 print(lines, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
 """

@@ -14,8 +14,8 @@ from vbraille.devices.wire import messages
 from vbraille.devices.wire.codec import (
     CRC_RESIDUE,
     MOST_FRAME_BYTES,
+    BodyCodec,
     Decoder,
-    LevelPacking,
     Levels,
     encode,
     line_bytes,
@@ -24,7 +24,6 @@ from vbraille.devices.wire.fields import (
     Fixed,
     Number,
     OneOf,
-    OptionalNumber,
     PerActuator,
     Text,
     fields_of,
@@ -92,8 +91,8 @@ def example_of(message):
 def test_examples(code, message):
     example, body, crc, line = example_of(message)
     assert type(example) is message
-    assert LevelPacking(code, message).encode(example) == body
-    assert LevelPacking(code, message).decode(body) == example
+    assert BodyCodec(code, message).encode(example) == body
+    assert BodyCodec(code, message).decode(body) == example
     assert crc32(body).to_bytes(4, "little") == crc
     assert cobs.encode(body + crc) + b"\0" == line == encode(example)
     assert Decoder().feed(line) == [example]
@@ -101,10 +100,10 @@ def test_examples(code, message):
 
 def type_and_values(field):
     match field:
-        case OptionalNumber():
-            return TYPES[field.code], f"{field.low} … {field.high} {field.unit}, {field.none} none"
         case Number():
-            return TYPES[field.code], f"{field.low} … {field.high} {field.unit}".strip()
+            values = f"{field.low} … {field.high} {field.unit}".strip()
+            none = "" if field.none is None else f", {field.none} none"
+            return TYPES[field.code], values + none
         case OneOf():
             choices = [f"{int(choice)} {choice.name.lower()}" for choice in field.of]
             return TYPES[field.code], ", ".join(choices)

@@ -6,19 +6,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from vbraille.devices import open_device
-from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
+from vbraille.sessions import session as door
+from vbraille.sessions.beginning import head_of
+from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import parse_protocol
 from vbraille.sessions.record.events import to_json
-from vbraille.sessions.record.folder import FORMAT, check_end, create, load, versions
-from vbraille.sessions.record.journal import Journal
+from vbraille.sessions.record.folder import create
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.answers import Simulated
-from vbraille.sessions.running.console import Console
-from vbraille.sessions.running.course import Course
-from vbraille.sessions.running.showing import OnDevice
-from vbraille.simulation.steering import Steering
 
 MINI = """
 format = 1
@@ -53,6 +49,7 @@ string = "a"
 class Person:
     """Types each line when what was said last matches its pattern."""
 
+    name = "typed"
     script: list
     typed: bool = True
     felt: bool = False
@@ -78,6 +75,18 @@ class Person:
         return None
 
 
+class Played:
+    """Keeps the participant's signals."""
+
+    name = "none"
+
+    def __init__(self):
+        self.tones = []
+
+    def play(self, tone):
+        self.tones.append(tone)
+
+
 @dataclass
 class Sat:
     """What came of a sitting."""
@@ -86,29 +95,19 @@ class Sat:
     events: list
     played: list
     record: object
-    progress: object
-    course: object
+    progress: object  # as its journal has it
+    live: object  # as it was when the sitting ended
 
 
 class Session:
     """A session on the disk, sat at once or several times."""
 
-    def __init__(
-        self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150",
-        procedure=None,
-    ):  # fmt: skip
+    def __init__(self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150"):
         self.folder = folder
         self.protocol = parse_protocol(toml, "test")
         self.plan = make_plan(self.protocol, participant, seed)
-        self.hand = hand
-        self.procedure = procedure
-        head = {
-            "format": FORMAT, "protocol": self.protocol.name, "participant": participant,
-            "seed": seed, "order": self.plan.order, "model": self.protocol.model.name,
-            "fields": {}, "rate_hz": 1000.0, "answers": "typed", "fast": True,
-            "hand": hand, "device": "sim", "versions": versions(),
-        }  # fmt: skip
-        create(folder, self.protocol, self.plan, head)
+        conditions = Conditions(hand=hand, fast=True)
+        create(folder, self.protocol, self.plan, head_of(self.protocol, self.plan, {}, conditions))
 
     def person(self, *script):
         """A person who types these lines."""
@@ -116,45 +115,17 @@ class Session:
 
     def sit(self, *script, engine=BatchEngine, noise=0.0):
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
-        given = bool(script) and hasattr(script[0], "next")
-        person = script[0] if given else self.person(*script)
-        said, played = person.said, []
-        answers = person if script else Simulated(self.protocol, self.plan, noise)
-        model, display = self.protocol.model, None
-        if self.protocol.medium == "device":
-            array = model.display
-            info = Display(
-                "test", array.rows, array.columns, array.column_pitch_mm, array.row_pitch_mm,
-                1024, model.display.rest_side, 300.0, 200.0, 1000.0,
-            )  # fmt: skip
-            steering = Steering()
-            spec = f"sim:?hand={self.hand}&seed=1&steering={steering.descriptor}"
-            engine = engine(open_device(spec, info), poll_ticks=100)
-            engine.start()
-            display = OnDevice(
-                engine, self.protocol, self.folder, keeps=not script, steering=steering,
-                tie=lambda: journal.durable,
-            )  # fmt: skip
-        record = load(self.folder)
-        with Journal(self.folder) as journal:
-            check_end(self.folder, journal.told)
-            torn = journal.set_torn_aside()
-            progress = Progress(self.plan, journal.told.events, self.procedure)
-            course = Course(
-                self.protocol, self.plan, journal, progress, display, waits=answers.typed,
-                corrects=answers.typed, say=said.append, play=played.append,
-                real=display is None,
-            )  # fmt: skip
-            try:
-                source = "typed" if script else f"simulated:{noise:g}"
-                course.start(why="test", torn_bytes=torn, answers=source)
-                Console(course, answers, say=said.append, real=False).run()
-            finally:
-                if display is not None:
-                    display.close()
-        record = load(self.folder)
-        progress = Progress(self.plan, record.told.events, self.procedure)
-        return Sat(said, record.told.events, played, record, progress, course)
+        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
+        said, played = person.said, Played()
+        session = door.Session.resume(
+            self.folder,
+            fast=True,
+            engine=lambda spec, wanted: engine(open_device(spec, wanted), poll_ticks=100),
+        )
+        session.run(person if script else f"simulated:{noise:g}", say=said.append, sound=played)
+        record = session.record
+        progress = Progress(self.plan, record.told.events)
+        return Sat(said, record.told.events, played.tones, record, progress, session.progress)
 
 
 def crash(folder, size):

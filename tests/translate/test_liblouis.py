@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from tests.conftest import SEED
 from vbraille.errors import InputError
 from vbraille.translate import BrailleTable, Cells, Document
-from vbraille.translate.liblouis import nearest
 
 TABLES = ("en-ueb-g2.ctb", "fr-bfu-comp6.utb", "de-g2.ctb")
 # What Unicode calls ignorable: no text, but how other text is put.
@@ -94,7 +93,6 @@ class TestTable:
     def test_the_nearest_are_named(self):
         with pytest.raises(InputError, match=r"the nearest are en-ueb-g2\.ctb, en-ueb-g1\.ctb"):
             BrailleTable("en-ueb-g2")
-        assert nearest("fr-bfu-g3", ["fr-bfu-g2.ctb"]).startswith("; the nearest are fr-bfu-g2.ctb")
 
     def test_a_file_that_is_no_table(self, texts, capfd):
         with pytest.raises(InputError, match=r"liblouis cannot use .* as a braille table"):
@@ -225,7 +223,7 @@ THREADS = f"""
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
 
-from vbraille.translate import Document, Table
+from vbraille.translate import Document, BrailleTable
 
 NAMES = {TABLES!r}
 TEXT = "Words, numbers 123 and \\U0001f600 \\0 \\u0152uvre: " * 10
@@ -235,7 +233,7 @@ def work(n):
     start.wait()
     cells = []
     for m in range(6):
-        table = Table(NAMES[(n + m) % 3])
+        table = BrailleTable(NAMES[(n + m) % 3])
         paragraph = Document.from_text(TEXT * (1 + m % 4)).paragraph(0)
         cells.append((table.name, m, table.translate(paragraph).to_unicode()))
     return cells

@@ -83,17 +83,17 @@ def analyse(study: Study, options: Options) -> Results:
     InputError
         If the trials have no such factor.
     """
-    sections: list[Chapter] = []
+    chapters: list[Chapter] = []
     left_out = list(study.left_out)
     if study.trials is not None:
-        sections += _of_trials(study, study.trials, options, left_out)
+        chapters += _of_trials(study, study.trials, options, left_out)
     if study.comparisons is not None:
-        sections.append(_of_comparisons(study.comparisons, options))
+        chapters.append(_of_comparisons(study.comparisons, options))
     if any(sitting.notes for sitting in study.sittings):
         table = remarks.notes(study.sittings)
-        sections.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
+        chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
     about = (*study.about, *_excluded(left_out), *options.told())
-    return _told("Legibility sessions", about, study.warnings, sections)
+    return _told("Legibility sessions", about, study.warnings, chapters)
 
 
 def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Options) -> Results:
@@ -105,27 +105,27 @@ def analyse_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Op
         Where it comes from.
     """
     left_out: list[LeftOut] = []
-    section = _compared([scores], options, left_out)
+    chapter = _compared([scores], options, left_out)
     told = [pair for pair in options.told() if pair[0] != "Compared by"]
     compared = ("Compared by", ", ".join(scores.factors))
     head = (*about, *_excluded(left_out), compared, *told)
-    return _told("Scores", head, (), [section])
+    return _told("Scores", head, (), [chapter])
 
 
 def _told(
     title: str,
     about: Sequence[tuple[str, str]],
     warnings: Sequence[str],
-    sections: Sequence[Chapter],
+    chapters: Sequence[Chapter],
 ) -> Results:
     """Results with what was found in them, and the figure that shows it."""
-    told = findings(table for section in sections for table in section.tables)
-    names = [picture.name for section in sections for picture in section.pictures]
+    told = findings(table for chapter in chapters for table in chapter.tables)
+    names = [figure.name for chapter in chapters for figure in chapter.figures]
     main = next(
         (name for start in _MAIN for name in names if name.startswith(start)),
         names[0] if names else "",
     )
-    return Results(title, tuple(about), tuple(warnings), tuple(sections), told, main)
+    return Results(title, tuple(about), tuple(warnings), tuple(chapters), told, main)
 
 
 def _excluded(left_out: Sequence[LeftOut]) -> list[tuple[str, str]]:
@@ -164,15 +164,15 @@ def _characters(trials: Trials, places: Places) -> Chapter:
     by_dots = characters.dots(trials, places)
     own = characters.dots_of_participants(trials, places)
     tables = (characters.characters(trials, places), by_dots, own, characters.strings(trials))
-    pictures = (ofmeasures.dots(by_dots, own),) if by_dots.rows else ()
+    figures = (ofmeasures.dots(by_dots, own),) if by_dots.rows else ()
     return Chapter(
-        "Characters and strings", "What is easy to read, and what is not.", tables, pictures
+        "Characters and strings", "What is easy to read, and what is not.", tables, figures
     )
 
 
 def _confusions(trials: Trials, places: Places, options: Options) -> Chapter:
     tables: list[ResultTable] = [confusion.transmitted(trials, places, seed=options.seed)]
-    pictures: list[ReportFigure] = []
+    figures: list[ReportFigure] = []
     for counts, schema, reason in (
         (
             confusion.of_characters(places),
@@ -189,14 +189,14 @@ def _confusions(trials: Trials, places: Places, options: Options) -> Chapter:
             tables.append(schema.fill([], [reason]))
         else:
             tables.append(confusion.to_table(counts, places, options.marks))
-            pictures.append(matrices.confusion(tables[-1]))
-    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(pictures))
+            figures.append(matrices.confusion(tables[-1]))
+    return Chapter("Confusions", "What was taken for what.", tuple(tables), tuple(figures))
 
 
 def _errors(trials: Trials, places: Places) -> Chapter:
     table, own = doterrors.errors(places), doterrors.of_participants(trials, places)
-    pictures = (ofmeasures.errors(table, own),) if table.rows else ()
-    return Chapter("Errors", "What is wrong with wrong answers.", (table, own), pictures)
+    figures = (ofmeasures.errors(table, own),) if table.rows else ()
+    return Chapter("Errors", "What is wrong with wrong answers.", (table, own), figures)
 
 
 def _over_time(trials: Trials) -> Chapter:

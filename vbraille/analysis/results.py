@@ -47,14 +47,14 @@ class Chapter:
         Its heading.
     text
         What it is about: a sentence or two.
-    tables, pictures
-        In the order in which they are shown: a picture stands after the tables.
+    tables, figures
+        In the order in which they are shown: a figure stands after the tables.
     """
 
     title: str
     text: str
     tables: tuple[ResultTable, ...]
-    pictures: tuple[ReportFigure, ...] = ()
+    figures: tuple[ReportFigure, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,40 +69,40 @@ class Results:
         What was analysed, as pairs of a word and a sentence: data, sessions, versions, rules.
     warnings
         What the reader must know before all numbers: damage, what is simulated.
-    sections
+    chapters
         In their order.
     findings
         What was found, in sentences.
     main
-        Name of the picture that is shown beside these; empty for none.
+        Name of the figure that is shown beside these; empty for none.
 
     Raises
     ------
     ValueError
-        If there is no such picture.
+        If there is no such figure.
     """
 
     title: str
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
-    sections: tuple[Chapter, ...]
+    chapters: tuple[Chapter, ...]
     findings: tuple[str, ...] = ()
     main: str = ""
 
     def __post_init__(self) -> None:
-        if self.main and self.main not in {picture.name for picture in self.pictures()}:
-            raise ValueError(f"there is no picture {self.main} to stand first")
+        if self.main and self.main not in {figure.name for figure in self.figures()}:
+            raise ValueError(f"there is no figure {self.main} to stand first")
 
-    def main_picture(self) -> ReportFigure | None:
-        """The picture that stands first; None if none does."""
-        return next((picture for picture in self.pictures() if picture.name == self.main), None)
+    def main_figure(self) -> ReportFigure | None:
+        """The figure that stands first; None if none does."""
+        return next((figure for figure in self.figures() if figure.name == self.main), None)
 
     def tables(self) -> Iterator[ResultTable]:
         """All tables, in the order of the report."""
-        for section in self.sections:
-            yield from section.tables
+        for chapter in self.chapters:
+            yield from chapter.tables
 
-    def pictures(self) -> Iterator[ReportFigure]:
-        """All pictures, in the order of the report."""
-        for section in self.sections:
-            yield from section.pictures
+    def figures(self) -> Iterator[ReportFigure]:
+        """All figures, in the order of the report."""
+        for chapter in self.chapters:
+            yield from chapter.figures

@@ -1,6 +1,6 @@
 """Where the dots of a line stand on the virtual surface.
 
-Lengths are millimetres, x grows to the reader's right, and x = 0 is the left
+Lengths are in millimetres, x grows to the reader's right, and x = 0 is the left
 edge of the line's first cell, which is the left edge of its left dot column.
 """
 
@@ -28,16 +28,16 @@ class Geometry:
     dot_width_mm
         Width of a dot along x, twice its radius.
     dot_spacing_mm
-        From the centre of a cell's left dot column to that of its right one.
+        Distance from the centre of a cell's left dot column to that of its right one.
     cell_gap_mm
-        From the right dot column of a cell to the left one of the next.
+        Distance from the right dot column of a cell to the left one of the next.
     row_spacing_mm
-        Between the centres of neighbouring dot rows.
+        Distance between the centres of neighbouring dot rows.
     line_pitch_mm
-        Between the first dot rows of neighbouring lines.
+        Distance between the first dot rows of neighbouring lines.
     travel_mm
-        How far the carriage goes. The source gives none for the two sliders:
-        the 300 mm of the presets are ours.
+        How far the carriage goes. Lévesque 2009 gives none for the two sliders; the
+        300 mm of the presets are our choice.
 
     Raises
     ------
@@ -67,22 +67,22 @@ class Geometry:
 
     @property
     def cell_pitch_mm(self) -> float:
-        """From a dot column of one cell to the same column of the next."""
+        """Distance from a dot column of one cell to the same column of the next."""
         return self.dot_spacing_mm + self.cell_gap_mm
 
     def extent_mm(self, cells: int) -> float:
-        """Right edge of the last dot column of a line of so many cells; 0 for none."""
+        """Tell where the last dot column of a line of so many cells ends; 0 for no cells."""
         if cells == 0:
             return 0.0
         return (cells - 1) * self.cell_pitch_mm + self.dot_spacing_mm + self.dot_width_mm
 
     def cells_per_line(self, span_mm: float) -> int:
-        """Cells that an array of the given span can cross whole within the travel.
+        """Count the cells that an array of the given span can cross whole within the travel.
 
         Raises
         ------
         ValueError
-            If there is not even room for one.
+            If there is no room for a single cell.
         """
         room = self.travel_mm - span_mm - self.dot_width_mm - self.dot_spacing_mm
         # 1e-9: a travel given for exactly n cells must not lose one to rounding.
@@ -95,8 +95,8 @@ class Geometry:
         return 1 + math.floor(room / self.cell_pitch_mm + 1e-9)
 
 
-# Lévesque 2009, 3.3: tuned width and spacing; the character pitch is 6 mm scaled by 4.0 / 2.29,
-# and so is the line pitch (10 mm embossed), which is ours: the device shows one row of dots.
+# Lévesque 2009, 3.3: tuned width and spacing; the character pitch is 6 mm scaled by 4.0 / 2.29.
+# The line pitch is our choice, 10 mm scaled likewise: the device shows one row of dots.
 VBD = Geometry(
     dot_width_mm=2.0,
     dot_spacing_mm=4.0,
@@ -104,7 +104,7 @@ VBD = Geometry(
     row_spacing_mm=4.0,
     line_pitch_mm=17.5,
 )
-# Lévesque 2009, 4.2; the line pitch, 1.4 × the embossed as its dot rows are, is ours.
+# Lévesque 2009, 4.2; the line pitch is our choice, 1.4 × that on paper, as for the dot rows.
 STRESS2 = Geometry(
     dot_width_mm=2.6,
     dot_spacing_mm=3.7,
@@ -112,7 +112,7 @@ STRESS2 = Geometry(
     row_spacing_mm=3.6,
     line_pitch_mm=14.0,
 )
-# Embossed paper: distances as in Lévesque 2009 (2.29 and 3.71 mm); the rest are common values.
+# Embossed paper: 2.29 and 3.71 mm as in Lévesque 2009; the others are common values.
 STANDARD = Geometry(
     dot_width_mm=1.5,
     dot_spacing_mm=2.29,

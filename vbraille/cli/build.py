@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
-from vbraille.cli.unknown import Unknown
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
+from vbraille.layout.unknown import Unknown
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table, six_dot_table
 from vbraille.wording import printable, spelled
@@ -85,7 +85,7 @@ class Page:
         """Say at the end how many characters the table does not know, if there were any."""
         sentence = self.unknown.sentence
         if sentence is not None:
-            print(printable(sentence), file=sys.stderr, flush=True)
+            print(printable(spelled(sentence)), file=sys.stderr, flush=True)
 
 
 def build_lengths(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.serial.steady import Actuators
+    from vbraille.devices.lent import Lent
     from vbraille.display import Display
     from vbraille.pose import Pose
 
@@ -49,38 +49,6 @@ class Particulars:
     largest_slew_per_s: float
     disabled: tuple[tuple[int, int], ...]
     inverted: tuple[tuple[int, int], ...]
-
-
-class Lent(NamedTuple):
-    """What a device lends to the engine, which then does its steady ticks in compiled code.
-
-    Parameters
-    ----------
-    descriptor
-        The descriptor of the device's open line, which does not block.
-    begun
-        Bytes that `received` begins with: a part of a message.
-    received, work, out : uint8[bytes]
-        What has come; room to work in, and for a message that goes out.
-    talk, actuators
-        Numbers of the conversation, as of `vbraille.devices.serial.steady`.
-    """
-
-    descriptor: int
-    begun: int
-    received: NDArray[np.uint8]
-    work: NDArray[np.uint8]
-    out: NDArray[np.uint8]
-    talk: NDArray[np.void]
-    actuators: Actuators
-
-
-class Placing(IntEnum):
-    """What a device waits for before it knows where its carriage is."""
-
-    DONE = 0  # nothing: it knows
-    MARK = 1  # the reader moves the carriage over the encoder's mark
-    STOP = 2  # the reader moves it to the left stop and presses a key: `Device.set_zero`
 
 
 class Device(ABC):

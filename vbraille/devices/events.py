@@ -7,12 +7,19 @@ tells as a `Notice`.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, fields, replace
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final
-
-from vbraille.devices.base import Placing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Mapping
+
+
+class Placing(IntEnum):
+    """What a device waits for before it knows where its carriage is."""
+
+    DONE = 0  # nothing: it knows
+    MARK = 1  # the reader moves the carriage over the encoder's mark
+    STOP = 2  # the reader moves it to the left stop and presses a key: `Device.set_zero`
 
 
 @dataclass(frozen=True, slots=True)

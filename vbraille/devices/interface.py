@@ -6,8 +6,8 @@ import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
-from vbraille.devices.base import Device, Particulars, Placing
-from vbraille.devices.events import is_known
+from vbraille.devices.base import Device, Particulars
+from vbraille.devices.events import Placing, is_known
 
 # What a member is given, where it is given anything.
 _ARGUMENTS = {"write": 1, "_send": 1}

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 GROUP = "vbraille.devices"
 # By how much a device's pitch may differ from the page's.
 PITCH_TOLERANCE = 0.01
+# Counts and micrometres are rounded on their way here.
+TRAVEL_TOLERANCE_MM = 0.01
 
 _log = logging.getLogger(__name__)
 
@@ -125,6 +127,16 @@ def check_actuators(info: Display, wanted: Display) -> None:
                 f"the {what} of {info.name} are {pitch_mm:g} mm apart and the page is for "
                 f"{wanted_mm:g} mm; choose another {setting('model')} or {setting('device')}"
             )
+
+
+def check_travel(display: Display, travel_mm: float) -> None:
+    """Raise InputError if a page needs more travel than a device's carriage has."""
+    if travel_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
+        raise InputError(
+            f"the carriage of {display.name} goes {display.travel_mm:g} mm and "
+            f"{setting('travel')} asks for {travel_mm:g} mm; leave {setting('travel')} out, or "
+            f"give {display.travel_mm:g} or less"
+        )
 
 
 def _check_rate(info: Display, rate_hz: float) -> None:

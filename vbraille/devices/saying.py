@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import singledispatch
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import Placing
 from vbraille.devices.events import (
     Back,
     Button,
@@ -18,6 +17,7 @@ from vbraille.devices.events import (
     Notice,
     NotInTime,
     Placed,
+    Placing,
     Silent,
     Stranger,
     Unplugged,

@@ -22,7 +22,7 @@ class EndOfLine:
     Parameters
     ----------
     span_mm
-        From the array's left column to its right one.
+        Distance from the array's left column to its right one.
     end_mm
         Right edge of the line's last dot.
     """
@@ -33,7 +33,7 @@ class EndOfLine:
         self._home_mm = HOME_MM - span_mm / 2
 
     def find(self, x_mm: NDArray[np.float64]) -> int | None:
-        """First of these places, float64[n], that ends the line; None if none does."""
+        """Find the first of these places, float64[n], that ends the line; None if none does."""
         start = 0
         if not self.reached:
             at_end = np.flatnonzero(x_mm >= self._end_mm)

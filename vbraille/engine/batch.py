@@ -1,7 +1,7 @@
-"""The loop's ticks by the block, for simulated hands: as fast as the machine can.
+"""The loop's ticks, done many at a time for simulated hands, as fast as the machine can.
 
-What `LocalEngine` does on a clock that is turned by hand, by the same compiled function, for many
-ticks at a time. No tick of it is late, and no pose missing.
+`BatchEngine` does what `LocalEngine` does on a clock that is turned by hand, by the same compiled
+function. None of its ticks is late, and none lacks a pose.
 """
 
 from __future__ import annotations
@@ -34,38 +34,38 @@ if TYPE_CHECKING:
 
 
 class BatchEngine:
-    """An `Engine` that does all ticks of a poll at once. A context manager.
+    """An `Engine` that does all ticks of a poll at once; it is a context manager.
 
     Parameters
     ----------
     device
-        Opened, and closed by whoever opened it. It lives by the engine's clock
-        from now on.
+        An open device, which is left to whoever opened it to close. From now on it goes by the
+        engine's clock.
     rate_hz
         Ticks a second.
     poll_ticks
-        Ticks done by each poll. A poll in which the hand comes to its end is
-        over with that tick, so that nothing runs on with a hand that is done.
+        How many ticks each poll does. A poll in which the hand comes to its end stops with that
+        tick, so that nothing is recorded of a hand that is done.
 
     Attributes
     ----------
     device : SimulatedDevice
         The device; it is sent the last frame of each poll only.
     newest : record or None
-        The last tick polled.
+        Record of the last tick polled.
     tally : Tally
-        What was done so far.
+        Counts of what was done so far.
     counts : dict[str, int]
-        What went wrong with the device: nothing.
+        Counts of what went wrong with the device; always empty.
     lost : int
-        Ticks that were never polled: none.
+        Number of ticks that were never polled; always 0.
 
     Raises
     ------
     InputError
-        If the device has no hand that reads lines when it is told to.
+        If the device has no hand that can be told to read a line.
     ValueError
-        If the rate is not 1 to 10,000 Hz, a poll does nothing, or the hand is not steered.
+        If the rate is not 1 to 10,000 Hz, ``poll_ticks`` is below 1, or the hand is not steered.
     """
 
     def __init__(self, device: Device, rate_hz: float = 1000.0, poll_ticks: int = 1000) -> None:
@@ -92,7 +92,7 @@ class BatchEngine:
 
     @property
     def display(self) -> Display:
-        """What the device says of itself."""
+        """The actuators and the carriage of the device."""
         return self.device.display
 
     @property
@@ -114,7 +114,7 @@ class BatchEngine:
         self._state.want(picture, line)
 
     def take_events(self) -> Sequence[Event]:
-        """What there is to tell since the last call."""
+        """Take the events since the last call."""
         return [*self.device.take_events(), *self._state.take_events()]
 
     def set_zero(self) -> None:
@@ -122,7 +122,7 @@ class BatchEngine:
         self.device.set_zero()
 
     def poll(self) -> NDArray[np.void]:
-        """Do some ticks; their records, `vbraille.engine.record.tick_dtype`[n]."""
+        """Do some ticks; return their records, `vbraille.engine.record.tick_dtype`[n]."""
         first = self.tally.ticks
         due_ns = (first + np.arange(self._poll_ticks)) * self._period_ns
         self._clock.sleep_until_ns(int(due_ns[0]))
@@ -143,13 +143,13 @@ class BatchEngine:
         return ticks
 
     def start(self) -> None:
-        """Nothing: its ticks are the polls."""
+        """Do nothing: ticks are done by `poll` alone."""
 
     def close(self) -> None:
-        """Nothing: whoever opened the device closes it."""
+        """Do nothing: whoever opened the device closes it."""
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Nothing, as `close`."""
+        """Do nothing, as `close` does."""

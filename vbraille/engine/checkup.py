@@ -1,4 +1,4 @@
-"""What a builder wants to know of a device: actuators, rate, clock, place, round trip, watchdog."""
+"""Measurements of a device for its builder: actuators, rate, clock, place, round trip, watchdog."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from vbraille.engine.clock import Clock
 
 NS_PER_S = 1_000_000_000
-SWING_S = 0.25  # of one actuator, out and back
-_MOST_SWINGS = 8  # of one actuator of a device that goes to rest again and again
-_PATIENCE_S = 0.25  # with a frame that is never acknowledged
+SWING_S = 0.25  # time of one actuator's swing, out and back
+_MOST_SWINGS = 8  # as long as so many swings for one actuator, if the device keeps going to rest
+_PATIENCE_S = 0.25  # time until a frame counts as never acknowledged
 _LOOK_NS = 50_000
 # How far the actuators go, and how long they take, before a watchdog is left without frames.
 _HELD = 0.3
@@ -35,18 +35,18 @@ _TRIP_PATIENCE_S = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """How a rate was held.
+    """How well a device held a rate of frames.
 
     Parameters
     ----------
     ticks, late
-        Done, and missed.
+        How many ticks were done, and how many came too late.
     work_us
-        Read, render and write: median and 99 %.
+        Time that a tick took to read, render and write, in µs: median and 99th percentile.
     clock_s
         Seconds that the device's clock goes on in one second of the computer's.
     x_mm
-        Where the array's centre was: leftmost and rightmost.
+        Leftmost and rightmost place of the array's centre.
     """
 
     ticks: int
@@ -57,10 +57,10 @@ class Rate:
 
 
 def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
-    """Swing one actuator after the other, out and back without a jump; rows and columns from 0.
+    """Swing one actuator after the other, out and back without a jump.
 
-    Each is yielded before it swings, so that it can be said. Those that the device says are
-    disabled are left out.
+    The row and column of each, from 0, are yielded before it swings, so that they can be said.
+    Actuators that the device reports as disabled are left out.
 
     Raises
     ------
@@ -83,7 +83,8 @@ def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
             due_ns += round(NS_PER_S / info.rate_hz)
             clock.sleep_until_ns(due_ns)
             device.read()
-            if device.taking != taking:  # it has gone to rest, or leaves it: by no jump
+            if device.taking != taking:
+                # It has gone to rest, or leaves it: begin again from rest, so that nothing jumps.
                 taking, step = device.taking, 0
                 frame[row, column] = 0.0
             device.write(frame)
@@ -135,10 +136,10 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
 
 
 def _clock_s(ticks: NDArray[np.void]) -> float:
-    """How far the device's clock goes in a second of ours; not a number if it was never told.
+    """How far the device's clock goes in a second of the computer's; NaN if it never told a time.
 
-    What its clock is ahead of ours, in the first third and in the last: medians, for samples
-    that came late, as after a stall, say less.
+    Compares how far the device's clock is ahead in the first third of the samples and in the last.
+    Medians are taken, so that samples which came late, as after a stall, weigh little.
     """
     third = ticks.size // 3
     if not third:
@@ -155,7 +156,7 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
     Returns
     -------
     float64[n]
-        As many as were acknowledged; none if the device does not do that.
+        One time for each frame acknowledged; empty if the device acknowledges none.
 
     Raises
     ------
@@ -178,15 +179,15 @@ def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float
 
 
 def trip_ms(device: Device, clock: Clock) -> float | None:
-    """Leave a device without frames, its actuators a bit off their rest, till its watchdog trips.
+    """Send nothing, with the actuators a little off their rest, until the device's watchdog trips.
 
     Afterwards the actuators are at rest and frames are sent again.
 
     Returns
     -------
     float or None
-        From the last frame until the device has said that it tripped, in ms; None if it did not
-        within half a second, or does not say such a thing.
+        Time from the last frame until the device said that the watchdog tripped, in ms; None if
+        it said so not within half a second, or never does.
 
     Raises
     ------
@@ -204,7 +205,7 @@ def trip_ms(device: Device, clock: Clock) -> float | None:
         clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
         device.read()
     taken_ms = (clock.now_ns() - last_ns) / 1e6
-    clock.sleep_until_ns(clock.now_ns() + round(_HOLD_S * NS_PER_S))  # its ramp to rest
+    clock.sleep_until_ns(clock.now_ns() + round(_HOLD_S * NS_PER_S))  # wait while it ramps to rest
     _move(device, clock, 0.0, 0.0)
     return taken_ms
 
@@ -224,7 +225,7 @@ def _move(device: Device, clock: Clock, from_: float, to: float) -> None:
 
 
 def _begin(device: Device, clock: Clock, frame: NDArray[np.float64]) -> None:
-    """Send rest until the device takes frames, or patience is over."""
+    """Send rest until the device takes frames, or until that has taken too long."""
     give_up_ns = clock.now_ns() + round(_PATIENCE_S * NS_PER_S)
     while not device.taking and clock.now_ns() < give_up_ns:
         device.write(frame)

@@ -1,11 +1,11 @@
-"""Clocks: the machine's, and one that tests and fast runs turn by hand."""
+"""Clocks: the machine's, and one that tests and fast runs turn on themselves."""
 
 from __future__ import annotations
 
 import time
 from typing import Protocol
 
-# What Python takes to come back from a sleep: so much earlier it is woken.
+# Python takes so long to come back from a sleep, and is woken so much earlier.
 _RETURN_NS = 6_000
 
 

@@ -1,11 +1,11 @@
-"""What drives a device for a program, in a process of its own or not."""
+"""What every engine offers: a loop that drives a device, in a process of its own or in this one."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Protocol
 
-from vbraille.devices.base import Placing
+from vbraille.devices.events import Placing
 from vbraille.engine.record import Flag
 
 if TYPE_CHECKING:
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 class Engine(Protocol):
-    """A loop with its device, for those who give it lines and watch it."""
+    """A loop with its device, as seen by whoever gives it lines to show and watches it."""
 
     @property
     def display(self) -> Display:
-        """What the device says of itself."""
+        """The actuators and the carriage of the device."""
         ...
 
     @property
     def tally(self) -> Tally:
-        """What the loop has done, as far as it was polled."""
+        """Counts of what the loop has done, up to the last poll."""
         ...
 
     @property
@@ -59,7 +59,12 @@ class Engine(Protocol):
         ...
 
     def poll(self) -> NDArray[np.void]:
-        """Records of all ticks since the last poll; `vbraille.engine.record.tick_dtype`[n].
+        """Take the records of all ticks since the last poll.
+
+        Returns
+        -------
+        record[n]
+            Records of `vbraille.engine.record.tick_dtype`, oldest first.
 
         Raises
         ------
@@ -69,7 +74,7 @@ class Engine(Protocol):
         ...
 
     def take_events(self) -> Sequence[Event]:
-        """What the device and the engine have to tell since the last call."""
+        """Take the events of the device and the engine since the last call."""
         ...
 
     def set_zero(self) -> None:
@@ -78,14 +83,14 @@ class Engine(Protocol):
 
 
 def place_of(tick: np.void | None) -> float | None:
-    """Where the array's centre was in a record; None if that was not known."""
+    """Tell where the array's centre was in a record; None if that was not known."""
     if tick is None or math.isnan(tick["x_mm"]):
         return None
     return float(tick["x_mm"])
 
 
 def placing_of(tick: np.void | None) -> Placing:
-    """What the device waited for in a record."""
+    """Tell how the device was waiting to be shown its place, from a record."""
     flags = 0 if tick is None else int(tick["flags"])
     if flags & Flag.STOP:
         return Placing.STOP

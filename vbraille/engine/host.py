@@ -44,15 +44,17 @@ class HostDiedError(VbrailleError):
 
 
 class Host:
-    """An `Engine` whose loop no other work of the program holds up. A context manager.
+    """An `Engine` whose loop has a process of its own; it is a context manager.
+
+    No other work of the program can hold up such a loop.
 
     Parameters
     ----------
     device
-        Spec, as of `vbraille.devices.open_device`.
+        The device's spec, as `vbraille.devices.open_device` takes it.
     wanted
-        The actuators, travel and rate that the page was laid out for. With no room given they are
-        a wish, which a simulated device fulfils; a real one is what it is.
+        The actuators, travel and rate that the page was laid out for. If ``room`` is None they
+        are a wish, which a simulated device fulfils and a real one need not.
     room
         Bytes of the largest picture; None if pictures are made for the device that is found:
         `open` it, then tell `fit`, then `start`.
@@ -62,11 +64,11 @@ class Host:
     Attributes
     ----------
     newest : record or None
-        The last tick polled.
+        Record of the last tick polled.
     counts : dict[str, int]
-        What went wrong with the device, by name; known after `close`.
+        Counts of what went wrong with the device, by name; known after `close`.
     lost : int
-        Ticks that were never polled: the parent was away for too long.
+        Number of ticks that were never polled, because the parent was away for too long.
     """
 
     def __init__(
@@ -87,7 +89,7 @@ class Host:
         self._info: Display | None = None
         self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
-        self._descriptor: int | None = None  # of memory that nobody has a view of yet
+        self._descriptor: int | None = None  # shared memory that is not mapped here yet
         self._mailbox: Mailbox | None = None
         self._ring: RingReader | None = None
         self._shown: tuple[Program, int] | None = None
@@ -100,7 +102,7 @@ class Host:
         self._launched = self._ready = False
 
     def open(self) -> Display:
-        """Start the process, and wait until it has opened the device: what that is like.
+        """Start the process, wait until it has opened the device, and tell what that device is.
 
         The device is read, and sent nothing, until `start`.
 
@@ -118,7 +120,7 @@ class Host:
         return self._info
 
     def fit(self, display: Display, room: int) -> None:
-        """Have pictures of so many bytes at most, for a device that is as this says."""
+        """Say how many bytes a picture may take at most, and what the device must be."""
         self._wanted = replace(display, rate_hz=self._wanted.rate_hz)
         self._room = room
         if self._launched:
@@ -140,7 +142,7 @@ class Host:
             self._posted.post(*self._shown)
 
     def launch(self) -> None:
-        """Start the process and wait for nothing: `start` does, when there is no more to do.
+        """Start the process without waiting for it; `start` waits, once other work is done.
 
         The system ends the process with the thread that calls this.
         """
@@ -171,7 +173,7 @@ class Host:
             self._share()
 
     def _share(self) -> None:
-        """Share memory for lines and records, now that it is known how much."""
+        """Share memory for pictures and records, whose size is known by now."""
         assert self._descriptor is not None
         assert self._room is not None
         wanted = self._wanted
@@ -183,35 +185,35 @@ class Host:
         self._tell(**asdict(extent))
 
     def _tell(self, **what: object) -> None:
-        """Tell the host something on its standard input, in a line."""
+        """Send the host a line on its standard input."""
         assert self._process is not None
         assert self._process.stdin is not None
-        with suppress(BrokenPipeError):  # it has ended, and says why
+        with suppress(BrokenPipeError):  # the host has ended, and `_hear` will tell why
             self._process.stdin.write(json.dumps(what).encode() + b"\n")
             self._process.stdin.flush()
 
     @property
     def _posted(self) -> Mailbox:
-        """Where orders go, once started."""
+        """The mailbox to which orders go; there is one once the host is started."""
         if self._mailbox is None:
             raise DeviceError("no device is open; start the host first")
         return self._mailbox
 
     @property
     def process_id(self) -> int | None:
-        """The host process."""
+        """Number of the host process."""
         return None if self._process is None else self._process.pid
 
     @property
     def display(self) -> Display:
-        """What the device says of itself; known once started."""
+        """The actuators and the carriage of the device; known once the host is started."""
         if self._info is None:
             raise DeviceError("no device is open; start the host first")
         return self._info
 
     @property
     def tally(self) -> Tally:
-        """What its loops have done, as far as they were polled."""
+        """Counts of what the loops have done, up to the last poll, over all starts of the host."""
         return self._before if self.newest is None else self._before + Tally.of(self.newest)
 
     @property
@@ -250,7 +252,7 @@ class Host:
         Raises
         ------
         VbrailleError
-            If the loop has ended: the device's fault, or `HostDiedError`.
+            If the loop has ended: the fault of the device, or `HostDiedError`.
         """
         alive = self._hear()
         if self._ring is None:
@@ -264,7 +266,7 @@ class Host:
         return ticks
 
     def take_events(self) -> Sequence[Event]:
-        """What the device and its host have to tell since the last call."""
+        """Take the events of the device and its host since the last call."""
         events, self._events = self._events, []
         return events
 
@@ -277,7 +279,7 @@ class Host:
             self._mailbox.stop()
         if process.stdin is not None:
             with suppress(BrokenPipeError):
-                process.stdin.close()  # one that waits to be told more ends, too
+                process.stdin.close()  # a host that still waits to be told more ends by this, too
         code = self._reap()
         _log.info("process %d has ended: exit code %d", process.pid, code)
         while self._hear():
@@ -288,7 +290,7 @@ class Host:
         self._forget_memory()
 
     def _forget_memory(self) -> None:
-        self._mailbox = self._ring = None  # whose memory holds a descriptor
+        self._mailbox = self._ring = None  # the view of shared memory holds a descriptor
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
@@ -310,19 +312,20 @@ class Host:
         return self._process.stdout.fileno()
 
     def _wait(self) -> None:
-        """Wait for an answer, for a moment; raise why there is no host if it has ended."""
+        """Wait a moment for an answer; if the host has ended, raise the reason."""
         select.select((self._answers(),), (), (), _LOOK_S)
         if not self._hear():
             raise self._end()
 
     def _hear(self) -> bool:
-        """Take the host's answers; whether more may come.
+        """Take the host's answers; tell whether more may come.
 
-        None come once the process has ended and all that it said was read: somebody else, whom
-        a driver started, may hold the other end of the pipe for as long as he likes.
+        No more come once the process has ended and all that it said was read, even if the pipe is
+        still open: a program that a driver started may hold its other end.
         """
         assert self._process is not None
-        ended = self._process.poll() is not None  # asked first: whatever it said is there then
+        # Asked before reading: all that a process said which has ended is there by then.
+        ended = self._process.poll() is not None
         try:
             said = os.read(self._answers(), 1 << 16)
         except BlockingIOError:
@@ -333,7 +336,7 @@ class Host:
         return bool(said)
 
     def _reap(self) -> int:
-        """Wait for the process's end, and bring it about if it takes too long; its exit code."""
+        """Wait for the process to end, kill it if that takes too long, and return its exit code."""
         assert self._process is not None
         try:
             return self._process.wait(_END_S)
@@ -353,9 +356,10 @@ class Host:
         self.counts = answer.get("counts", self.counts)
 
     def _end(self) -> VbrailleError:
-        """Why there is no host any more."""
+        """The reason why there is no host any more."""
         code = self._reap()
-        fault, self._fault = self._fault, None  # kept, it would keep all that raises it
+        # An exception that is kept would keep all frames of its traceback alive.
+        fault, self._fault = self._fault, None
         if fault is not None:
             return fault
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"

@@ -66,7 +66,7 @@ _log = logging.getLogger("vbraille.engine.hosted")  # it runs as __main__
 
 
 class Channel:
-    """The way to the parent, which is this process's standard output until it is taken."""
+    """The line to the parent: this process's standard output, which nobody else gets."""
 
     def __init__(self) -> None:
         # Neither a driver nor a program that it starts may get at it; 0 to 2 are not for it.
@@ -78,13 +78,13 @@ class Channel:
         sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False, errors="backslashreplace")
 
     def say(self, **said: Any) -> None:
-        """Say something to the parent; what it has no room for is lost."""
+        """Send the parent a line; one that the pipe has no room for is lost."""
         if said.get("fault"):
             said["fault"] = str(said["fault"])[:_MOST_SAID]
         self._write(json.dumps(said).encode())
 
     def tell(self, event: Event) -> None:
-        """Tell the parent of an event, with as much of its texts as there is room for."""
+        """Send the parent an event, its texts cut to what there is room for."""
         line = b""
         for most in (_MOST_SAID, _MOST_OF_SEVERAL):
             line = json.dumps({"event": to_json(shortened(event, most))}).encode()
@@ -97,21 +97,21 @@ class Channel:
             os.write(self._descriptor, line + b"\n")
 
     def never_wait(self) -> None:
-        """Wait for no room from now on."""
+        """From now on lose a line rather than wait for room."""
         os.set_blocking(self._descriptor, False)
 
 
 class Hosted:
-    """The loop of a host process, as its mailbox says.
+    """The loop of a host process, which does what its mailbox says.
 
     Parameters
     ----------
     loop
-        To run.
+        The loop to run.
     mailbox
-        What is to be done.
+        Where the parent says what to show.
     parent
-        Process that must live.
+        Number of the parent's process; the loop ends when that does.
     """
 
     def __init__(self, loop: Loop, mailbox: Mailbox, parent: int) -> None:
@@ -123,23 +123,23 @@ class Hosted:
         self._taken = 0
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
-        """Take a signal: end after this tick."""
+        """Handle a signal: the loop ends after this tick."""
         self._ended = True
 
     @property
     def wanted(self) -> bool:
-        """Whether to go on: told to by nobody else, and the parent lives."""
+        """Whether to go on: nobody has said to stop, and the parent lives."""
         return not (self._ended or self._mailbox.stopped) and os.getppid() == self._parent
 
     def run(self) -> None:
-        """Do what is new in the mailbox, then some ticks."""
+        """Do what is new in the mailbox, then some ticks, until it is time to end."""
         mailbox, loop = self._mailbox, self.loop
-        # Looked at first: what comes in the meantime is new to the ticks.
+        # Looked at before the mailbox: what comes meanwhile ends the ticks that follow.
         mailbox.obeyed[:] = mailbox.orders
         if mailbox.published != self._taken:
             posted = mailbox.take()
             if posted is None:
-                mailbox.obeyed[:] = -1  # to be looked at again, a tick later
+                mailbox.obeyed[:] = -1  # look at it again, a tick later
             else:
                 self._taken = posted.number
                 loop.show(posted.program, posted.line)
@@ -152,7 +152,7 @@ class Hosted:
 
 
 def warm_up(info: Display, extent: shared.Extent) -> None:
-    """Compile and run once all that a tick calls, on a device and a clock of no consequence."""
+    """Compile and run once all that a tick calls, on a device in memory and a manual clock."""
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
         mailbox, ring = shared.divide(memoryview(bytearray(extent.total_bytes)), extent)
@@ -166,7 +166,7 @@ def warm_up(info: Display, extent: shared.Extent) -> None:
 
 
 def rehearse(device: Device, rate_hz: float) -> None:
-    """Call once all that a driver does in a tick; the array rests meanwhile."""
+    """Call once everything that a tick calls of a driver; the array rests meanwhile."""
     loop = Loop(device, RealClock(), rate_hz=rate_hz)
     for _ in range(max(2, round(_REHEARSAL_S * rate_hz))):
         loop.tick()
@@ -185,17 +185,17 @@ def end_after(parent: int) -> None:
     library = ctypes.CDLL(None)
     library.signal(int(signal.SIGQUIT), library.alarm)
     library.prctl(_PR_SET_PDEATHSIG, int(signal.SIGQUIT))
-    if os.getppid() != parent:  # it was gone before that
+    if os.getppid() != parent:  # the parent was gone before that
         signal.raise_signal(signal.SIGQUIT)
 
 
 def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
-    """Tell the parent what a loop and its device tell, the same once a second.
+    """Tell the parent the events of a loop and its device; equal ones at most once a second.
 
     Raises
     ------
     DeviceError
-        If a driver tells what is no event.
+        If a driver tells something that is no event.
     """
     now_ns = loop.clock.now_ns()
     for event in loop.take_events():
@@ -211,14 +211,14 @@ def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
 
 
 def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
-    """Next line of the parent's; what the device says meanwhile is taken, and not used."""
+    """Wait for the parent's next line; poses that the device sends meanwhile are dropped."""
     while not select.select([orders], [], [], 1 / rate_hz)[0]:
         device.read()
     return orders.readline()
 
 
 def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
-    """Open the device, drive it until it is enough, and rest it.
+    """Open the device, drive it until the parent has had enough, and bring it to rest.
 
     Raises
     ------
@@ -238,7 +238,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         channel.say(opened=asdict(device.display))
         told = wait_for_line(orders, device, wanted.rate_hz)
         if not told:
-            return  # nobody wants it any more
+            return  # the parent has gone, or given up
         extent = shared.Extent(**json.loads(told))
         mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
         os.close(descriptor)
@@ -268,14 +268,14 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
 
 
 def main() -> int:
-    """Run as the child of a program that reads what is answered."""
+    """Run as the child of the program that reads the answers."""
     # Keys of the terminal and its end are the parent's to hear: a host that stopped with its parent
     # would leave the actuators where they are.
     for number in _PARENT_S:
         signal.signal(number, signal.SIG_IGN)
     channel = Channel()
     try:
-        # Without a buffer, to be waited for.
+        # Without a buffer, so that waiting for the descriptor misses no line.
         with FileIO(sys.stdin.fileno(), closefd=False) as orders:
             run(orders, int(sys.argv[1]), channel)
     except VbrailleError as error:

@@ -27,13 +27,13 @@ class LocalEngine:
     Parameters
     ----------
     device
-        Opened, and closed by whoever opened it.
+        An open device, which is left to whoever opened it to close.
     clock
-        When ticks are due.
+        The clock by which ticks are due.
     rate_hz
         Ticks a second.
     poll_ticks
-        Ticks done by each poll.
+        How many ticks each poll does.
     """
 
     def __init__(
@@ -46,12 +46,12 @@ class LocalEngine:
 
     @property
     def display(self) -> Display:
-        """What the device says of itself."""
+        """The actuators and the carriage of the device."""
         return self.loop.device.display
 
     @property
     def tally(self) -> Tally:
-        """What the loop has done."""
+        """Counts of what the loop has done."""
         return self.loop.tally
 
     @property
@@ -73,14 +73,14 @@ class LocalEngine:
         self.loop.show(picture, line)
 
     def poll(self) -> NDArray[np.void]:
-        """Do some ticks; their records."""
+        """Do some ticks; return their records."""
         for _ in range(self._poll_ticks):
             self.loop.tick()
         self.loop.ring.publish()
         return self._reader.drain()
 
     def take_events(self) -> Sequence[Event]:
-        """What there is to tell since the last call."""
+        """Take the events since the last call."""
         return self.loop.take_events()
 
     def set_zero(self) -> None:

@@ -20,20 +20,21 @@ from vbraille.pose import Pose
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device, Lent
+    from vbraille.devices.base import Device
     from vbraille.devices.events import Event
+    from vbraille.devices.lent import Lent
     from vbraille.engine.clock import Clock
     from vbraille.engine.mailbox import Mailbox
     from vbraille.render.program import Program
 
-# By plain numbers: a flag of an enumeration takes a microsecond to join.
+# Plain numbers, since joining flags of an enumeration takes a microsecond.
 _HELD = int(Flag.HELD)
-# How often compiled ticks are left to look for signals, for the parent and for events.
+# How often compiled ticks are interrupted to look for signals, for the parent and for events.
 _LOOK_S = 0.02
 _SAME_RATE = 0.01
-# A STATE may have a tick begin by so much of a period before or after its deadline.
+# A STATE may begin a tick up to a period, divided by this, before or after its deadline.
 _GUARD = 4
-_PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # by `Placing`
+_PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # the flag for each `Placing`
 
 
 class Loop:
@@ -42,10 +43,10 @@ class Loop:
     Parameters
     ----------
     device
-        Opened; the loop writes rest before it lets go of it, and leaves closing
-        to whoever opened it.
+        An open device. The loop writes rest before it lets go of it, and leaves closing to
+        whoever opened it.
     clock
-        When ticks are due.
+        The clock by which ticks are due.
     rate_hz
         Ticks a second.
     fade_s
@@ -53,15 +54,15 @@ class Loop:
     idle_s
         How long without motion before the array goes to rest.
     ring
-        Where to record every tick; one of the last tick alone if it is not given.
+        Where to record every tick; if it is not given, only the last tick is kept.
 
     Attributes
     ----------
     state : State
-        What a tick knows from those before it.
+        What a tick knows from the ticks before it.
     late, overruns : int
-        Deadlines that passed before their tick could begin, and ticks whose own work took longer
-        than a period.
+        Number of deadlines that passed before their tick could begin, and of ticks whose own work
+        took longer than a period.
 
     Raises
     ------
@@ -101,13 +102,16 @@ class Loop:
         self._told = np.zeros(serialtick.TOLD, np.int64)
         self._told[serialtick.MOST] = max(1, round(_LOOK_S * rate_hz))
         self._told[serialtick.PERIOD] = self._period_ns
-        # A device that tells its place as often as there are ticks has each begin with that.
+        # Where a device tells its place as often as there are ticks, each STATE begins a tick.
         same = abs(display.rate_hz - rate_hz) <= _SAME_RATE * rate_hz
         self._told[serialtick.GUARD] = self._period_ns // _GUARD if same else 0
         self._silence = np.zeros(1, np.int64), np.zeros(1, np.int64)
 
     def show(self, program: Program | None, line: int = 0) -> None:
-        """Put something else under the hand; it fades in. None is rest. Records tell the line."""
+        """Put another picture under the hand; it fades in.
+
+        None stands for rest. ``line`` is the number by which records call it.
+        """
         self.state.want(program, line)
 
     @property
@@ -123,7 +127,7 @@ class Loop:
 
     @property
     def tally(self) -> Tally:
-        """What happened so far."""
+        """Counts of what happened so far."""
         now = self.state.now
         return Tally(
             ticks=int(now["tick"]),
@@ -148,14 +152,14 @@ class Loop:
         return not self.output.any()
 
     def take_events(self) -> list[Event]:
-        """What the device and the picture have to tell since the last call."""
+        """Take the events of the device and of the picture since the last call."""
         return [*self.device.take_events(), *self.state.take_events()]
 
     def run(self, mailbox: Mailbox | None = None) -> None:
         """Do some ticks, until the mailbox says something new or it is time to look around.
 
-        They are done by compiled code as long as the device lends itself to that; whatever is not
-        steady is a tick of Python's.
+        Compiled code does them for a device that lends its numbers (`Device.lend`), as long as
+        nothing unusual happens; a tick in which something does is done in Python.
 
         Raises
         ------
@@ -181,7 +185,7 @@ class Loop:
         self._tick(now_ns, now_ns - self._deadline_ns, None)
 
     def _tick(self, now_ns: int, lateness_ns: int, taken: Pose | None) -> None:
-        """Do the tick that woke now; a pose may have been taken for it."""
+        """Do the tick that has just begun; its pose may have been read already."""
         busy_ns = self.clock.busy_ns()
         device, ring = self.device, self.ring
         times_ns, pose = self._times_ns, self._poses[0]
@@ -205,7 +209,7 @@ class Loop:
         self._finish(slot, now_ns, lateness_ns, done_ns)
 
     def _finish(self, slot: int, now_ns: int, lateness_ns: int, done_ns: int) -> None:
-        """Say of a tick when it was done, and when the next is due."""
+        """Record when a tick was done, and set when the next one is due."""
         # Deadlines stand where the start put them; one that has passed is counted, never chased.
         self._deadline_ns += self._period_ns
         behind_ns = done_ns - self._deadline_ns
@@ -236,7 +240,7 @@ class Loop:
         )
 
     def _run_steadily(self, lent: Lent, mailbox: Mailbox | None) -> None:
-        """Do ticks in compiled code, and in Python the one that it leaves to it."""
+        """Do ticks in compiled code, and in Python the one that compiled code stopped at."""
         told, ring = self._told, self.ring
         told[serialtick.DESCRIPTOR], told[serialtick.HELD] = lent.descriptor, lent.begun
         told[serialtick.DEADLINE], told[serialtick.APPENDED] = self._deadline_ns, ring.appended
@@ -268,7 +272,7 @@ class Loop:
             self.tick()
 
     def load(self) -> None:
-        """Load, or compile, what steady ticks are done by; no tick is done."""
+        """Load or compile the code of steady ticks, without doing one."""
         told, silence = np.zeros(serialtick.TOLD, np.int64), np.zeros(1, np.int64)
         self.state.run_steadily(
             told,
@@ -281,13 +285,13 @@ class Loop:
         )
 
     def restart_clock(self) -> None:
-        """Let the next tick be due now: the time before it was not the loop's."""
+        """Make the next tick due now, after a time in which the loop did not run."""
         self._deadline_ns = self.clock.now_ns()
 
     def fade_to_rest(self) -> None:
         """Bring every actuator to rest, over the usual time.
 
-        Asks the device for nothing: it may be the carriage that has failed.
+        The device is not read meanwhile: its carriage may be what has failed.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What the loop is to do, in memory that another process writes.
+"""What the loop is to show, in memory that another process writes.
 
 One side posts, the other looks each tick; neither waits for the other. Programs
 go into two slots in turn, each with a checksum: one that is in the writing, or
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
 
 _PUBLISHED, _PAUSED, _ZEROED, _STOPPED = range(4)
 _HEADER_BYTES = 64
-# Of a slot, as words of 8 bytes; then come the program's numbers, and its table.
+# The words of 8 bytes that a slot begins with; the program's numbers and its table follow.
 _CHECKSUM, _NUMBER, _LINE, _NUMBERS, _WORDS = range(5)
 _SLOT_WORDS = 5
 
 
 class Posted(NamedTuple):
-    """A picture out of the mailbox, in memory of its own.
+    """A picture that was taken from the mailbox, in memory of its own.
 
     Parameters
     ----------
     number
-        How many were posted with it.
+        How many pictures had been posted with this one.
     line
-        What records call it.
+        The number by which records call it.
     program
-        What it compiles to.
+        The compiled picture.
     """
 
     number: int
@@ -54,9 +54,9 @@ class Mailbox:
     """
 
     def __init__(self, buffer: memoryview, room: int) -> None:
-        # A view of numpy's takes three times as long to look at.
+        # A memoryview, since looking at a numpy array takes three times as long.
         self._words = buffer[:_HEADER_BYTES].cast("q")
-        # The same words, for compiled code to compare with what they were when last obeyed.
+        # The same words as an array: compiled code compares them with those last obeyed.
         self.orders = np.frombuffer(buffer, np.int64, _HEADER_BYTES // 8)
         self.obeyed = np.zeros(self.orders.size, np.int64)
         slot_bytes = _slot_bytes(room)
@@ -97,7 +97,7 @@ class Mailbox:
         self._words[_PUBLISHED] = number
 
     def take(self) -> Posted | None:
-        """Copy of the last picture posted; None if it is not whole, and to be tried again."""
+        """Copy the last picture posted; None if it is not whole, in which case try again later."""
         number = self.published
         slot = self._slots[number % 2].copy()
         words = slot[: _SLOT_WORDS * 8].view(np.int64)
@@ -124,7 +124,7 @@ class Mailbox:
         return self._words[_ZEROED]
 
     def zero(self) -> None:
-        """Say so."""
+        """Say that the carriage is at the left stop."""
         self._words[_ZEROED] += 1
 
     @property
@@ -144,12 +144,12 @@ def _slot_bytes(room: int) -> int:
 def _parts(
     slot: NDArray[np.uint8], numbers: int, table: int
 ) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
-    """Numbers and table of the program in a slot."""
+    """Views of a slot that hold the numbers and the table of its program."""
     start = _SLOT_WORDS * 8
     middle = start + numbers * 8
     return slot[start:middle].view(np.float64), slot[middle : middle + table * 2].view(np.uint16)
 
 
 def _checksum(slot: NDArray[np.uint8], size: int) -> int:
-    """Checksum of a slot whose program has so many bytes, without the checksum itself."""
+    """Checksum of all that a slot holds but the checksum; the program has so many bytes."""
     return crc32(slot[8 : _SLOT_WORDS * 8 + size].data)

@@ -1,4 +1,4 @@
-"""Being first in line for the processor, as far as the system allows it."""
+"""Priority for the thread that drives actuators, as far as the system allows it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def go_real_time() -> NotInTime | None:
     Returns
     -------
     NotInTime or None
-        What of it the system does not allow; None if it allows it.
+        What the system does not allow; None if it allows everything.
     """
     gc.collect()
     gc.freeze()
@@ -40,7 +40,7 @@ def go_real_time() -> NotInTime | None:
 
 
 def _keep_awake() -> None:
-    """Keep processors out of the sleep that takes them long to wake from, until we end."""
+    """Keep processors from deep sleep, from which they wake slowly, while this process lives."""
     with suppress(OSError):
         descriptor = os.open("/dev/cpu_dma_latency", os.O_WRONLY)
         os.write(descriptor, bytes(4))  # µs; it holds as long as the descriptor is open
@@ -48,6 +48,6 @@ def _keep_awake() -> None:
 
 def _lock_memory() -> bool:
     if os.geteuid() != 0 and resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] != -1:
-        # What is there might just fit; what comes then would be refused, and memory run out.
+        # What is locked now might just fit; later allocations would then fail for want of room.
         return False
     return ctypes.CDLL(None).mlockall(_MCL_CURRENT | _MCL_FUTURE) == 0

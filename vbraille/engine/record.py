@@ -1,4 +1,4 @@
-"""What is recorded of a tick, and where each number of it stands.
+"""The record of a tick, and where each of its numbers stands.
 
 A record is the same in the ring's memory, in a block of ticks and in the compiled code: whole
 numbers, then numbers, then the frame. Columns of either kind are told apart by their place, so
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 INTS = (
-    "tick",  # from 0
+    "tick",  # number of the tick, from 0
     "time_ns",  # when the tick woke, by the host's monotonic clock
-    "device_ns",  # of the pose, by the device's clock
+    "device_ns",  # when the pose was taken, by the device's clock
     "lateness_ns",  # from the deadline to the waking
     "work_ns",  # from waking until the frame was written
     "late",  # deadlines missed so far
     "overruns",  # ticks so far whose own work took longer than a period
     "line",  # number of what is under the hand; 0 before the first
-    "part",  # which part of it, of a picture that has several: a page's line, from 0
-    "flags",  # of `Flag`
+    "part",  # which part of the picture is shown, such as the line of a page, from 0
+    "flags",  # bits of `Flag`
 )
 FLOATS = (
     "x_mm",  # the array's centre on the canvas; NaN before the first pose
@@ -43,7 +43,7 @@ X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE = range(len(FLOATS))
 
 
 class Flag(IntFlag):
-    """What else is true of a tick."""
+    """Remarks on a tick, as bits."""
 
     PAUSED = 1
     SILENT = 2  # the device has given no pose for a while
@@ -58,7 +58,7 @@ class Flag(IntFlag):
 
 
 def tick_dtype(shape: tuple[int, int]) -> np.dtype:
-    """One record: the numbers of a tick, and the frame that it sent, float32[rows, columns]."""
+    """Describe one record: the numbers of a tick, and its frame, float32[rows, columns]."""
     numbers = [(name, "<i8") for name in INTS] + [(name, "<f8") for name in FLOATS]
     return np.dtype([*numbers, ("frame", "<f4", shape)], align=True)
 
@@ -66,12 +66,12 @@ def tick_dtype(shape: tuple[int, int]) -> np.dtype:
 def columns_of(
     records: NDArray[np.void],
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]]:
-    """The whole numbers, the numbers and the frames of records, as views for compiled code.
+    """Views of records for compiled code: the whole numbers, the numbers and the frames.
 
     Returns
     -------
     int64[n, INTS], float64[n, FLOATS], float32[n, rows, columns]
-        Views of the records' memory; one kind of array each, whatever the frame's shape.
+        Views of the records' memory; their types do not depend on the frame's shape.
     """
     step = records.itemsize
     assert records.dtype.fields is not None

@@ -30,7 +30,7 @@ class Ring:
     shape
         Rows and columns of a frame.
     size
-        Ticks held.
+        How many ticks it holds.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Ring:
 
     @classmethod
     def alone(cls, shape: tuple[int, int], size: int) -> Self:
-        """A ring in memory of its own."""
+        """Make a ring in memory of its own."""
         return cls(memoryview(bytearray(cls.bytes_needed(shape, size))), shape, size)
 
     @staticmethod
@@ -64,7 +64,7 @@ class Ring:
         return self.appended % self.size
 
     def end(self, count: int = 1) -> None:
-        """End a record, or so many that were filled one after the other."""
+        """End a record, or several that were filled one after the other."""
         self.appended += count
 
     def publish(self) -> None:
@@ -72,20 +72,20 @@ class Ring:
         self.published[0] = self.appended
 
     def reader(self) -> RingReader:
-        """A reader of what comes from now on, in this process."""
+        """Make a reader of the records from now on, in this process."""
         return RingReader(self._buffer, self._shape, self.size)
 
 
 class RingReader:
     """A reader's end; there may be many on one memory, in this process and in others.
 
-    It begins with the newest record that is there when it joins; one that joins before the
-    writer's first sees all.
+    It begins with the newest record that is there when it joins; a reader that joins before the
+    first record sees all.
 
     Parameters
     ----------
     buffer, shape, size
-        Those that the writer's end was made with. The memory may be read-only.
+        What the writer's end was made with. The memory may be read-only.
 
     Attributes
     ----------
@@ -103,11 +103,11 @@ class RingReader:
         self.cursor = max(self._published[0] - 1, 0)
 
     def drain(self) -> NDArray[np.void]:
-        """Records since the last call, oldest first: copies, of `tick_dtype`."""
+        """Copy the records since the last call, oldest first; `tick_dtype`[n]."""
         end = self._published[0]
         first = max(self.cursor, end - self._size)
         ticks = self._records[np.arange(first, end) % self._size]
-        # The slot after the last published one may be in the writing.
+        # The slot after the last published one may just be written.
         whole = min(max(first, self._published[0] + 1 - self._size), end)
         self.lost += whole - self.cursor
         self.cursor = end

@@ -2,9 +2,9 @@
 
 It waits for a STATE, with the deadline as the fallback; takes it, advances, makes the FRAME, writes
 it and fills the record, with the same functions that `Loop.tick` and `SerialDevice` come to:
-`vbraille.devices.serial.steady` and `vbraille.engine.ticks`. Whatever is anything else ends it: an
-order in the mailbox, a signal, bytes that are no STATE, a rest, a fault. What it had received is
-then given to Python, which does that tick.
+`vbraille.devices.serial.steady` and `vbraille.engine.ticks`. Anything else ends it: an order
+in the mailbox, a signal, bytes that are no STATE, a rest, a fault. Python then gets what had been
+received, and does that tick.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from vbraille.devices.serial import steady
 from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
 from vbraille.engine.ticks import POSE_X, POSED, advance
 
-# Why it ended, beside that the ticks asked for are done.
+# Reasons why it ended, apart from DONE.
 DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
-# What it is told and tells, in whole numbers.
+# Places of the whole numbers that it is told, and that it tells.
 (
     DESCRIPTOR,
     MOST,  # ticks to do
-    DEADLINE,  # of the next tick, ns
-    PERIOD,  # of the ticks, ns
+    DEADLINE,  # deadline of the next tick, ns
+    PERIOD,  # period of the ticks, ns
     GUARD,  # how much before or after its deadline a STATE may have a tick begin, ns
     HELD,  # bytes received and not consumed
     APPENDED,  # records filled so far
@@ -39,7 +39,7 @@ DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
     WRITTEN,  # bytes that went out of a FRAME that was torn
     SIZE,  # bytes of that FRAME
 ) = range(15)
-TOLD = 15  # numbers, in all
+TOLD = 15  # how many numbers there are in all
 _EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
 
 
@@ -54,7 +54,7 @@ def _changed(orders, known):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _receive(told, received, now, talk, work):
-    """Read what has come and take its STATEs; how many there were, and why it is not all well."""
+    """Read what has come and take its STATEs; return their number, and a reason to stop, if any."""
     size = libc.read(told[DESCRIPTOR], received, told[HELD])
     if size in (_EAGAIN, _EINTR):
         return 0, DONE
@@ -72,10 +72,10 @@ def _receive(told, received, now, talk, work):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _wait(told, received, talk, work):
-    """Wait for a tick to begin; when it woke, how many STATEs came, and why there is none.
+    """Wait for a tick to begin; return when it woke, how many STATEs came, and a reason to stop.
 
-    With a guard, a STATE that comes about the deadline has the tick begin; one that comes before
-    is taken, and waits for it. Without one, the tick begins at its deadline.
+    With a guard, the time about the deadline in which a STATE may begin the tick, a STATE that
+    comes earlier is taken and waits. Without a guard the tick begins at its deadline.
     """
     earliest, last = told[DEADLINE] - told[GUARD], told[DEADLINE] + told[GUARD]
     states = 0
@@ -136,37 +136,37 @@ def run(
     floats,
     frames,
 ):
-    """Do ticks until there is something for Python to do; why that is.
+    """Do ticks until there is something for Python to do; return the reason.
 
     Parameters
     ----------
     told : int64[TOLD]
-        What it is told and tells, by the names above.
+        What this function is told and what it tells, each at the place named above.
     orders, known : int64[8]
-        Words of the mailbox, and what they were when they were last obeyed.
+        Words of the mailbox, and their values when they were last obeyed.
     received : uint8[bytes]
-        What was received and not consumed, at its beginning; room for more.
+        Bytes that were received and not consumed come first; the rest is room for more.
     work, out : uint8[bytes]
         Room to work in, and for a FRAME as it goes over the line.
     talks, actuators
-        The conversation, an array of one record, and what FRAMEs are made with; see
+        The state of the conversation, an array of one record, and how FRAMEs are made; see
         `vbraille.devices.serial.steady`.
     state and on
-        See `vbraille.engine.ticks.advance`; the last three are a ring's, and ``published``
+        See `vbraille.engine.ticks.advance`; the last three belong to a ring, and ``published``
         tells its readers how many records there are.
 
     Returns
     -------
     int64
-        DONE, or why a tick is left to Python: ORDERS or a signal; UNSTEADY, for what was received
-        is not for here; NOWHERE, for the array cannot be where it is said to be; UNMADE, for the
-        FRAME is still to be made or written; TORN, for a part of it went out, which is no tick that
-        is left; GONE, for the line is.
+        DONE, or the reason why a tick is left to Python: ORDERS if there is an order or a signal;
+        UNSTEADY if what was received is more than STATEs; NOWHERE if the array cannot be where it
+        is said to be; UNMADE if the FRAME is still to be made or written; GONE if the line is
+        gone. TORN, after a FRAME that went out in part, leaves no tick: that one is done.
     """
     size = ints.shape[0]
     talk = talks[0]
     for _ in range(told[MOST]):
-        told[WOKEN] = 0  # of a tick that has not begun yet
+        told[WOKEN] = 0  # the tick has not begun yet
         if _changed(orders, known):
             return ORDERS
         now, states, why = _wait(told, received, talk, work)
@@ -181,7 +181,7 @@ def run(
         poses[0, POSE_X] = talk.x_mm
         if why != DONE:
             return why
-        # Where nothing came at all, nothing was taken, and so nobody has minded these two.
+        # Taking a STATE looks after these two; where nothing came, they are looked after here.
         if steady.stalled(talk, now) or steady.silent(talk, now):
             return UNSTEADY
         slot = told[APPENDED] % size

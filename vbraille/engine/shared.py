@@ -18,16 +18,16 @@ RING_S = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """How much there is to share.
+    """What decides how much memory is shared.
 
     Parameters
     ----------
     rows, columns
-        Of the array.
+        Shape of the array.
     room
         Bytes of the largest picture.
     ticks
-        That the ring holds.
+        How many ticks the ring holds.
     """
 
     rows: int
@@ -37,12 +37,12 @@ class Extent:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """Rows and columns of the array."""
         return self.rows, self.columns
 
     @property
     def mailbox_bytes(self) -> int:
-        """Where the ring begins."""
+        """Size of the mailbox, behind which the ring begins."""
         return Mailbox.bytes_needed(self.room)
 
     @property
@@ -52,24 +52,24 @@ class Extent:
 
 
 def create() -> int:
-    """Make the memory, empty as yet; its descriptor."""
+    """Make the memory, which is empty as yet; return its descriptor."""
     return os.memfd_create("vbraille")
 
 
 def attach(descriptor: int, extent: Extent) -> memoryview:
-    """The memory of a descriptor, which may be closed then; the first to attach makes room."""
+    """Map the memory of a descriptor, which may be closed then; the first to attach makes room."""
     if os.fstat(descriptor).st_size < extent.total_bytes:
         os.ftruncate(descriptor, extent.total_bytes)
     return memoryview(mmap.mmap(descriptor, extent.total_bytes))
 
 
 def divide(memory: memoryview, extent: Extent) -> tuple[Mailbox, Ring]:
-    """The two that are in it, for the process whose loop takes orders and records ticks."""
+    """Mailbox and ring of the memory, for the process whose loop takes orders and records ticks."""
     mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
     return mailbox, Ring(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)
 
 
 def watch(memory: memoryview, extent: Extent) -> tuple[Mailbox, RingReader]:
-    """The two that are in it, for whoever gives orders and reads records; there may be several."""
+    """Mailbox and a reader of the ring, for whoever gives orders; others may watch, too."""
     mailbox = Mailbox(memory[: extent.mailbox_bytes], extent.room)
     return mailbox, RingReader(memory[extent.mailbox_bytes :], extent.shape, extent.ticks)

@@ -24,8 +24,8 @@ from vbraille.render.program import nothing, scratch_for
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Lent
     from vbraille.devices.events import Event
+    from vbraille.devices.lent import Lent
     from vbraille.display import Display
     from vbraille.engine.ring import Ring
     from vbraille.render.program import Program
@@ -70,16 +70,16 @@ _STATE = np.dtype(
 
 
 class LoopState:
-    """What one loop knows, and the blocks of ticks that are done with it.
+    """What one loop knows from tick to tick, and the compiled ticks that work on it.
 
     Parameters
     ----------
     display
-        What is driven.
+        The actuators and the carriage that are driven.
     rate_hz
         Ticks a second, 1 to 10,000.
     now_ns
-        When it begins, by the clock of its ticks.
+        Time at which it begins, by the clock of its ticks.
     fade_s
         How long a change takes that the hand did not cause.
     idle_s
@@ -90,7 +90,7 @@ class LoopState:
     Attributes
     ----------
     now : record
-        The numbers.
+        The numbers that a tick knows, by the names below.
     output : float64[rows, columns]
         The frame last made.
 
@@ -137,7 +137,7 @@ class LoopState:
         self._exposures = 0  # that were told
 
     def want(self, program: Program | None, line: int) -> None:
-        """Have something else under the hand from the next tick on; it fades in. None is rest.
+        """Put another picture under the hand from the next tick on; it fades in. None is rest.
 
         Raises
         ------
@@ -160,19 +160,19 @@ class LoopState:
         return bool(self.now["paused"])
 
     def pause(self, paused: bool, now_ns: int) -> None:
-        """Have the array rest, or go on, from the next tick on."""
+        """Let the array rest, or go on, from the next tick on."""
         self.now["paused"] = paused
         self.now["moved_ns"] = now_ns
         self.now["begun"] = self.now["exhausted"] = 0
 
     def take_events(self) -> list[Event]:
-        """What there is to tell since the last call: that a picture was felt for long enough."""
+        """Take the events since the last call: that a picture was felt for long enough."""
         told, self._exposures = self._exposures, int(self.now["exposures"])
         limit_s = float(self._program.numbers[work.EXPOSURE])
         return [Exposed(limit_s)] * (self._exposures - told)
 
     def fade(self, share: float) -> None:
-        """Make a frame on the way from the one that `hold` kept to rest."""
+        """Make a frame between the one that `hold` kept and rest."""
         self._target.fill(0.0)
         blend(self._held, self._target, share, self.output)
 
@@ -182,7 +182,7 @@ class LoopState:
 
     @property
     def _arrays(self) -> _Eleven:
-        """What compiled code needs of what is known and wanted, in its order."""
+        """The arrays that compiled code takes, in its order."""
         return (
             self._numbers,
             self._window_ns,
@@ -206,7 +206,7 @@ class LoopState:
         columns: tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float32]],
         first: int = 0,
     ) -> int:
-        """Do ticks; how many were done; see `vbraille.engine.ticks.advance`."""
+        """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
         return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
 
     def run_steadily(
@@ -219,7 +219,7 @@ class LoopState:
         poses: NDArray[np.float64],
         ring: Ring,
     ) -> int:
-        """Do ticks of a device that is lent; see `vbraille.engine.serialtick.run`."""
+        """Do ticks of a device that lends its numbers; see `vbraille.engine.serialtick.run`."""
         return serialtick.run(
             told,
             orders,

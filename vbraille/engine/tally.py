@@ -1,4 +1,4 @@
-"""What a loop has done, counted."""
+"""Counts of what a loop has done."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Tally:
-    """What happened so far.
+    """What happened so far, in numbers.
 
     Parameters
     ----------
     ticks, late
-        Ticks done, and deadlines that passed before their tick could begin.
+        Number of ticks done, and of deadlines that passed before their tick could begin.
     overruns
-        Ticks whose own work took longer than a period.
+        Number of ticks whose own work took longer than a period.
     forward_mm, forward_s
-        Way to the right, and the time that it took.
+        How far the hand went to the right in all, and how long that took.
     """
 
     ticks: int = 0
@@ -36,7 +36,7 @@ class Tally:
 
     @classmethod
     def of(cls, tick: np.void) -> Self:
-        """From a record of the ring."""
+        """Make a tally from a record of the ring."""
         return cls(
             ticks=int(tick["tick"]) + 1,
             late=int(tick["late"]),
@@ -46,7 +46,7 @@ class Tally:
         )
 
     def __add__(self, other: Tally) -> Tally:
-        """Both together."""
+        """Add two tallies."""
         return Tally(
             self.ticks + other.ticks,
             self.late + other.late,

@@ -47,7 +47,7 @@ from vbraille.render.kernels import blend, frame, part_of
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
 _EXPOSED = int(Flag.EXPOSED)
-# What a tick is given, a row of float64 each; times are whole and fit.
+# What a tick is given, each a row of float64; times are whole numbers that fit into one.
 (POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
 _NOWHERE_MM = 1e6
 
@@ -58,7 +58,7 @@ _compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def add_velocity(state, window_ns, window_mm, velocities, time_ns, x_mm, y_mm):
     """Take one more pose into the velocity: Lévesque 2009, eqs. 9.4 and 9.5.
 
-    Differences over 10 poses, and their mean over the last 50, of each component. Before the
+    The velocity is the mean of the last 50 differences over 10 poses, in x, y and θ. Before the
     first pose, and before a gap or a step back in time, the hand is taken to have stood still.
     """
     now = state[0]
@@ -110,16 +110,16 @@ def _change(state, fade_ns, output, held):
 
 @_compiled
 def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose, output, held):
-    """Take where the array is; whether it can be there."""
+    """Take the pose of a tick; tell whether the array can be there."""
     now = state[0]
     x, y, theta = pose[POSE_X], pose[POSE_Y], pose[POSE_THETA]
-    # Each by itself: a NaN is not below anything, but the greatest of several may hide it.
+    # Each is compared by itself: a NaN fails every comparison, but `max` may hide it.
     if not (abs(x) < _NOWHERE_MM and abs(y) < _NOWHERE_MM):
         return False
     if not REACH_MM * abs(theta) < _NOWHERE_MM:
         return False
     if now["free_y"] == 0:
-        y = 0.0  # a slider's is the picture's own
+        y = 0.0  # a slider has no y: it stands at the picture's own
     if now["placed"] == 0:
         now["placed"] = 1
         now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
@@ -129,7 +129,7 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
         elapsed_s = max(now_ns - now["sampled_ns"], now["period_ns"]) / NS_PER_S
         turn_mm = REACH_MM * abs(theta - now["theta_rad"])
         if max(abs(step), abs(y - now["y_mm"]), turn_mm) > JUMP_MM_S * elapsed_s:
-            # No hand is so fast: a carriage that was lost and found again.
+            # No hand is so fast: the carriage was lost and found again.
             forget_velocity(state, velocities)
             _change(state, now["fade_ns"], output, held)
         elif step > 0:
@@ -164,7 +164,7 @@ def _wanted(state, now_ns, taking, numbers):
 
 @_compiled
 def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
-    """What is shown in this tick, and how far it has faded in."""
+    """Decide what is shown in this tick, and how far it has faded in."""
     now = state[0]
     if rested != now["rested"]:
         now["rested"] = rested
@@ -199,7 +199,7 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
 def _show(flags, share, part, numbers, table, scratch, at, output, held, target):
     """Make the frame of a tick from the one before it.
 
-    The first tick of a change still sends what was there, the last one all of the new.
+    The first tick of a change still sends the old frame, the last one the new one alone.
     """
     if flags & _RESTED:
         output[:] = 0.0
@@ -237,26 +237,26 @@ def advance(
     frames,
     first,
 ):
-    """Do ticks; how many were done. It stops before one whose pose cannot be.
+    """Do ticks and return how many; it stops before one whose pose is not possible.
 
     Parameters
     ----------
     state, window_ns, window_mm, velocities, output, held, target, at
-        What is known from earlier ticks, and room to work in; `vbraille.engine.state.State` has it.
+        What is known from earlier ticks, and room to work in: `vbraille.engine.state.LoopState`.
     numbers, table, scratch
         The program that is wanted under the hand.
     times_ns : int64[n, 2]
         When each tick woke, and the device's time of its pose.
     poses : float64[n, 4]
-        1 where there is a pose, its x, y and θ.
+        A row for each tick: 1 if it has a pose and 0 if not, then x and y in mm and θ in rad.
     rested : int
         How often the device has gone to rest by itself.
     taking : bool
         Whether frames reach the actuators.
     ints, floats, frames
-        Records, by `vbraille.engine.record`.
+        The records to fill, as `vbraille.engine.record.columns_of` gives them.
     first : int
-        The record of the first of these ticks; those after the last go on from the first record.
+        Which record takes the first tick; after the last record, record 0 is next.
     """
     now = state[0]
     size = ints.shape[0]
@@ -344,7 +344,7 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
     numbers, table, scratch
         The program that was wanted under the hand.
     ints, floats
-        Records; their part, flags, pose, velocity, time and share are looked at.
+        The records, of which part, flags, pose, velocity, time and share are used.
     at : float64[6]
         Room for what a frame is evaluated at.
     output, held, target : float64[rows, columns]
@@ -358,7 +358,7 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
         at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
         flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
         _show(flags, share, part, numbers, table, scratch, at, output, held, target)
-        if flags & _HELD:  # the loop goes on from what it wrote, and nothing of it was done
+        if flags & _HELD:  # the actuators rested, though the loop goes on from its frame
             frames[n] = 0.0
         else:
             frames[n] = output

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import io
-import os
 import re
 import warnings
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matplotlib import rc_context, style
 
 from vbraille.errors import InputError
+from vbraille.files import whole_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -91,14 +91,10 @@ def save(figure: Figure, path: str | Path) -> None:
     if kind not in ("png", "svg"):
         raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
     content = to_bytes(figure, kind)
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        partial.write_bytes(content)
-        partial.replace(path)
+        with whole_file(path, replace=True) as partial:
+            partial.write_bytes(content)
     except OSError as error:
         raise InputError(
             f"cannot write {path} ({error.strerror}): name a file in a folder that you can write to"
         ) from error
-    finally:
-        with suppress(OSError):
-            partial.unlink()

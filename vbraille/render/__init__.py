@@ -1,7 +1,7 @@
-"""A picture and a pose of the array become deflections.
+"""Deflections of the actuators, from a picture and the pose of the array.
 
-Knows no file, no device and no clock. The kernels are compiled when a `Program` is first made,
-not when this is imported.
+This room knows no file, no device and no clock. The kernels are compiled when a `Program` is first
+made, not when this is imported.
 """
 
 from vbraille.render.braille.mappings import MAPPINGS, Mapping, single_row

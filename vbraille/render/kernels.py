@@ -1,8 +1,8 @@
-"""The compiled inner loops of rendering, and nothing else.
+"""The compiled inner loops of rendering.
 
-They fill ``out`` and allocate nothing. `vbraille.render.braille.style` compiles what they need
-into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`);
-`vbraille.render.braille.reference` is the same in plain numpy.
+Kernels fill ``out`` and allocate nothing. `vbraille.render.braille.style` compiles what they need
+into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
+`vbraille.render.braille.reference` has the same functions in plain numpy.
 
 ``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
 the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
@@ -49,7 +49,7 @@ from vbraille.render.work import (
     Y,
 )
 
-VIBRATION = 2.0  # the kind; the others are braille
+VIBRATION = 2.0  # `ProgramKind.VIBRATION`; the other kinds are braille
 _PAGE = 1.0
 _HALF_SINE = 0.0
 _C = [(-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(11)]
@@ -63,14 +63,14 @@ _inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
 
 @_inlined
 def _cos_pi(q):
-    """Cosine of π d, for q = d² ≤ 1/4."""
+    """Compute the cosine of π d, for q = d² ≤ 1/4."""
     high = _C5 + q * (_C6 + q * (_C7 + q * (_C8 + q * (_C9 + q * _C10))))
     return _C0 + q * (_C1 + q * (_C2 + q * (_C3 + q * (_C4 + q * high))))
 
 
 @_inlined
 def _sin_pi(d, q):
-    """Sine of π d, for q = d² ≤ 1/4."""
+    """Compute the sine of π d, for q = d² ≤ 1/4."""
     high = _T5 + q * (_T6 + q * (_T7 + q * (_T8 + q * _T9)))
     return d * (_T0 + q * (_T1 + q * (_T2 + q * (_T3 + q * (_T4 + q * high)))))
 
@@ -79,8 +79,8 @@ def _sin_pi(d, q):
 def _swings(numbers, scratch, count, which):
     """Replace the places on the surface in ``scratch[SWING]`` by the swings there; fill the slots.
 
-    ``which`` dot column of the cell: 0 left, 1 right, 2 the right one of the
-    cell before, 3 the only one that can be there.
+    ``which`` names the dot column of the cell: 0 the left one, 1 the right one, 2 the right one of
+    the cell before, 3 the only one that can be there.
     """
     cells = int(numbers[SLOTS]) // 2 - 2
     cells_per_mm = numbers[CELLS_PER_MM]
@@ -126,7 +126,7 @@ def _swings(numbers, scratch, count, which):
 
 @_inlined
 def _places(scratch, left_mm, first, columns, pitch):
-    """Where on the surface each column is (eq. 3.1: all sample one and the same)."""
+    """Put down where on the surface each column is (eq. 3.1: all columns sample one surface)."""
     for column in range(columns):
         scratch[SWING, first + column] = left_mm + column * pitch
 
@@ -145,7 +145,7 @@ def _write(numbers, table, base, scratch, first, out, above, below):
 
 @_compiled
 def _write_larger(numbers, table, base, scratch, first, out, above, below):
-    """Of dots that overlap, the one with the larger swing."""
+    """Fill rows of a frame where dots overlap, with the larger of their swings."""
     rows, columns = out.shape
     for row in range(above, below):
         idle = numbers[IDLE + row]
@@ -159,7 +159,7 @@ def _write_larger(numbers, table, base, scratch, first, out, above, below):
 
 @_compiled
 def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
-    """Fill rows of a frame that all have their left column at one place."""
+    """Fill rows of a frame whose left columns stand at the same place."""
     columns = out.shape[1]
     _places(scratch, left_mm, 0, columns, pitch)
     if numbers[OVERLAP] == 0.0:
@@ -176,7 +176,7 @@ def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
 
 @_inlined
 def _base(numbers, part):
-    """Where the table has the slots of a part; those of no line are empty."""
+    """Tell where the table has the slots of a part; a part that is no line has empty ones."""
     if numbers[KIND] != _PAGE:
         return 0
     lines = int(numbers[LINES])
@@ -186,7 +186,7 @@ def _base(numbers, part):
 
 @_compiled
 def part_of(numbers, y_mm, before):
-    """Which part of a picture belongs under the array: of a page, the line nearest its centre.
+    """Tell which part of a picture belongs under the array: the line of a page nearest its centre.
 
     A line that was there stays until the centre is beyond its edge by half of the hysteresis.
     Above and below the page are the parts -1 and LINES, which show nothing. A picture of one
@@ -236,10 +236,10 @@ def frame(numbers, table, scratch, part, at, out):
 
 @_compiled
 def path(numbers, table, scratch, x_mm, out):
-    """Fill a frame of a line for each place of a way along it; out is float[n, rows, columns].
+    """Fill a frame for each place along a line; out is float[n, rows, columns].
 
-    All the places of a block become vector instructions, which makes it several times as fast
-    as `frame` for each.
+    The places of a block are computed by vector instructions, which is several times as fast as
+    calling `frame` for each.
     """
     rows, columns = out.shape[1:]
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
@@ -263,10 +263,10 @@ def path(numbers, table, scratch, x_mm, out):
 
 @_compiled
 def poses(numbers, table, scratch, at, parts, out):
-    """Fill a frame for each pose of a way over a picture, and the part that belongs under it.
+    """Fill a frame for each pose over a picture, and the part that belongs under the array there.
 
-    ``at`` is float64[n, 6], as of `frame`; ``parts`` int64[n], to fill; out is
-    float[n, rows, columns].
+    ``at`` is float64[n, 6], each row as `frame` takes it; ``parts``, int64[n], and ``out``,
+    float[n, rows, columns], are filled.
     """
     part = NO_PART
     for n in range(at.shape[0]):
@@ -279,8 +279,8 @@ def poses(numbers, table, scratch, at, parts, out):
 def blend(before, after, share, out):
     """Fill ``out`` with (1 - share) · before + share · after, frames of one shape.
 
-    Reckoned from the nearer end, so that both ends are exact and rounding never
-    goes beyond them.
+    It is computed from the nearer end, so that both ends are exact and rounding never goes beyond
+    them.
     """
     rows, columns = out.shape
     for row in range(rows):

@@ -16,24 +16,24 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 _BLOCK = 64  # places whose swings stay in the processor's nearest cache
-# Longest that a picture may move by itself: vibration tires the skin (Lévesque 2009, 8.6).
+# No picture moves by itself for longer, since vibration tires the skin (Lévesque 2009, 8.6).
 EXPOSURE_S = 60.0
-# Twenty samples a period at 1 kHz: Lévesque 2009, 8.3.2.
+# At 1 kHz a period has twenty samples then: Lévesque 2009, 8.3.2.
 MOST_FREQUENCY_HZ = 50.0
 
 
 class Program:
-    """What a picture compiles to. Nothing of it changes once made.
+    """A picture, compiled; it does not change once it is made.
 
-    Whoever shows it needs not know what it is of: it is a kind and plain arrays, which go through
-    memory and files as they are.
+    The engine shows it without knowing what it is a picture of: a program is plain arrays, which
+    go through shared memory and files as they are.
 
     Parameters
     ----------
     numbers : float64[n]
-        Places as `vbraille.render.work` tells them; the head is the same for every kind.
+        Numbers at the places that `vbraille.render.work` names; they begin alike for every kind.
     table : uint16[m]
-        What the kind looks up.
+        What the kernel of this kind looks up.
 
     Attributes
     ----------
@@ -52,17 +52,17 @@ class Program:
 
     @property
     def kind(self) -> ProgramKind:
-        """What it is of."""
+        """What kind of picture it is."""
         return ProgramKind(int(self.numbers[work.KIND]))
 
     @property
     def nbytes(self) -> int:
-        """What it takes in memory."""
+        """How many bytes it takes in memory."""
         return self.numbers.nbytes + self.table.nbytes
 
     @property
     def own_y_mm(self) -> float:
-        """Where on the canvas an array stands that has no y of its own."""
+        """Where on the canvas an array stands whose carriage measures no y."""
         return float(self.numbers[work.OWN_Y])
 
     @property
@@ -71,7 +71,7 @@ class Program:
         return bool(self.numbers[work.FREQUENCY] > 0)
 
     def check_shape(self, shape: tuple[int, int]) -> None:
-        """Hold it against the rows and columns of what it is to be shown on.
+        """Compare it with the rows and columns of the display that is to show it.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class Program:
             )
 
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
-        """Which part belongs under an array whose centre is at y, after another one or none."""
+        """Tell which part is under an array with its centre at y, after ``before`` was there."""
         return kernels.part_of(self.numbers, y_mm, before)
 
     def frame(
@@ -102,17 +102,17 @@ class Program:
         Parameters
         ----------
         x_mm
-            Where the array's centre is; anything that is not on the picture, NaN
-            among it, gives the idle frame.
+            Where the array's centre is. A place that is not on the picture gives the
+            idle frame, and so does NaN.
         out : float[rows, columns]
-            Deflections, 0 … 1. It need not be contiguous, but each new kind of
-            array is compiled for, once, in some seconds.
+            Deflections, 0 … 1. It need not be contiguous, but the first array of each
+            new type and layout takes some seconds, in which kernels are compiled.
         theta_rad
-            How far the array is turned.
+            How far the array is turned, in radians.
         part
             Which part of the picture; see `part_of`.
         time_s
-            The picture's own time, since its start.
+            The picture's own time, in seconds since its start.
 
         Raises
         ------
@@ -133,7 +133,7 @@ class Program:
         x_mm : float64[n]
             Where the array's centre is.
         out : float32[n, rows, columns], optional
-            Where to put them; made if not given.
+            Where to put the frames; a new array if it is not given.
 
         Returns
         -------
@@ -172,8 +172,8 @@ class Program:
         Returns
         -------
         int64[n], float32[n, rows, columns]
-            The part that belongs under the array, and deflections, 0 … 1. Nothing fades where one
-            part follows another: that is the engine's, which knows how much time goes by.
+            The part that belongs under the array, and deflections, 0 … 1. Where one part follows
+            another nothing fades: fades take time, and are left to the engine.
         """
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
@@ -183,13 +183,13 @@ class Program:
         return parts, out
 
     def with_anchor(self, anchor_mm: float) -> Program:
-        """The same braille for places that tell another point of the array than its centre.
+        """Make a program of the same braille for places of another point than the array's centre.
 
         Parameters
         ----------
         anchor_mm
-            How far right of the left column that point is: 0 for the left column itself, which is
-            what recordings told until 2026-11-21.
+            How far right of the left column that point is: 0 is the left column itself, whose
+            places recordings held until 2026-11-21.
         """
         numbers = self.numbers.copy()
         numbers[work.ANCHOR] = anchor_mm
@@ -197,14 +197,14 @@ class Program:
 
 
 def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
-    """Room that the kernels need for so many places of the array at once."""
+    """Make the scratch room that kernels need for so many places of the array at once."""
     return np.zeros((2, places * columns))
 
 
 def head(
     display: Display, kind: ProgramKind, places: int, own_y_mm: float = 0.0
 ) -> NDArray[np.float64]:
-    """Numbers of a program that does not move by itself, with room for so many in all."""
+    """Make the numbers of a program that does not move by itself, with room for so many."""
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
     numbers[work.OWN_Y] = own_y_mm
@@ -214,7 +214,7 @@ def head(
 
 
 def nothing(display: Display) -> Program:
-    """A line without a dot, for before there is anything to show."""
+    """Make a line without a dot, for as long as there is nothing to show."""
     return Program(
         head(display, ProgramKind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16)
     )
@@ -226,7 +226,7 @@ def vibration(
     amplitude: float = 1.0,
     exposure_s: float = EXPOSURE_S,
 ) -> Program:
-    """Every actuator swings, each against its neighbours, wherever the array is.
+    """Make every actuator swing, each against its neighbours, wherever the array is.
 
     Lévesque 2009, eqs. 8.1 and 8.2.
 
@@ -235,11 +235,11 @@ def vibration(
     display
         What it is shown on.
     frequency_hz
-        How fast, above 0 to 50 Hz.
+        Swings a second, above 0 to 50 Hz.
     amplitude
-        How far, of the full swing, above 0 to 1.
+        Share of the full swing, above 0 to 1.
     exposure_s
-        How long at a time, above 0; then it fades.
+        How long it is felt at a time, in seconds, above 0; then it fades.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where the kernels find what: places in a program's numbers, and in what they are told each tick.
+"""Places of the numbers that kernels work with: in a program, and in what each tick tells them.
 
 A program is two plain arrays: ``numbers``, float64[n], and ``table``, uint16[m]. The numbers of
 every kind begin with the same head; what follows is the kind's own.
@@ -8,23 +8,23 @@ from enum import IntEnum
 
 
 class ProgramKind(IntEnum):
-    """What a program is of; only the kernels look at it."""
+    """What a program shows; only the kernels ask for it."""
 
     LINE = 0
     PAGE = 1
     VIBRATION = 2
 
 
-# The head, which the engine knows.
+# The head, which is alike for every kind; the engine reads it.
 (
-    KIND,  # of `Kind`
+    KIND,  # of `ProgramKind`
     OWN_Y,  # y of the array on a carriage that has no such axis, mm
     FREQUENCY,  # at which a picture moves by itself, Hz; 0 if it does not
     AMPLITUDE,  # how far it moves an actuator by itself at most, of the swing
     EXPOSURE,  # how long it may move by itself before it fades, s
-    ROWS,  # of the display that it was compiled for
+    ROWS,  # rows and columns of the display that it was compiled for
     COLUMNS,
-    OWN,  # first of the kind's own
+    OWN,  # the first number that has another meaning for each kind
 ) = range(8)
 
 # Braille: a line, or a page of lines.
@@ -32,10 +32,10 @@ class ProgramKind(IntEnum):
     ANCHOR,  # from the left column to the point of the array that x tells, mm
     COLUMN_PITCH,
     ROW_PITCH,
-    LINES,  # of the page; 0 for a line alone
+    LINES,  # how many lines the page has; 0 for a line alone
     LINE_PITCH,
     HYSTERESIS,  # between going to the next line and coming back, in line pitches
-    SLOTS,  # of a line: 2 · (cells + 2)
+    SLOTS,  # slots of a line: 2 · (cells + 2)
     CELLS_PER_MM,
     CELL_PITCH,
     DOTS_PER_MM,
@@ -56,5 +56,5 @@ X, Y, THETA, TIME, VX, VY = range(6)
 
 # Rows of the kernels' scratch: the swing under each column, and the slot that it is over.
 SWING, SLOT = range(2)
-# A part that is none: nothing of a page was under the array yet.
+# Stands for no part: no line of a page was under the array yet.
 NO_PART = -2

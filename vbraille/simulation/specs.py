@@ -1,14 +1,17 @@
-"""Hands by their specs, as options and devices name them."""
+"""Simulated devices and their hands by their specs, as options and devices name them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from urllib.parse import urlencode
 
 from vbraille.errors import InputError
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
 from vbraille.simulation.recorded import load_recorded
+from vbraille.simulation.steering import Steering
 from vbraille.simulation.wander import Wander
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
@@ -51,6 +54,43 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
         f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
         f"or wander:SPEED to go about without reading"
     )
+
+
+def is_simulated(device: str) -> bool:
+    """Whether the spec of a device is that of the simulated one, which is as the settings say."""
+    return device.rstrip(":") == "sim"
+
+
+def refuse_hand(device: str, **given: object) -> None:
+    """Raise InputError if settings of the simulated hand are given for another device.
+
+    Parameters
+    ----------
+    device
+        The spec of the device.
+    given
+        Values of the settings by their names; None where they were not given.
+    """
+    for name, value in given.items():
+        if value is not None and not is_simulated(device):
+            raise InputError(
+                f"{setting(name)} is for the simulated device, and {device} is moved by a person; "
+                f"leave {setting(name)} out, or leave {setting('device')} out"
+            )
+
+
+def steering_of(device: str) -> Steering | None:
+    """What steers the hand of a simulated device; None for a device that a person moves."""
+    return Steering() if is_simulated(device) or device.startswith("sim:?") else None
+
+
+def device_spec(device: str, hand: str, seed: int, steering: Steering | None) -> str:
+    """Spec of a device; the simulated one is told its hand, and what steers it."""
+    if steering is None:
+        return device
+    if is_simulated(device):
+        device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
+    return f"{device}&steering={steering.descriptor}"
 
 
 def _speed(text: str, kind: str) -> float:

@@ -8,14 +8,13 @@ listed in `USUAL`. `docs/languages.md` has the outcome for every language.
 
 from __future__ import annotations
 
-import difflib
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.translate.liblouis import BrailleTable, list_tables
-from vbraille.wording import setting
+from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
     from vbraille.translate.liblouis import TableInfo
@@ -109,9 +108,8 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
             return tag, found
         tag = tag.rpartition("-")[0]
     tags = sorted({table.language for table in list_tables() if table.language})
-    close = difflib.get_close_matches(wanted, tags, n=3, cutoff=0.0)
     raise InputError(
-        f"there is no table for language {language!r}; the nearest are {', '.join(close)} "
+        f"there is no table for language {language!r}; {nearest(wanted, tags, 3)} "
         f"(vbraille tables lists all)"
     )
 

@@ -7,7 +7,6 @@ so that two threads at once would crash the process: one lock guards every call.
 from __future__ import annotations
 
 import ctypes
-import difflib
 import itertools
 import threading
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.documents.paragraphs import SPACE, to_codes, to_text
 from vbraille.translate.scripts import script_of
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
+from vbraille.wording import nearest
 
 try:
     import louis
@@ -131,12 +131,6 @@ def _table_info(path: bytes) -> TableInfo:
     )
 
 
-def nearest(name: str, names: list[str]) -> str:
-    """End of a sentence that says what comes nearest to a name."""
-    close = difflib.get_close_matches(name, names, n=3, cutoff=0.0)
-    return f"; the nearest are {', '.join(close)} (vbraille tables lists all)"
-
-
 class BrailleTable:
     """A compiled braille table.
 
@@ -170,7 +164,10 @@ class BrailleTable:
                 names = _table_files()
                 if name in names or _is_file(name):
                     raise InputError(f"liblouis cannot use {name} as a braille table")
-                raise InputError(f"there is no braille table {name!r}{nearest(name, names)}")
+                raise InputError(
+                    f"there is no braille table {name!r}; {nearest(name, names, 3)} "
+                    f"(vbraille tables lists all)"
+                )
         # Characters this table was seen to know; what stands for those it does not.
         self._known = {SPACE}
         self._instead: dict[int, tuple[int, ...]] = {}

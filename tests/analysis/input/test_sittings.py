@@ -98,8 +98,8 @@ def test_the_example_is_the_trial_in_the_middle():
         example = Example(trial, "P1", "", "", pattern, none, none, 0.0, 0.0, 7.7, ())
         return duration_s, example
 
-    def chosen(*pictures):
-        return [(example.pattern, example.trial) for example in _examples(pictures)]
+    def chosen(*examples):
+        return [(example.pattern, example.trial) for example in _examples(examples)]
 
     assert chosen() == []
     four = [told(3.0, 1, ONE_PASS), told(1.0, 2, ONE_PASS), told(2.0, 3, ONE_PASS)]

@@ -31,12 +31,12 @@ def report(tmp_path_factory):
 def test_all_files_are_there(report):
     folder, files = report
     tables = [f"tables/{table.name}.csv" for table in RESULTS.tables()]
-    pictures = [
-        f"figures/{picture.name}.{kind}"
-        for picture in RESULTS.pictures()
+    figures = [
+        f"figures/{figure.name}.{kind}"
+        for figure in RESULTS.figures()
         for kind in ("svg", "png", "pdf")
     ]
-    names = ["report.html", "report.md", "results.json", *EXTRA, *tables, *pictures]
+    names = ["report.html", "report.md", "results.json", *EXTRA, *tables, *figures]
     assert [str(path.relative_to(folder)) for path in files] == names
     assert sorted(contents(folder)) == sorted(names)
     assert [path.name for path in folder.parent.iterdir()] == ["out"]
@@ -49,10 +49,10 @@ def test_what_is_written_can_be_read(report):
     for table in RESULTS.tables():
         text = (folder / "tables" / f"{table.name}.csv").read_text("utf-8")
         assert text == table.to_csv().replace("\udc80", "\\udc80")
-    for picture in RESULTS.pictures():
-        assert (folder / f"figures/{picture.name}.svg").read_bytes().startswith(b"<?xml")
-        assert (folder / f"figures/{picture.name}.pdf").read_bytes().startswith(b"%PDF")
-        with Image.open(folder / f"figures/{picture.name}.png") as image:
+    for figure in RESULTS.figures():
+        assert (folder / f"figures/{figure.name}.svg").read_bytes().startswith(b"<?xml")
+        assert (folder / f"figures/{figure.name}.pdf").read_bytes().startswith(b"%PDF")
+        with Image.open(folder / f"figures/{figure.name}.png") as image:
             assert image.info["dpi"] == pytest.approx((300, 300), abs=0.1)
 
 

@@ -205,17 +205,17 @@ def test_long_tables_say_how_many_rows_there_are():
 def test_figures_have_texts_and_their_numbers():
     figures = {figure.get("id"): figure for figure in TREE.iter("figure")}
     assert list(figures) == ["figure-legibility", "figure-confusions", "figure-runs"]
-    for picture in RESULTS.pictures():
-        figure = figures[f"figure-{picture.name}"]
-        (image,) = figure.iter("img")
-        assert picture.title in image.get("alt")
+    for figure in RESULTS.figures():
+        element = figures[f"figure-{figure.name}"]
+        (image,) = element.iter("img")
+        assert figure.title in image.get("alt")
         assert b64decode(image.get("src").partition("base64,")[2]) == SVG
-        (caption,) = figure.iter("figcaption")
-        assert picture.text in text(caption)
+        (caption,) = element.iter("figcaption")
+        assert figure.text in text(caption)
         links = [link.get("href") for link in caption.iter("a")]
-        stem = f"figures/{picture.name}"
+        stem = f"figures/{figure.name}"
         files = [f"{stem}.{kind}" for kind in ("svg", "png", "pdf")]
-        assert links == [f"#table-{picture.table}", *files]
+        assert links == [f"#table-{figure.table}", *files]
 
 
 def test_links_within_the_page_have_a_target():
@@ -257,7 +257,7 @@ def test_a_column_of_notes_is_left_out_where_there_are_none():
     """Every empty cell is one that a reader hears."""
     rows = tuple((*row[:-1], "") for row in LEGIBILITY.rows if None not in row)
     silent = replace(LEGIBILITY, rows=rows)
-    results = replace(RESULTS, sections=(Chapter("Legibility", "", (silent,)),), main="")
+    results = replace(RESULTS, chapters=(Chapter("Legibility", "", (silent,)),), main="")
     for made in (to_html(results, {}), to_markdown(results)):
         assert "mean duration (s)" in made
         assert "note" not in made

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from tests.controllers import ControllerOf20261121
 from tests.troubles import Troubles
 from tests.wired import Wired, reading
+from vbraille.devices.lent import Actuators
 from vbraille.devices.serial import steady
 from vbraille.devices.serial.conversation import IDLE_MS, Conversation
 from vbraille.devices.serial.lending import Lending
@@ -249,7 +250,7 @@ def one_actuator():
     body = np.zeros(3 + 2 + CRC_BYTES, np.uint8)
     body[:3] = np.frombuffer(frame_head(0), np.uint8)
     zeros = np.zeros((1, 1))
-    return steady.Actuators(
+    return Actuators(
         zeros, zeros.copy(), np.full((1, 1), 1023.0), np.zeros((1, 1), int), body, body[3:5]
     )
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from vbraille.devices.wire.codec import (
     DELIMITER,
     MOST_FRAME_BYTES,
+    BodyCodec,
     Decoder,
     Drop,
-    LevelPacking,
     Levels,
     OtherVersion,
     encode,
@@ -27,7 +27,6 @@ from vbraille.devices.wire.fields import (
     Fixed,
     Number,
     OneOf,
-    OptionalNumber,
     Packed,
     PerActuator,
     Text,
@@ -55,7 +54,7 @@ from vbraille.devices.wire.messages import (
 )
 
 EVERY_MESSAGE = pytest.mark.parametrize("kind", MESSAGES.values(), ids=lambda k: k.__name__)
-LAYOUTS = {message: LevelPacking(code, message) for code, message in MESSAGES.items()}
+CODECS = {message: BodyCodec(code, message) for code, message in MESSAGES.items()}
 PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
 
 STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
@@ -94,10 +93,9 @@ SAMPLES = [
 
 def values(field, actuators):
     match field:
-        case OptionalNumber():
-            return st.none() | st.integers(field.low, field.high)
         case Number():
-            return st.integers(field.low, field.high)
+            numbers = st.integers(field.low, field.high)
+            return numbers if field.none is None else st.none() | numbers
         case OneOf():
             return st.sampled_from(field.of)
         case Text():
@@ -130,7 +128,7 @@ garbage = st.binary(max_size=60) | st.lists(
 
 
 def body_of(message):
-    return LAYOUTS[type(message)].encode(message)
+    return CODECS[type(message)].encode(message)
 
 
 def fed(stream, levels=None):
@@ -360,18 +358,18 @@ def test_a_new_field_is_encoded_decoded_and_checked():
     class StateWithSkin(State):
         skin_ck: Annotated[int, Number("H", 0, 40_000, "cK")]
         mood: Annotated[str, Text(fewest=1)]
-        pulse: Annotated[int | None, OptionalNumber("H", 0, 300, none=0xFFFF)]
+        pulse: Annotated[int | None, Number("H", 0, 300, none=0xFFFF)]
 
-    layout = LevelPacking(0x82, StateWithSkin)
+    codec = BodyCodec(0x82, StateWithSkin)
     state = StateWithSkin(1, 2, 3, 4, 0, 0, None, skin_ck=30_500, mood="ö", pulse=None)
-    body = layout.encode(state)
+    body = codec.encode(state)
     assert body[:17] == body_of(State(1, 2, 3, 4, 0, 0, None))
     assert body[17:] == b"\x24\x77" + b"\x02\xc3\xb6" + b"\xff\xff"
-    assert layout.decode(body) == state
+    assert codec.decode(body) == state
     assert fed(enframe(body))[0] == [State(1, 2, 3, 4, 0, 0, None)]
     for end in range(len(body)):
         with pytest.raises(WrongLengthError):
-            layout.decode(body[:end])
+            codec.decode(body[:end])
     with pytest.raises(ValueError, match="skin_ck is 40001; it must be 0 to 40000 cK"):
         replace(state, skin_ck=40_001)
 
@@ -382,7 +380,7 @@ def test_fields_follow_one_another_in_the_order_of_the_class():
         first: Annotated[int, U16]
         second: Annotated[int, U16]
 
-    assert LevelPacking(0x55, Pair).encode(Pair(first=1, second=2)) == b"\x55\x01\x00\x02\x00"
+    assert BodyCodec(0x55, Pair).encode(Pair(first=1, second=2)) == b"\x55\x01\x00\x02\x00"
 
 
 # Bounds

@@ -7,26 +7,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vbraille.devices.wire import packing
 from vbraille.devices.wire.codec import Levels
 
 
 def fill(deflections, top, *, gain=255, inverted=0, last=None, step=math.inf):
     shape = deflections.shape
-    packing = Levels(deflections.size, top)
-    out = np.full(packing.packed_bytes, 0xA5, np.uint8)
+    levels = Levels(deflections.size, top)
+    out = np.full(levels.packed_bytes, 0xA5, np.uint8)
     wanted = np.full(shape, np.nan)
     swing = np.broadcast_to(np.asarray(gain) / 255 * top, shape).copy()
     rest = np.broadcast_to(np.asarray(inverted) * top, shape).astype(np.int64)
     last = np.zeros(shape) if last is None else last
-    felt = packing.fill(
-        deflections, last, wanted, step, swing, rest, top, packing.bits, out
-    )  # fmt: skip
-    return packing.unpack(out.tobytes()).reshape(shape), wanted, felt, out.tobytes()
+    felt = packing.fill(deflections, last, wanted, step, swing, rest, top, levels.bits, out)
+    return levels.unpack(out.tobytes()).reshape(shape), wanted, felt, out.tobytes()
 
 
-@given(
-    st.integers(1, 4), st.integers(1, 9), st.integers(1, 0xFFFF), st.integers(0, 1 << 32)
-)  # fmt: skip
+@given(st.integers(1, 4), st.integers(1, 9), st.integers(1, 0xFFFF), st.integers(0, 1 << 32))
 def test_it_is_the_formula_packed_by_the_codec(rows, columns, top, seed):
     random = np.random.default_rng(seed)
     deflections = random.choice([0.0, 1.0, *random.random(5)], (rows, columns))

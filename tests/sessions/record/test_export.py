@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
-from vbraille.errors import InputError
-from vbraille.sessions.record.export import COLUMNS, Traces, rows, to_csv, write_new
+from vbraille.sessions.record.export import COLUMNS, Traces, rows, to_csv
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace
 
@@ -150,23 +149,3 @@ def test_of_a_damaged_trace_no_trial_that_it_cuts_has_a_duration(tmp_path, rng):
     assert {row["duration_s"] for row in rows(sat.record, traces)} == {""}
     assert traces.faults == ["trace-001.gz is damaged, it is gone"]
     assert 20 < shorter < 80
-
-
-def test_a_table_is_never_written_over_and_leaves_nothing_half(tmp_path):
-    write_new(tmp_path / "t.csv", b"one")
-    with pytest.raises(InputError, match=r"t\.csv is there already; give another name with ‹out›"):
-        write_new(tmp_path / "t.csv", b"two")
-    assert [path.name for path in tmp_path.iterdir()] == ["t.csv"]
-    assert (tmp_path / "t.csv").read_bytes() == b"one"
-
-
-def test_where_a_disk_has_no_links_a_table_is_written_too(tmp_path, monkeypatch):
-    def no_links(*_):
-        raise OSError(1, "Operation not permitted")
-
-    monkeypatch.setattr("os.link", no_links)
-    write_new(tmp_path / "t.csv", b"one")
-    with pytest.raises(InputError, match="is there already"):
-        write_new(tmp_path / "t.csv", b"two")
-    assert (tmp_path / "t.csv").read_bytes() == b"one"
-    assert [path.name for path in tmp_path.iterdir()] == ["t.csv"]

@@ -24,7 +24,7 @@ def test_each_event_is_one_line_in_the_order_of_the_procedure(session):
     sat = session.sit(*ALL, ("last", ""))
     kinds = [sentence.split(":")[0] for sentence in sat.said]
     per_trial = [k for k in kinds if k != "read"]
-    assert per_trial == ["ready", "cue", "answer"] * 4 + ["last", "end"]
+    assert per_trial == ["ready", "cue", "answer"] * 4 + ["last", "end", "record"]
     assert not any("\n" in sentence for sentence in sat.said)
     assert [e["answer"] for e in of(sat.events, "answer")] == ["⠉"] * 4
     assert of(sat.events, "end")[0]["why"] == "all trials are done"

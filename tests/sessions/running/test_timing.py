@@ -19,7 +19,7 @@ def test_a_pause_that_an_answer_ends_is_kept(tmp_path):
     waited_s = answer["t_s"] - pause["t_s"]
     assert waited_s > 0
     assert trial(sat)["paused_s"] == pytest.approx(waited_s, abs=1e-6)
-    assert sat.course.progress.trials[1].paused_s == sat.progress.trials[1].paused_s
+    assert sat.live.trials[1].paused_s == sat.progress.trials[1].paused_s
     cue_s = of(sat.events, "cue")[0]["t_s"]
     assert trial(sat)["response_s"] == pytest.approx(pause["t_s"] - cue_s, abs=2e-6)
     assert trial(sat, 2)["paused_s"] == 0

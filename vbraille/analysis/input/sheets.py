@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import difflib
 import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.encodings import binary_kind, find_encoding
+from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -107,8 +107,7 @@ def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:
 
 
 def _miss(name: str, others: Sequence[str]) -> str:
-    nearest = difflib.get_close_matches(name, others, 1, cutoff=0)
-    return f"there is no {name}" + (f", the nearest is {nearest[0]}" if nearest else "")
+    return f"there is no {name}" + (f", {nearest(name, others)}" if others else "")
 
 
 def _columns(reader: Any, name: str, *, decimal_comma: bool) -> Sheet:

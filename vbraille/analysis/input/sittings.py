@@ -125,18 +125,18 @@ def read_sitting(folder: Path) -> SessionTrials:
         If a file other than the journal and the traces is missing or not what it was.
     """
     record = load(folder)
-    progress = Progress(record.plan, record.told.events)
+    progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record)
     rows: list[dict[str, Any]] = []
     readings: dict[int, Reading | str] = {}
-    pictures: list[tuple[float, Example]] = []
+    examples: list[tuple[float, Example]] = []
     for trial, (row, seen) in zip(record.plan.trials, walk(record, traces), strict=True):
         rows.append(row)
         if isinstance(seen, Trajectory):
             reading = read(seen)
             readings[trial.number] = reading
-            picture = _picture(seen, trial, record.plan.participant, reading.pattern)
-            pictures.append((reading.duration_s, picture))
+            example = _example(seen, trial, record.plan.participant, reading.pattern)
+            examples.append((reading.duration_s, example))
         elif seen is not None:
             readings[trial.number] = seen
     faults = list(traces.faults)
@@ -149,7 +149,7 @@ def read_sitting(folder: Path) -> SessionTrials:
         record.protocol,
         rows,
         readings,
-        _examples(pictures),
+        _examples(examples),
         faults,
         _state(progress),
         _versions(record, progress),
@@ -180,7 +180,7 @@ def pick(x_mm: NDArray[np.float64], kept: Sequence[int]) -> NDArray[np.intp]:
     return np.flatnonzero(picked)
 
 
-def _picture(trajectory: Trajectory, trial: Trial, participant: str, pattern: str) -> Example:
+def _example(trajectory: Trajectory, trial: Trial, participant: str, pattern: str) -> Example:
     found, begun_ns = trajectory.duration, trajectory.time_ns[0]
     ticks = pick(trajectory.left_mm, (found.start, found.end))
     start_s, end_s = (trajectory.time_ns[[found.start, found.end]] - begun_ns) / 1e9
@@ -199,10 +199,10 @@ def _picture(trajectory: Trajectory, trial: Trial, participant: str, pattern: st
     )
 
 
-def _examples(pictures: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
+def _examples(examples: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
     """One of each pattern, by `EXAMPLE_RULE`; given with their durations."""
     of: dict[str, list[tuple[float, int, Example]]] = defaultdict(list)
-    for duration_s, example in pictures:
+    for duration_s, example in examples:
         of[example.pattern].append((duration_s, example.trial, example))
     return tuple(
         sorted(of[pattern], key=lambda told: told[:2])[(len(of[pattern]) - 1) // 2][2]

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
-from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.report.shown import KINDS, csv_name, picture_name
+from vbraille.analysis.report.shown import KINDS, csv_name, figure_name
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.tojson import to_json
 from vbraille.analysis.report.tomarkdown import to_markdown
-from vbraille.errors import InputError, VbrailleError
+from vbraille.files import check_free, write_folder
 from vbraille.sessions.record.export import encode
-from vbraille.sessions.record.folder import check_free, missing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,34 +41,10 @@ def write_report(
         If the disk does not take it; nothing is left then.
     """
     folder = folder.absolute()
-    check_free(folder)
+    check_free(folder)  # before the figures are drawn, which takes a while
     files = _files(results, extra or {})
-    partial = folder.with_name(f".{folder.name}.partial")
-    made: list[Path] = []  # each in the one before
-    try:
-        for parent in missing(folder.parent):
-            parent.mkdir()
-            made.append(parent)
-        if partial.exists():  # of a report that was killed being written
-            shutil.rmtree(partial)
-        partial.mkdir()
-        made.append(partial)
-        for name, content in files.items():
-            path = partial / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            # Not forced onto the disk, as a session is: a report can be made again.
-            path.write_bytes(content)
-        partial.rename(folder)
-    except BaseException as fault:
-        if partial in made:
-            shutil.rmtree(partial, ignore_errors=True)
-        for parent in reversed(made):
-            with suppress(OSError):  # what is in use stays
-                parent.rmdir()
-        if isinstance(fault, OSError):
-            kind = VbrailleError if partial in made else InputError
-            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
-        raise
+    # Not forced onto the disk, as a session is: a report can be made again.
+    write_folder(folder, files)
     return [folder / name for name in files]
 
 
@@ -82,14 +55,14 @@ def _files(results: Results, extra: Mapping[str, bytes]) -> dict[str, bytes]:
     from vbraille.pictures.figurefiles import to_bytes
 
     drawn: dict[str, bytes] = {}
-    pictures: dict[str, bytes] = {}
-    for picture in results.pictures():
-        figure = draw_chart(picture.chart)
+    svgs: dict[str, bytes] = {}
+    for figure in results.figures():
+        drawing = draw_chart(figure.chart)
         for kind in KINDS:
-            drawn[picture_name(picture, kind)] = to_bytes(figure, kind, _DPI)
-        pictures[picture.name] = drawn[picture_name(picture, "svg")]
+            drawn[figure_name(figure, kind)] = to_bytes(drawing, kind, _DPI)
+        svgs[figure.name] = drawn[figure_name(figure, "svg")]
     return {
-        PAGE: encode(to_html(results, pictures, (TEXT, NUMBERS, *extra))),
+        PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *extra))),
         TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *extra))),
         NUMBERS: encode("".join(to_json(results))),
         **extra,

@@ -77,9 +77,9 @@ def values(table: ResultTable, row: Sequence[Value]) -> list[str]:
     return [to_print(value, column.kind) for value, column in zip(row, table.columns, strict=True)]
 
 
-def alternative(picture: ReportFigure) -> str:
-    """What stands for a picture, next to its text."""
-    return f"Figure: {picture.title}. What it shows is told beside it."
+def alternative(figure: ReportFigure) -> str:
+    """What stands for a figure, next to its text."""
+    return f"Figure: {figure.title}. What it shows is told beside it."
 
 
 def csv_name(table: ResultTable) -> str:
@@ -87,9 +87,9 @@ def csv_name(table: ResultTable) -> str:
     return f"tables/{table.name}.csv"
 
 
-def picture_name(picture: ReportFigure, kind: str) -> str:
-    """Path of a picture's file in the report's directory."""
-    return f"figures/{picture.name}.{kind}"
+def figure_name(figure: ReportFigure, kind: str) -> str:
+    """Path of a figure's file in the report's directory."""
+    return f"figures/{figure.name}.{kind}"
 
 
 def _tell_apart(table: ResultTable, columns: int) -> bool:

@@ -66,23 +66,23 @@ img { max-width: 100%; height: auto; background: #fff; }
 """
 
 
-def to_html(results: Results, figures: Mapping[str, bytes], beside: Sequence[str] = ()) -> str:
+def to_html(results: Results, drawings: Mapping[str, bytes], beside: Sequence[str] = ()) -> str:
     """Page of the results.
 
     Parameters
     ----------
     figures
-        SVG of each picture, by its name.
+        SVG of each figure, by its name.
     beside
         Names of other files in the report's directory, which the page links to.
     """
     titles = {table.name: table.title for table in results.tables()}
     main = _e("main", id="results", tabindex="-1")
-    main.extend(_findings(results, titles, figures))
+    main.extend(_findings(results, titles, drawings))
     main.extend(_about(results))
     main.append(_contents(results))
-    for number, section in enumerate(results.sections, 1):
-        main.append(_section(section, number, titles, figures, results.main))
+    for number, chapter in enumerate(results.chapters, 1):
+        main.append(_chapter(chapter, number, titles, drawings, results.main))
     if beside:
         main.append(_e("h2", shown.FILES, id="files"))
         main.append(_list(_e("li", _link(name)) for name in beside))
@@ -118,16 +118,16 @@ def _header(results: Results) -> Element:
 
 
 def _findings(
-    results: Results, titles: Mapping[str, str], figures: Mapping[str, bytes]
+    results: Results, titles: Mapping[str, str], drawings: Mapping[str, bytes]
 ) -> Iterator[Element]:
     """What was found, and its main figure; nothing if nothing was."""
-    picture = results.main_picture()
-    if results.findings or picture is not None:
+    figure = results.main_figure()
+    if results.findings or figure is not None:
         yield _e("h2", shown.FINDINGS, id="findings")
     if results.findings:
         yield _list(_e("li", finding) for finding in results.findings)
-    if picture is not None:
-        yield _figure(picture, titles[picture.table], figures[picture.name])
+    if figure is not None:
+        yield _figure(figure, titles[figure.table], drawings[figure.name])
 
 
 def _about(results: Results) -> Iterator[Element]:
@@ -141,30 +141,30 @@ def _about(results: Results) -> Iterator[Element]:
 
 def _contents(results: Results) -> Element:
     items = []
-    for number, section in enumerate(results.sections, 1):
-        inner = [(f"#table-{table.name}", table.title) for table in section.tables]
-        inner += [(f"#figure-{each.name}", f"Figure: {each.title}") for each in section.pictures]
+    for number, chapter in enumerate(results.chapters, 1):
+        inner = [(f"#table-{table.name}", table.title) for table in chapter.tables]
+        inner += [(f"#figure-{each.name}", f"Figure: {each.title}") for each in chapter.figures]
         links = _list(_e("li", _e("a", title, href=to)) for to, title in inner)
-        items.append(_e("li", _e("a", section.title, href=f"#section-{number}"), links))
+        items.append(_e("li", _e("a", chapter.title, href=f"#section-{number}"), links))
     return _e("nav", _e("h2", shown.CONTENTS), _list(items), aria_label=shown.CONTENTS)
 
 
-def _section(
-    section: Chapter,
+def _chapter(
+    chapter: Chapter,
     number: int,
     titles: Mapping[str, str],
-    figures: Mapping[str, bytes],
+    drawings: Mapping[str, bytes],
     main: str,
 ) -> Element:
-    made = _e("section", _e("h2", section.title, id=f"section-{number}"), _e("p", section.text))
-    for table in section.tables:
+    made = _e("section", _e("h2", chapter.title, id=f"section-{number}"), _e("p", chapter.text))
+    for table in chapter.tables:
         made.extend(_table(table))
-    for picture in section.pictures:
-        if picture.name == main:
-            there = _e("a", picture.title, href=f"#figure-{picture.name}")
+    for figure in chapter.figures:
+        if figure.name == main:
+            there = _e("a", figure.title, href=f"#figure-{figure.name}")
             made.append(_e("p", f"{shown.ABOVE} ", there, "."))
         else:
-            made.append(_figure(picture, titles[picture.table], figures[picture.name]))
+            made.append(_figure(figure, titles[figure.table], drawings[figure.name]))
     return made
 
 
@@ -213,33 +213,33 @@ def _row(table: ResultTable, row: tuple[Value, ...], heads: int) -> Element:
     return made
 
 
-def _figure(picture: ReportFigure, title: str, svg: bytes) -> Element:
+def _figure(figure: ReportFigure, title: str, svg: bytes) -> Element:
     source = f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
     return _e(
         "figure",
-        _e("h3", f"Figure: {picture.title}"),
-        _e("img", src=source, alt=shown.alternative(picture)),
+        _e("h3", f"Figure: {figure.title}"),
+        _e("img", src=source, alt=shown.alternative(figure)),
         _e(
             "figcaption",
-            _e("p", picture.text),
+            _e("p", figure.text),
             _e(
                 "p",
                 "Its numbers: ",
-                _e("a", f"table “{title}”", href=f"#table-{picture.table}"),
+                _e("a", f"table “{title}”", href=f"#table-{figure.table}"),
                 ". The figure: ",
-                *_files(picture),
+                *_files(figure),
                 ".",
             ),
         ),
-        id=f"figure-{picture.name}",
+        id=f"figure-{figure.name}",
     )
 
 
-def _files(picture: ReportFigure) -> Iterator[Element | str]:
+def _files(figure: ReportFigure) -> Iterator[Element | str]:
     for number, kind in enumerate(shown.KINDS):
         if number:
             yield ", "
-        yield _link(shown.picture_name(picture, kind))
+        yield _link(shown.figure_name(figure, kind))
 
 
 def _side(kind: Kind) -> str:

@@ -24,8 +24,8 @@ def to_json(results: Results) -> Iterator[str]:
         "about": dict(results.about),
         "main_figure": results.main or None,
         "figures": {
-            picture.name: {"title": picture.title, "text": picture.text, "table": picture.table}
-            for picture in results.pictures()
+            figure.name: {"title": figure.title, "text": figure.text, "table": figure.table}
+            for figure in results.figures()
         },
     }
     yield f'{_ENCODE(head)[:-1]},\n"tables": {{'

@@ -30,8 +30,8 @@ def to_lines(results: Results) -> Iterator[str]:
         yield f"found: {finding}"
     for word, sentence in results.about:
         yield f"{word}: {sentence}"
-    for section in results.sections:
-        for table in section.tables:
+    for chapter in results.chapters:
+        for table in chapter.tables:
             yield f"table {table.name}: {table.title}"
             yield from _rows(table)
             for note in table.notes:

@@ -33,23 +33,23 @@ def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
     parts = [f"# {escape(results.title)}"]
     if results.warnings:
         parts += [f"## {shown.WARNINGS}", _items(map(escape, results.warnings))]
-    picture = results.main_picture()
-    if results.findings or picture is not None:
+    figure = results.main_figure()
+    if results.findings or figure is not None:
         parts += [f"## {shown.FINDINGS}", _items(map(escape, results.findings))]
-    if picture is not None:
-        parts += _picture(picture, titles[picture.table])
+    if figure is not None:
+        parts += _figure(figure, titles[figure.table])
     if results.about:
         about = (f"**{escape(word)}**: {escape(what)}" for word, what in results.about)
         parts += [f"## {shown.ABOUT}", _items(about)]
-    for section in results.sections:
-        parts += [f"## {escape(section.title)}", escape(section.text)]
-        for table in section.tables:
+    for chapter in results.chapters:
+        parts += [f"## {escape(chapter.title)}", escape(chapter.text)]
+        for table in chapter.tables:
             parts += _table(table)
-        for picture in section.pictures:
-            if picture.name == results.main:
-                parts.append(f"{shown.ABOVE} {escape(picture.title)}.")
+        for figure in chapter.figures:
+            if figure.name == results.main:
+                parts.append(f"{shown.ABOVE} {escape(figure.title)}.")
             else:
-                parts += _picture(picture, titles[picture.table])
+                parts += _figure(figure, titles[figure.table])
     if beside:
         parts += [f"## {shown.FILES}", _items(map(_link, beside))]
     return "\n\n".join(filter(None, parts)) + "\n"
@@ -87,14 +87,14 @@ def _row(table: ResultTable, row: tuple[Value, ...]) -> list[str]:
     return texts
 
 
-def _picture(picture: ReportFigure, title: str) -> Iterator[str]:
-    yield f"### Figure: {escape(picture.title)}"
-    yield f"![{escape(shown.alternative(picture))}]({quote(shown.picture_name(picture, 'svg'))})"
-    yield escape(picture.text)
+def _figure(figure: ReportFigure, title: str) -> Iterator[str]:
+    yield f"### Figure: {escape(figure.title)}"
+    yield f"![{escape(shown.alternative(figure))}]({quote(shown.figure_name(figure, 'svg'))})"
+    yield escape(figure.text)
     yield (
-        f"Its numbers: [{escape(title)}]({quote(f'tables/{picture.table}.csv')}). "
+        f"Its numbers: [{escape(title)}]({quote(f'tables/{figure.table}.csv')}). "
         f"The figure: "
-        f"{', '.join(_link(shown.picture_name(picture, kind)) for kind in shown.KINDS)}."
+        f"{', '.join(_link(shown.figure_name(figure, kind)) for kind in shown.KINDS)}."
     )
 
 

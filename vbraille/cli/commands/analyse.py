@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     folder = None if arguments.out is None else Path(arguments.out)
     if folder is not None:
-        from vbraille.sessions.record.folder import check_free
+        from vbraille.files import check_free
 
         check_free(folder)
     results, study = _analysed(arguments, options)

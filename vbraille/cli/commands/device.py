@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.checking import check
 from vbraille.cli.stopping import EAR
 from vbraille.devices import opened_device
 from vbraille.devices.saying import say
+from vbraille.engine.checking import check
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time

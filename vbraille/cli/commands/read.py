@@ -6,6 +6,7 @@ import sys
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
+from vbraille.caching import compiling_note
 from vbraille.cli.build import (
     build_book,
     build_lengths,
@@ -14,18 +15,10 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import (
-    check_rate,
-    check_travel,
-    device_spec,
-    is_simulated,
-    refuse_hand,
-    say_if_compiling,
-    steering_of,
-)
 from vbraille.devices.base import Placing
-from vbraille.devices.registry import check_actuators
+from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.devices.saying import told
+from vbraille.display import check_rate
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
@@ -36,7 +29,13 @@ from vbraille.reading.keys import PASTE
 from vbraille.reading.reader import Echo, Reader
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.recorded import Recorded
-from vbraille.simulation.specs import parse_hand
+from vbraille.simulation.specs import (
+    device_spec,
+    is_simulated,
+    parse_hand,
+    refuse_hand,
+    steering_of,
+)
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -69,7 +68,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     steering = steering_of(arguments.device)
-    say_if_compiling()
+    if (note := compiling_note()) is not None:
+        print(note, file=sys.stderr, flush=True)
     host = Host(
         device_spec(arguments.device, hand, seed, steering),
         wanted,

@@ -19,7 +19,7 @@ from vbraille.cli.build import (
     note_unseen_dots,
 )
 from vbraille.cli.stopping import EAR
-from vbraille.cli.wanted import check_rate
+from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
 from vbraille.reading.reader import too_fast_note

@@ -2,35 +2,30 @@
 
 from __future__ import annotations
 
-import secrets
 import sys
 from contextlib import suppress
-from dataclasses import asdict
-from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from vbraille.cli.wanted import check_rate, refuse_hand
+from vbraille.cli.stopping import EAR
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.planning.plan import make_plan
+from vbraille.files import write_file
 from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import FORMAT, check_free, create, load, versions
-from vbraille.sessions.record.participants import alike, participants_in
-from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.answers import ScriptedAnswers, Typed, parse_answers
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.participants import nearly_same
+from vbraille.sessions.running.answers import Typed
+from vbraille.simulation.specs import refuse_hand
 from vbraille.wording import printable, spelled
 
 if TYPE_CHECKING:
     import argparse
 
     from vbraille.sessions.planning.conduct import Question
-    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.answers import Answers
-
-_HAND = "device"  # of the simulated device, unless told otherwise
-_MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
+    from vbraille.sessions.session import Session
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,10 +44,13 @@ def _protocols(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> int:
-    protocol, plan = _planned(arguments)
+    from vbraille.sessions.beginning import plan_session
+
+    protocol, plan = plan_session(arguments.protocol, arguments.participant, **_chances(arguments))
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
-    _say_seed(arguments, plan)
+    if arguments.seed is None:
+        _warn(f"seed: {plan.seed}")
     if arguments.brf:
         for trial in plan.trials:
             print(_cells(trial).to_brf())
@@ -71,84 +69,54 @@ def _plan(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from vbraille.cli.sitting import Sitting
+    from vbraille.sessions.conditions import Conditions
+    from vbraille.sessions.session import Session
 
     refuse_hand(arguments.device, hand=arguments.hand)
-    if arguments.hand is None:
-        arguments.hand = _HAND
-    protocol, plan = _planned(arguments)
-    sitting = Sitting(arguments, protocol, plan, 0, check_rate(arguments.rate), say=_say)
-    answers = parse_answers(arguments.answers, protocol, plan)
-    sitting.check(answers)
-    if isinstance(answers, ScriptedAnswers):
-        _check_script(answers, protocol, Progress(plan))
-    folder = Path(arguments.out or _new_name(plan))
-    check_free(folder)
+    session = Session.create(
+        arguments.protocol,
+        arguments.participant,
+        folder=arguments.out,
+        **_chances(arguments),
+        fields=arguments.field,
+        conditions=Conditions(rate_hz=arguments.rate, fast=arguments.fast, **_chosen(arguments)),
+    )
+    answers = session.answers()
     if not arguments.another:
-        _ask_who(folder.absolute().parent, plan.participant, answers)
-    fields = _ask_fields(protocol, arguments.field, answers)
-    head = {
-        "format": FORMAT,
-        "protocol": protocol.name,
-        "participant": plan.participant,
-        "seed": plan.seed,
-        "order": plan.order,
-        "model": protocol.model.name,
-        "array": {
-            name: getattr(protocol.model.display, name)
-            for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm")
-        },
-        "mapping": protocol.mapping.name,
-        "geometry": asdict(protocol.geometry),
-        "fields": fields,
-        "device": arguments.device,
-        "hand": arguments.hand,
-        "answers": arguments.answers,
-        "fast": arguments.fast,
-        "rate_hz": arguments.rate,
-        "versions": versions(),
-    }
-    with sitting:
-        sitting.open()
-        create(folder, protocol, plan, head)
-        _say_seed(arguments, plan)
-        _say(f"session: {folder}")
-        return sitting.run(load(folder), answers, why="start")
+        _ask_who(session.folder.absolute().parent, session.plan.participant, answers)
+    if isinstance(answers, Typed):
+        session.tell(_ask_fields(session.protocol, arguments.field, answers))
+    return _conduct(session, answers)
 
 
 def _resume(arguments: argparse.Namespace) -> int:
-    from vbraille.cli.sitting import Sitting
+    from vbraille.sessions.session import Session
 
-    record = load(Path(arguments.folder))
-    if record.told.damage is not None:
-        raise VbrailleError(
-            f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
-            f"{len(record.told.events)} events before it are whole, and nothing was changed"
-        )
-    head = record.head
-    refuse_hand(arguments.device or head["device"], hand=arguments.hand)
-    for name in ("device", "hand", "answers"):
-        if getattr(arguments, name) is None:
-            setattr(arguments, name, head[name])
-    arguments.fast |= head["fast"] and arguments.answers == head["answers"]
-    progress = Progress(record.plan, record.told.events)
-    if progress.ended:
-        raise InputError(f"{record.folder} has ended; session export makes tables of it")
-    sitting = Sitting(
-        arguments, record.protocol, record.plan, len(progress.runs), head["rate_hz"], say=_say
-    )
-    used = progress.script_lines.get(arguments.answers, 0)
-    answers = parse_answers(arguments.answers, record.protocol, record.plan, used)
-    sitting.check(answers)
-    if isinstance(answers, ScriptedAnswers):
-        _check_script(answers, record.protocol, progress)
-    with sitting:
-        return sitting.run(record, answers, why="resume")
+    fast = {"fast": True} if arguments.fast else {}
+    session = Session.resume(arguments.folder, **fast, **_chosen(arguments))
+    return _conduct(session, session.answers())
+
+
+def _conduct(session: Session, answers: Answers) -> int:
+    session.run(answers, say=_say, warn=_warn, before_rest=EAR.close)
+    return 0
+
+
+def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Conditions of a session that were given."""
+    names = ("device", "hand", "answers", "sound")
+    given = {name: getattr(arguments, name) for name in names}
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What a plan is drawn from, and what stands instead of the display's own tuning."""
+    return {name: getattr(arguments, name) for name in ("seed", "order", "texture", "contrast")}
 
 
 def _export(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.anonymous import anonymous
-    from vbraille.sessions.record.export import Traces, encode, rows, to_csv, write_new
+    from vbraille.sessions.record.export import Traces, encode, rows, to_csv
     from vbraille.sessions.record.folder import whole_lines
     from vbraille.sessions.record.notes import read_notes
 
@@ -168,7 +136,7 @@ def _export(arguments: argparse.Namespace) -> int:
         if arguments.out is None:
             sys.stdout.write(table)
         else:
-            write_new(Path(arguments.out), encode(table))
+            write_file(Path(arguments.out), encode(table))
             _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
     # Where the table is printed, nothing else may be between it and who reads it.
     if arguments.anonymous and (notes := len(read_notes(record.told.events))):
@@ -215,28 +183,6 @@ _ACTIONS = {
 }
 
 
-def _planned(arguments: argparse.Namespace) -> tuple[Protocol, Plan]:
-    protocol = load_protocol(arguments.protocol)
-    seed = arguments.seed
-    if seed is None:
-        seed = secrets.randbelow(_MOST_DRAWN)
-    plan = make_plan(
-        protocol,
-        arguments.participant,
-        seed,
-        arguments.order,
-        texture=arguments.texture,
-        contrast=arguments.contrast,
-    )
-    return protocol, plan
-
-
-def _say_seed(arguments: argparse.Namespace, plan: Plan) -> None:
-    """Say the seed, if it was drawn."""
-    if arguments.seed is None:
-        print(f"seed: {plan.seed}", file=sys.stderr, flush=True)
-
-
 def _describe(trial: Trial) -> str:
     if len(trial.stimuli) == 2:
         return ", then ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
@@ -251,29 +197,6 @@ def _cells(trial: Trial):
     return Cells.bare(np.array(trial.stimuli[0].masks, np.uint8))
 
 
-def _check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress) -> None:
-    """Raise InputError if a line of the file is no answer to its trial: nothing is begun then."""
-    from vbraille.sessions.running.console import read_line
-    from vbraille.sessions.running.orders import find_order
-
-    trials = iter(progress.plan.trials[progress.done :])
-    correcting, answered = progress.correcting, progress.last_answered
-    for line, number in script.left:
-        found = find_order(line)
-        if found is not None and found[0].word == "undo":
-            correcting = correcting or answered
-        if found is not None and found[0].word != "answer":
-            continue
-        trial = correcting or next(trials, None)
-        if trial is None:
-            raise InputError(f"{script.path} line {number}: there is no trial left to answer")
-        try:
-            read_line(protocol, trial, line if found is None else found[1])
-        except ValueError as error:
-            raise InputError(f"{script.path} line {number}: {error}") from None
-        correcting, answered = None, trial if correcting is None else answered
-
-
 def _ask_who(room: Path, participant: str, answers: Answers) -> None:
     """Ask whether a new participant is one whose pseudonym is nearly the same.
 
@@ -282,13 +205,11 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
     InputError
         If it is, or nobody is there who could be asked.
     """
-    known = participants_in(room)
-    if participant in known:
+    found = nearly_same(room, participant)
+    if found is None:
         return
-    near = next((other for other in known if alike(other, participant)), None)
-    if near is None:
-        return
-    told = f"{participant} is new here, and {near} has the session {known[near]}"
+    near, session = found
+    told = f"{participant} is new here, and {near} has the session {session}"
     if isinstance(answers, Typed) and sys.stdin.isatty():
         _say(f"participant: {told}; is {participant} somebody else? (yes or no):")
         while (line := answers.line()) is not None:
@@ -303,34 +224,16 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
     )
 
 
-def _ask_fields(protocol: Protocol, given: dict[str, str], answers: Answers) -> dict[str, str]:
-    """What the protocol asks about the participant: as given, else typed, else nothing."""
-    names = [field.name for field in protocol.fields]
-    for name in given:
-        if name not in names:
-            raise InputError(
-                f"{protocol.name} does not ask for {name!r}; "
-                f"it asks for {', '.join(names) or 'nothing'}"
-            )
-    told = {}
-    for field in protocol.fields:
-        if field.name in given:
-            if field.choices and given[field.name] not in field.choices:
-                raise InputError(
-                    f"{field.name} is {given[field.name]!r}; it must be {_choices(field)}"
-                )
-            if not given[field.name].isprintable():
-                raise InputError(
-                    f"{field.name} is {given[field.name]!r}; it must be one line of text"
-                )
-            told[field.name] = given[field.name]
-        else:
-            told[field.name] = _ask(field, answers) if isinstance(answers, Typed) else ""
-    return told
+def _ask_fields(protocol: Protocol, given: dict[str, str], typed: Typed) -> dict[str, str]:
+    """What the protocol asks about the participant: as given, else typed."""
+    return {
+        field.name: given[field.name] if field.name in given else _ask(field, typed)
+        for field in protocol.fields
+    }
 
 
 def _ask(field: Question, typed: Typed) -> str:
-    choices = f" ({_choices(field)})" if field.choices else ""
+    choices = f" ({' or '.join(field.choices)})" if field.choices else ""
     while True:
         _say(f"{field.ask}{choices}:")
         line = typed.line()
@@ -341,14 +244,10 @@ def _ask(field: Question, typed: Typed) -> str:
             return text
 
 
-def _choices(field: Question) -> str:
-    return " or ".join(field.choices)
-
-
-def _new_name(plan: Plan) -> str:
-    return f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
-
-
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because nobody listens
         print(printable(sentence), flush=True)
+
+
+def _warn(sentence: str) -> None:
+    print(printable(sentence), file=sys.stderr, flush=True)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import Placing
-from vbraille.devices.events import Changed, Difference
+from vbraille.devices.events import Changed, Difference, Placing
 from vbraille.devices.wire.messages import Encoder
 
 if TYPE_CHECKING:

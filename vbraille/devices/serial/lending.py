@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.devices.base import Lent
+from vbraille.devices.lent import Actuators, Lent
 from vbraille.devices.serial.conversation import IDLE_MS
-from vbraille.devices.serial.steady import CONVERSATION, NEVER, WORK_BYTES, Actuators
+from vbraille.devices.serial.steady import CONVERSATION, NEVER, WORK_BYTES
 from vbraille.devices.wire.codec import CRC_BYTES, frame_head, line_bytes
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.devices.base import Placing
 from vbraille.devices.events import (
     Back,
     Button,
     Fault,
     Notice,
     Placed,
+    Placing,
     Silent,
     Stranger,
     WatchdogTripped,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.devices.base import Placing
+from vbraille.devices.events import Placing
 from vbraille.devices.wire.codec import unwrap
 from vbraille.devices.wire.messages import Encoder
 

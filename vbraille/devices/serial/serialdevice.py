@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Final
 
-from vbraille.devices.base import Device, Lent
+from vbraille.devices.base import Device
 from vbraille.devices.events import Fault
+from vbraille.devices.lent import Lent
 from vbraille.devices.saying import say
 from vbraille.devices.serial.lending import Lending
 from vbraille.devices.serial.serialport import DRAIN_MS

@@ -9,11 +9,9 @@ is to do.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from vbraille.caching import keep_compiled
 from vbraille.devices.wire import packing
@@ -69,31 +67,6 @@ CONVERSATION = np.dtype(
     ],
     align=True,
 )
-
-
-class Actuators(NamedTuple):
-    """What FRAMEs are made with, and the last of them.
-
-    Parameters
-    ----------
-    last, wanted : float64[rows, columns]
-        Deflections of the FRAME that went out last, and of the one that was made last.
-    swing : float64[rows, columns]
-        Levels of a full swing, before it is inverted.
-    rest : int64[rows, columns]
-        Level at rest: 0, or the highest.
-    body : uint8[bytes]
-        A FRAME's type, sequence and levels, and room for its CRC.
-    packed : uint8[bytes]
-        The levels, in it.
-    """
-
-    last: NDArray[np.float64]
-    wanted: NDArray[np.float64]
-    swing: NDArray[np.float64]
-    rest: NDArray[np.int64]
-    body: NDArray[np.uint8]
-    packed: NDArray[np.uint8]
 
 
 _CODES = {message: code for code, message in MESSAGES.items()}

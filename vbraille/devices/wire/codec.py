@@ -20,7 +20,13 @@ from zlib import crc32
 import numpy as np
 from cobs import cobs
 
-from vbraille.devices.wire.fields import Fixed, Message, WrongLengthError, fields_of
+from vbraille.devices.wire.fields import (
+    Message,
+    WrongLengthError,
+    fields_of,
+    head_of,
+    to_wire,
+)
 from vbraille.devices.wire.messages import MESSAGES, VERSION, Frame, Info
 
 if TYPE_CHECKING:
@@ -55,32 +61,29 @@ class OtherVersion:
 Heard = Message | OtherVersion
 
 
-class LevelPacking:
-    """Encoder and decoder of one message, both made from its fields."""
+class BodyCodec:
+    """Encoder and decoder of one message's body, both made from its fields."""
 
     def __init__(self, code: int, message: type[Message]) -> None:
-        fields = fields_of(message)
+        head = head_of(message)
+        names = [name for name, _ in fields_of(message)]
         self.code = code
         self.message = message
-        self._names = tuple(name for name, _ in fields)
-        # The fixed fields up to the first other one are packed in one call.
-        head: list[Fixed] = []
-        for _, field in fields:
-            if not isinstance(field, Fixed):
-                break
-            head.append(field)
+        # The fixed fields that it begins with are packed in one call.
+        self._head = names[: len(head)]
         self._struct = struct.Struct("<B" + "".join(field.code for field in head))
-        self._converting = [(i, field) for i, field in enumerate(head) if field.converts]
-        self._head = self._names[: len(head)]
-        self._fixed = fields[: len(head)]
-        self._rest = fields[len(head) :]
-        # A message of numbers that may be all that their bytes can say needs no look at their
-        # ranges, and is made without: STATE comes a thousand times a second.
-        self._any = not self._rest and all(field.any for field in head)
-        self._setters = [getattr(message, name).__set__ for name in self._head]
+        self._meanings = [(i, field.meanings) for i, field in enumerate(head) if field.meanings]
+        self._to_wire = [(i, to_wire(meanings)) for i, meanings in self._meanings]
+        self._rest = fields_of(message)[len(head) :]
+        # A message whose numbers may be all that their bytes can say is made without a look at
+        # their ranges: STATE comes a thousand times a second.
+        if not self._rest and all(field.takes_all for field in head):
+            self._setters = [getattr(message, name).__set__ for name in names]
+        else:
+            self._setters = None
 
     def encode(self, message: Message) -> bytes:
-        """Body of a message: its type and its fields.
+        """Give the body of a message: its type and its fields.
 
         Raises
         ------
@@ -88,8 +91,8 @@ class LevelPacking:
             If a number is not an integer; its range it has checked itself.
         """
         values = [getattr(message, name) for name in self._head]
-        for i, field in self._converting:
-            values[i] = field.raw(values[i])
+        for i, raw in self._to_wire:
+            values[i] = raw.get(values[i], values[i])
         try:
             body = self.pack_head(*values)
         except struct.error as fault:
@@ -99,11 +102,11 @@ class LevelPacking:
         return body
 
     def pack_head(self, *values: int) -> bytes:
-        """Type and fixed fields, as they are on the wire."""
+        """Give the type and the fixed fields, as they are on the wire."""
         return self._struct.pack(self.code, *values)
 
     def decode(self, body: bytes) -> Message:
-        """Message of a body; bytes that a later version appended are left alone.
+        """Give the message of a body; bytes that a later version appended are left alone.
 
         Raises
         ------
@@ -116,32 +119,28 @@ class LevelPacking:
         if len(body) < at:
             raise WrongLengthError
         _, *values = self._struct.unpack_from(body)
-        for i, field in self._converting:
-            values[i] = field.value(values[i])
-        if self._any:
+        for i, meaning in self._meanings:
+            values[i] = meaning.get(values[i], values[i])
+        if self._setters:
             message = object.__new__(self.message)
             for set_field, value in zip(self._setters, values, strict=True):
                 set_field(message, value)
             return message
-        if self._rest:
-            earlier = dict(zip(self._names, values, strict=False))
-            for name, field in self._fixed:  # by which the others are as long as they are
-                field.check(name, earlier[name], None)
-            for name, field in self._rest:
-                earlier[name], at = field.unpack(body, at, earlier)
-            values = earlier.values()
-        return self.message(*values)
+        known = dict(zip(self._head, values, strict=True))
+        for name, field in self._rest:
+            known[name], at = field.unpack(body, at, known)
+        return self.message(**known)
 
 
-_LAYOUTS = {code: LevelPacking(code, message) for code, message in MESSAGES.items()}
-_LAYOUT_OF = {layout.message: layout for layout in _LAYOUTS.values()}
-_INFO = _LAYOUT_OF[Info].code
-_FRAME = _LAYOUT_OF[Frame]
+_CODECS = {code: BodyCodec(code, message) for code, message in MESSAGES.items()}
+_CODEC_OF = {codec.message: codec for codec in _CODECS.values()}
+_INFO = _CODEC_OF[Info].code
+_FRAME = _CODEC_OF[Frame]
 
 
 def encode(message: Message) -> bytes:
     """Frame of a message, as it goes over the line, with its delimiter."""
-    return enframe(_LAYOUT_OF[type(message)].encode(message))
+    return enframe(_CODEC_OF[type(message)].encode(message))
 
 
 def frame_head(sequence: int) -> bytes:
@@ -241,26 +240,26 @@ class Decoder:
             return Drop.BAD_COBS
         if len(body) <= CRC_BYTES or crc32(body) != CRC_RESIDUE:
             return Drop.BAD_CRC
-        layout = _LAYOUTS.get(body[0])
-        if layout is None:
+        codec = _CODECS.get(body[0])
+        if codec is None:
             return Drop.UNKNOWN_TYPE
         body = body[:-CRC_BYTES]
-        if layout.code == _INFO and len(body) > 1 and body[1] != VERSION:
+        if codec.code == _INFO and len(body) > 1 and body[1] != VERSION:
             return OtherVersion(body[1])
         try:
-            message = layout.decode(body)
+            message = codec.decode(body)
             if self._levels is not None and isinstance(message, Frame):
                 self._levels.check(message.packed)
         except WrongLengthError:
-            self._mind_info(layout, "it ends before its last field")
+            self._mind_info(codec, "it ends before its last field")
             return Drop.WRONG_LENGTH
         except ValueError as fault:
-            self._mind_info(layout, str(fault))
+            self._mind_info(codec, str(fault))
             return Drop.OUT_OF_RANGE
         return message
 
-    def _mind_info(self, layout: LevelPacking, fault: str) -> None:
-        if layout.code == _INFO:
+    def _mind_info(self, codec: BodyCodec, fault: str) -> None:
+        if codec.code == _INFO:
             self.bad_info = fault
 
 

@@ -1,6 +1,8 @@
-"""How the fields of messages go over the wire, and what values they may have.
+"""What the fields of messages may hold, and how they go over the wire.
 
-A message is a frozen dataclass whose annotations are `Annotated[type, field]`.
+A message is a frozen dataclass whose annotations are `Annotated[type, field]`. Its checks, its
+encoding and its decoding all follow from these fields. The table of messages is
+`vbraille.devices.wire.messages`.
 """
 
 from __future__ import annotations
@@ -15,109 +17,98 @@ if TYPE_CHECKING:
 
 
 class WrongLengthError(ValueError):
-    """A message that ends before its last field, or goes on where nothing may be appended."""
+    """There are fewer bytes than there must be, or more than there may be."""
 
 
 class Field(Protocol):
     """How one field of a message goes over the wire."""
 
     def check(self, name: str, value: Any, message: Any) -> None:
-        """Raise ValueError if the value is out of range; a fixed field asks no message for it."""
+        """Raise ValueError if the value is out of range, WrongLengthError if its length is."""
         ...
 
     def pack(self, value: Any) -> bytes:
-        """Bytes of a checked value."""
+        """Give the bytes of a checked value."""
         ...
 
     def unpack(self, body: bytes, at: int, earlier: dict[str, Any]) -> tuple[Any, int]:
-        """Value at a place of a message, and the place after it; WrongLengthError past the end."""
+        """Give the value that begins at a place of a body, not checked yet, and the place after it.
+
+        WrongLengthError if the body ends before the value does. `earlier` are the fields before it.
+        """
         ...
 
 
 class Fixed:
-    """A field that a letter of `struct` describes, least significant byte first."""
+    """A field of one `struct` code, the least significant byte first.
+
+    Attributes
+    ----------
+    code
+        The code of `struct`.
+    takes_all
+        Whether everything that its bytes can say is in range.
+    """
 
     __slots__ = ()
     code: str
-    # Whether a value is something else in the message than on the wire.
-    converts = True
+    takes_all = False
 
     @property
-    def any(self) -> bool:
-        """Whether all that its bytes can say is in range."""
-        return False
+    def meanings(self) -> dict[int, Any]:
+        """What numbers on the wire mean that are something else in the message."""
+        return {}
 
-    def raw(self, value: Any) -> int:
-        """Value as it is on the wire."""
-        return value
-
-    def value(self, raw: int) -> Any:
-        """Value as it is in the message."""
-        return raw
+    @property
+    def layout(self) -> Struct:
+        """The field alone."""
+        return Struct("<" + self.code)
 
     def pack(self, value: Any) -> bytes:
-        """Bytes of a checked value."""
-        return Struct("<" + self.code).pack(self.raw(value))
+        """Give the bytes of a checked value."""
+        return self.layout.pack(to_wire(self.meanings).get(value, value))
 
     def unpack(self, body: bytes, at: int, _earlier: dict[str, Any]) -> tuple[Any, int]:
-        """Value, and the place after it."""
-        layout = Struct("<" + self.code)
-        if len(body) - at < layout.size:
+        """Give the value, and the place after it."""
+        end = at + self.layout.size
+        if end > len(body):
             raise WrongLengthError
-        return self.value(layout.unpack_from(body, at)[0]), at + layout.size
+        (raw,) = self.layout.unpack_from(body, at)
+        return self.meanings.get(raw, raw), end
+
+
+def to_wire(meanings: dict[int, Any]) -> dict[Any, int]:
+    """Turn `Fixed.meanings` round: what is on the wire for what is in the message."""
+    return {value: raw for raw, value in meanings.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class Number(Fixed):
-    """An integer from `low` to `high`."""
+    """An integer from `low` to `high`; None, too, where `none` stands for it on the wire."""
 
     code: str
     low: int
     high: int
     unit: str = ""
-    converts = False
+    none: int | None = None  # out of the range
 
     @property
-    def any(self) -> bool:
-        """Whether all that its bytes can say is in range; of a signed number never said."""
-        return self.low == 0 and self.high == 256 ** Struct(self.code).size - 1
+    def takes_all(self) -> bool:
+        """Whether everything that its bytes can say is in range."""
+        return self.high - self.low + 1 + len(self.meanings) == 256**self.layout.size
 
-    def check(self, name: str, value: int, _message: Any) -> None:
-        """From `low` to `high`."""
-        if not self.low <= value <= self.high:
+    @property
+    def meanings(self) -> dict[int, Any]:
+        """`none` means None."""
+        return {} if self.none is None else {self.none: None}
+
+    def check(self, name: str, value: int | None, _message: Any) -> None:
+        """From `low` to `high`, or None if that can be told."""
+        if value is None and self.none is not None:
+            return
+        if value is None or not self.low <= value <= self.high:
             unit = f" {self.unit}" if self.unit else ""
             raise ValueError(f"{name} is {value}; it must be {self.low} to {self.high}{unit}")
-
-
-@dataclass(frozen=True, slots=True)
-class OptionalNumber(Number):
-    """A number or None, for which `none`, out of the number's range, stands on the wire."""
-
-    none: int = 0
-    converts = True
-
-    @property
-    def any(self) -> bool:
-        """Whether all that its bytes can say is in range, or none."""
-        half = 128 * 256 ** (Struct(self.code).size - 1)
-        return self.code.islower() and (self.none, self.low, self.high) == (
-            -half,
-            1 - half,
-            half - 1,
-        )
-
-    def raw(self, value: int | None) -> int:
-        """`none` for None."""
-        return self.none if value is None else value
-
-    def value(self, raw: int) -> int | None:
-        """None for `none`."""
-        return None if raw == self.none else raw
-
-    def check(self, name: str, value: int | None, message: Any) -> None:
-        """None, or a number from `low` to `high`."""
-        if value is not None:
-            Number.check(self, name, value, message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +118,10 @@ class OneOf(Fixed):
     code: str
     of: type[IntEnum]
 
-    def value(self, raw: int) -> IntEnum | int:
-        """Member of the enumeration; the number itself if it has none such, for `check` to name."""
-        return self.of(raw) if raw in list(self.of) else raw
+    @property
+    def meanings(self) -> dict[int, Any]:
+        """Each number means its member; another one stays a number, for `check` to name."""
+        return {int(choice): choice for choice in self.of}
 
     def check(self, name: str, value: int, _message: Any) -> None:
         """One of the numbers."""
@@ -157,12 +149,12 @@ class Text:
             raise ValueError(f"{name} is {value!r}; it must be {self.fewest} to {self.most} bytes")
 
     def pack(self, value: str) -> bytes:
-        """Length and text."""
+        """Give its length and the text."""
         text = value.encode()
         return bytes((len(text),)) + text
 
     def unpack(self, body: bytes, at: int, _earlier: dict[str, Any]) -> tuple[str, int]:
-        """Text, and the place after it."""
+        """Give the text, and the place after it."""
         if at >= len(body) or len(body) - at - 1 < body[at]:
             raise WrongLengthError
         end = at + 1 + body[at]
@@ -175,46 +167,38 @@ class PerActuator:
     """A byte from 0 to `high` for each actuator, row by row."""
 
     high: int
+    pack = bytes
 
     def check(self, name: str, value: bytes, message: Any) -> None:
         """As many as there are actuators, up to `high`."""
         actuators = message.rows * message.columns
         if len(value) != actuators:
-            raise ValueError(f"{name} are {len(value)} bytes; there are {actuators} actuators")
+            raise WrongLengthError(
+                f"{name} are {len(value)} bytes; there are {actuators} actuators"
+            )
         if max(value) > self.high:
             raise ValueError(f"{name} are up to {max(value)}; they must be 0 to {self.high}")
 
-    def pack(self, value: bytes) -> bytes:
-        """The bytes as they are."""
-        return bytes(value)
-
     def unpack(self, body: bytes, at: int, earlier: dict[str, Any]) -> tuple[bytes, int]:
-        """As many bytes as rows and columns, before it in the message, say."""
+        """Give as many bytes as the rows and columns before it say, or those that are left."""
         end = at + earlier["rows"] * earlier["columns"]
-        if end > len(body):
-            raise WrongLengthError
         return body[at:end], end
 
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """All the bytes to the message's end: nothing can be appended after them."""
+    """All the bytes to the message's end, 1 to `most`: nothing can be appended after them."""
 
     most: int
+    pack = bytes
 
     def check(self, name: str, value: bytes, _message: Any) -> None:
         """From one byte to `most`."""
         if not 1 <= len(value) <= self.most:
-            raise ValueError(f"{name} are {len(value)} bytes; they must be 1 to {self.most}")
-
-    def pack(self, value: bytes) -> bytes:
-        """The bytes as they are."""
-        return bytes(value)
+            raise WrongLengthError(f"{name} are {len(value)} bytes; they must be 1 to {self.most}")
 
     def unpack(self, body: bytes, at: int, _earlier: dict[str, Any]) -> tuple[bytes, int]:
-        """All that is left."""
-        if not 1 <= len(body) - at <= self.most:
-            raise WrongLengthError
+        """Give all that is left."""
         return body[at:], len(body)
 
 
@@ -224,12 +208,7 @@ class Message:
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        bounds, others = _checks(type(self))
-        # Numbers are checked here without a call each: STATE has six, 1000 times a second.
-        for name, low, high, field in bounds:
-            if not low <= getattr(self, name) <= high:
-                field.check(name, getattr(self, name), self)
-        for name, field in others:
+        for name, field in fields_of(type(self)):
             field.check(name, getattr(self, name), self)
 
 
@@ -240,6 +219,16 @@ def fields_of(message: type[Message]) -> tuple[tuple[str, Field], ...]:
     return tuple((name, get_args(hint)[1]) for name, hint in hints.items())
 
 
+def head_of(message: type[Message]) -> list[Fixed]:
+    """The fixed fields that a message begins with, up to the first of another kind."""
+    head: list[Fixed] = []
+    for _, field in fields_of(message):
+        if not isinstance(field, Fixed):
+            break
+        head.append(field)
+    return head
+
+
 def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
     """Where the numbers are that a message begins with: first byte, bytes, whether it is signed.
 
@@ -247,24 +236,8 @@ def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
     """
     places = []
     at = 1  # after the type
-    for _, field in fields_of(message):
-        if not isinstance(field, Fixed):
-            break
-        width = Struct("<" + field.code).size
+    for field in head_of(message):
+        width = field.layout.size
         places.append((at, width, field.code.islower()))
         at += width
     return tuple(places)
-
-
-@cache
-def _checks(
-    message: type[Message],
-) -> tuple[list[tuple[str, int, int, Field]], list[tuple[str, Field]]]:
-    bounds: list[tuple[str, int, int, Field]] = []
-    others: list[tuple[str, Field]] = []
-    for name, field in fields_of(message):
-        if isinstance(field, Number) and not field.converts:
-            bounds.append((name, field.low, field.high, field))
-        else:
-            others.append((name, field))
-    return bounds, others

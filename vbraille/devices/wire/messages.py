@@ -1,7 +1,7 @@
 """What a host and a device say to each other: the one table of messages.
 
-A message is a class whose annotations say how each field goes over the wire.
-`wire` encodes, decodes and checks by these annotations; `docs/wire-protocol.md`
+A message is a class whose annotations say what each field may be and how it goes over the wire.
+`codec` encodes, decodes and checks by these annotations; `docs/wire-protocol.md`
 is the same table for people who write firmware.
 """
 
@@ -13,7 +13,6 @@ from vbraille.devices.wire.fields import (
     Message,
     Number,
     OneOf,
-    OptionalNumber,
     Packed,
     PerActuator,
     Text,
@@ -48,7 +47,7 @@ U8: Final = Number("B", 0, 0xFF)
 U16: Final = Number("H", 0, 0xFFFF)
 U32: Final = Number("I", 0, 0xFFFF_FFFF)
 MICROSECONDS: Final = Number("I", 0, 0xFFFF_FFFF, "µs")
-FORCE: Final = OptionalNumber("h", -0x7FFF, 0x7FFF, "mN", none=-0x8000)
+FORCE: Final = Number("h", -0x7FFF, 0x7FFF, "mN", none=-0x8000)
 PITCH: Final = Number("I", 50_000, 50_000_000, "nm")
 
 

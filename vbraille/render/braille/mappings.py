@@ -27,12 +27,12 @@ class Mapping:
     Parameters
     ----------
     name
-        Of the method.
+        Name of the method.
     left, right
-        The dot row (0, 1, 2; 3 for dots 7 and 8) that each actuator row shows
-        of a cell's left and right dot column; `NONE` for none.
+        For each actuator row, the dot row that it shows of a cell's left and of its right dot
+        column: 0, 1, 2, or 3 for dots 7 and 8; `NONE` for none.
     inverted
-        Whether the row's phase is inverted: its idle end is then 1, and a dot
+        For each actuator row, whether its phase is inverted: its idle end is then 1, and a dot
         swings it towards 0.
 
     Raises
@@ -55,15 +55,15 @@ class Mapping:
 
     @property
     def rows(self) -> int:
-        """Actuator rows that the method needs."""
+        """How many actuator rows the method needs."""
         return len(self.left)
 
     def idle(self) -> NDArray[np.float64]:
-        """Deflection of each row off the dots while a line is shown; float64[rows]."""
+        """Tell the deflection of each row off the dots, while a line is shown; float64[rows]."""
         return np.array(self.inverted, np.float64)
 
     def shown_dots(self) -> int:
-        """Mask of the dots that some row shows; bit 0 is dot 1."""
+        """Tell which dots any row shows, as a mask; bit 0 is dot 1."""
         mask = 0
         for dot in range(8):
             column, row = _PLACE[dot]
@@ -72,10 +72,9 @@ class Mapping:
         return mask
 
     def row_bits(self) -> NDArray[np.uint16]:
-        """Actuator rows that a cell raises; uint16[256, 2].
+        """Tell which actuator rows show a dot of each possible cell; uint16[256, 2].
 
-        Of each dot mask and dot column (0 = left), bit r is set if actuator row
-        r shows a dot.
+        For each dot mask and dot column (0 = left), bit r is set if actuator row r shows a dot.
         """
         bits = np.zeros((256, 2), np.uint16)
         masks = np.arange(256)
@@ -102,15 +101,15 @@ MAPPINGS = {
         Mapping("alternate", _EVEN, _EVEN, _NO),
         # Each dot row drives a pair of actuator rows.
         Mapping("paired", _PAIRS, _PAIRS, _NO),
-        # As paired, opposite within the pair: the most shearing of the skin.
+        # As paired, but the rows of a pair move against each other, which shears the skin most.
         Mapping("sheared", _PAIRS, _PAIRS, (True, False) * 3),
-        # The two dot columns of a cell on different actuator rows.
+        # The two dot columns of a cell drive different actuator rows.
         Mapping("split-columns", _EVEN, _ODD, _NO),
-        # The middle dot row opposite to its neighbours (later code, not in fig. 4.5).
+        # The middle dot row moves against its neighbours (later code, not in fig. 4.5).
         Mapping("row-sheared", _PAIRS, _PAIRS, (False, False, True, True, False, False)),
-        # Dot rows one actuator row apart (later code, not in fig. 4.5).
+        # Dot rows stand one actuator row apart (later code, not in fig. 4.5).
         Mapping("compact", _TOP, _TOP, _NO),
-        # The same on any array of three rows or more, in its middle (ours).
+        # Our own: as compact, in the middle of any array of three rows or more.
         Mapping("three-rows", (0, 1, 2), (0, 1, 2), (False,) * 3),
     )
 }

@@ -1,4 +1,4 @@
-"""The displays of the source with the style of each, and how any other display is read."""
+"""The two displays of Lévesque 2009 with the style of each, and how any other display is read."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from vbraille.render.braille.tuning import Tuning
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
 
-# By how much the pitch of an array may differ from that of a display that it counts as.
+# How far the pitch of an array may differ from a model's, as a share, and still be that model.
 PITCH_TOLERANCE = 0.01
-# What a simulated device has: 10 bits, and 5 µm a count, at full texture 4 % of the swing.
+# A simulated device has 10 bits, and 5 µm a count: at full texture that is 4 % of the swing.
 _LEVELS, _COUNTS_PER_MM, _RATE_HZ = 1024, 200.0, 1000.0
 # Rows of a mapping that shows all the dot rows of a cell one actuator row apart.
 _LEAST_ROWS = 3
@@ -30,9 +30,9 @@ class Model:
     Parameters
     ----------
     name
-        What options call it; empty for a display that nobody has named.
+        What options call it; empty for a display that has no such name.
     title
-        What people call it.
+        What people call the display.
     display
         The hardware.
     style
@@ -45,7 +45,7 @@ class Model:
     style: BrailleStyle
 
     def on(self, geometry: Geometry, rate_hz: float = _RATE_HZ) -> Display:
-        """The display, with the travel that a geometry gives it, at a rate."""
+        """Make the display with the travel of a geometry, at a rate in Hz."""
         return replace(self.display, travel_mm=geometry.travel_mm, rate_hz=rate_hz)
 
 
@@ -91,7 +91,7 @@ MODELS = {model.name: model for model in (STRESS2, VBD)}
 
 
 def same_array(one: Display, other: Display) -> bool:
-    """Whether two displays have as many actuators, as far apart; one line has no pitch."""
+    """Whether two displays have as many actuators, as far apart; a single row has no pitch."""
     if one.shape != other.shape:
         return False
     return all(
@@ -104,11 +104,11 @@ def same_array(one: Display, other: Display) -> bool:
 
 
 def model_of(display: Display) -> Model:
-    """How a display is read that a device offers: as the display of the source that is like it.
+    """Choose the model by which a device's display is read: the one that it resembles most.
 
-    One that has the array of a known model is that model. Any other of six rows or more is read as
-    the STReSS² is, its mapping in the middle; with three to five rows each dot row has one of
-    them; with one or two, one row of dots is shown as on the VBD.
+    A display that has the array of a known model is that model. Any other display of six rows or
+    more is read as the STReSS² is, in its middle rows. Three to five rows show each row of dots on
+    a row of actuators. One or two rows show one row of dots, as the VBD does.
     """
     for model in MODELS.values():
         if same_array(display, model.display):

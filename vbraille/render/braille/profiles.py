@@ -18,19 +18,19 @@ class Profile(IntEnum):
     """How the deflection swings across a dot."""
 
     HALF_SINE = 0
-    """The VBD's: Lévesque 2009, 3.2, with the texture's phase and norm made exact by us."""
+    """The profile of the VBD: Lévesque 2009, 3.2; its texture's phase and norm are our choice."""
     RAISED_COSINE = 1
-    """The STReSS²'s: Lévesque 2009, eqs. 4.1-4.3."""
+    """The profile of the STReSS²: Lévesque 2009, eqs. 4.1-4.3."""
 
     def texture_period_mm(self, dot_width_mm: float, cycles: int) -> float:
-        """Wavelength of the texture along x."""
+        """Tell the wavelength of the texture along x, in mm."""
         if self is Profile.HALF_SINE:
             return dot_width_mm / 4
         return dot_width_mm / cycles
 
 
 def half_sine_peak(level: float) -> float:
-    """M(a): the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
+    """Find M(a), the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
     a = level / 8
     theta = np.linspace(0, np.pi, 4097)
     best = theta[np.argmax(np.sin(theta) + a * np.sin(8 * theta))]
@@ -41,13 +41,13 @@ def half_sine_peak(level: float) -> float:
 
 
 def coefficients(profile: Profile, tuning: Tuning) -> NDArray[np.float64]:
-    """Coefficients by which the kernels compute a dot's profile; float64[6]."""
+    """Compute the coefficients from which the kernels make a dot's profile; float64[6]."""
     shape = np.zeros(6)
     if profile is Profile.HALF_SINE:
         shape[0] = 1 / half_sine_peak(tuning.texture)
         shape[1] = tuning.texture * shape[0]  # a = T / 8, and sin 8θ brings a factor of 8
     else:
-        odd = chebyshev.cheb2poly([0] * tuning.cycles + [1])[1::2]  # of T_k, k odd
+        odd = chebyshev.cheb2poly([0] * tuning.cycles + [1])[1::2]  # coefficients of T_k, k odd
         shape[: odd.size] = tuning.texture * odd / 2
         shape[0] += (1 - tuning.texture) / 2
     return shape

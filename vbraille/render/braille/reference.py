@@ -1,6 +1,6 @@
-"""The deflections in plain numpy, straight from the equations: the kernels' twin.
+"""The deflections in plain numpy, straight from the equations: the twin of the kernels.
 
-Slow and short on purpose. The tests hold `vbraille.render.kernels` to it.
+It is slow and short on purpose; the tests hold `vbraille.render.kernels` to it.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 
 
 def bump(p: ArrayLike) -> NDArray[np.float64]:
-    """Dot of the STReSS² on [-1, 1] (eq. 4.1); p is the distance from its centre in radii."""
+    """Compute a STReSS² dot on [-1, 1] (eq. 4.1); p is the distance from its centre in radii."""
     p = np.asarray(p, np.float64)
     return np.where(np.abs(p) <= 1, np.cos(np.pi * p), -1.0)
 
 
 def texture(p: ArrayLike, cycles: int) -> NDArray[np.float64]:
-    """Texture of the STReSS² on [-1, 1] (eq. 4.2), with k = cycles, odd."""
+    """Compute the texture of the STReSS² on [-1, 1] (eq. 4.2), with k = cycles, odd."""
     p = np.asarray(p, np.float64)
     return np.where(np.abs(p) <= 1, np.cos(cycles * np.pi * p), -1.0)
 
 
 def raised_cosine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[np.float64]:
-    """Swing of a STReSS² dot in [0, 1] (eq. 4.3); u is the distance from its left edge."""
+    """Compute a STReSS² dot's swing in [0, 1] (eq. 4.3); u is the distance from its left edge."""
     p = (np.asarray(u_mm, np.float64) - width_mm / 2) / (width_mm / 2)
     level = tuning.texture
     delta = (1 - level) * bump(p) + level * texture(p, tuning.cycles)
@@ -40,10 +40,10 @@ def raised_cosine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[n
 
 
 def half_sine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[np.float64]:
-    """Swing of a VBD dot in [0, 1]; u is the distance from its left edge.
+    """Compute the swing of a VBD dot in [0, 1]; u is the distance from its left edge.
 
     Lévesque 2009, 3.2: half a sinusoid, with a second one of 1/8 of its
-    amplitude and wavelength for texture. Phase and norm are ours:
+    amplitude and wavelength for texture. Phase and norm are our choice:
     [sin(πu/W) + a sin(8πu/W)] / M(a), a = T/8.
     """
     u = np.asarray(u_mm, np.float64)
@@ -63,19 +63,18 @@ def deflections(
     display: Display,
     anchor_mm: float | None = None,
 ) -> NDArray[np.float64]:
-    """Frames of a line for places of the array's centre.
+    """Compute the frames of a line for places of the array's centre.
 
     Parameters
     ----------
     x_mm : float64[n]
-        Places.
+        Places along the line.
     masks : uint8[cells]
-        The line.
+        Dot masks of the line.
     style, display
         How it is shown, and on what.
     anchor_mm
-        How far right of the left column the point is whose places are given; the centre if
-        nothing is said.
+        How far right of the left column the point is whose places are given; None is the centre.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""How braille is shown: everything of it in one value, and what it makes of a line or a page."""
+"""How braille is shown, as one value, which compiles a line or a page of braille."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.tuning import Tuning
     from vbraille.render.program import Program
 
-# Of a page: how far apart going to the next line and coming back are, in line pitches.
+# How far apart on a page going to the next line and coming back are, in line pitches.
 HYSTERESIS = 0.25
 
 
@@ -42,8 +42,8 @@ class BrailleStyle:
     tuning
         Texture and contrast.
     first_row
-        Actuator row of the display that the mapping's first one is; None has it stand in the
-        middle. Rows that the mapping does not name rest.
+        Row of the display at which the mapping begins; None puts the mapping into the middle. Rows
+        that the mapping does not name rest.
     """
 
     profile: Profile
@@ -53,12 +53,12 @@ class BrailleStyle:
     first_row: int | None = None
 
     def rows_on(self, display: Display) -> slice:
-        """Actuator rows of a display that the mapping has.
+        """Tell which rows of a display the mapping takes.
 
         Raises
         ------
         ValueError
-            If the display has not so many.
+            If the display has too few.
         """
         first = self.first_row
         if first is None:
@@ -71,7 +71,7 @@ class BrailleStyle:
         return slice(first, first + self.mapping.rows)
 
     def render(self, masks: NDArray[np.uint8], display: Display) -> Program:
-        """A line of braille, for the array's centre along it.
+        """Compile a line of braille.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class BrailleStyle:
         *,
         hysteresis: float = HYSTERESIS,
     ) -> Program:
-        """A page of lines one below the other, for the array's centre anywhere on it.
+        """Compile a page of lines, one below the other.
 
         Parameters
         ----------
@@ -121,14 +121,14 @@ class BrailleStyle:
         return program
 
     def room(self, display: Display, cells: int, lines: int = 1) -> int:
-        """Bytes of the largest program of so many lines of so many cells; at least 1 each."""
+        """Tell how many bytes a program of so many lines and cells takes, at least 1 of each."""
         numbers = work.IDLE + 2 * display.rows
         return numbers * 8 + (lines + 2) * 2 * (cells + 2) * 2
 
     def _compile(
         self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: ProgramKind
     ) -> Program:
-        # The kernels are compiled when this is first imported: not for a command that needs none.
+        # This import compiles the kernels, which a command that renders nothing must not wait for.
         from vbraille.render.program import Program, head
 
         geometry, tuning = self.geometry, self.tuning

@@ -1,4 +1,4 @@
-"""What a reader may turn while reading."""
+"""What a reader may change while reading."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ class Tuning:
     Parameters
     ----------
     texture
-        Level T in [0, 1]: none to the source's "textured" (VBD) or to the
+        Level T in [0, 1], from no texture to what Lévesque 2009 calls "textured" (VBD) or to the
         texture alone (STReSS², eq. 4.3).
     contrast
         Share of the full swing, in [0, 1].
     cycles
-        k of eq. 4.2, half-cycles of texture a radius; odd, so that the
-        waveform meets rest at both edges. The VBD's texture has a fixed one.
+        Half-cycles of texture in a dot's radius, k of eq. 4.2; an odd number, so that the waveform
+        meets rest at both edges. The VBD does not use it.
 
     Raises
     ------

@@ -72,6 +72,10 @@ class Plan:
         if self.version not in planfile.VERSIONS:
             raise ValueError(f"version is {self.version}; it must be 1 or 2")
 
+    def stimuli(self) -> list[Stimulus]:
+        """All stimuli of all trials, practice among them."""
+        return [stimulus for trial in (*self.practice, *self.trials) for stimulus in trial.stimuli]
+
     def to_json(self) -> str:
         """JSON, a trial a line; the same bytes on every machine."""
         return planfile.encode(

@@ -5,16 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
 import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
+from vbraille.files import missing, write_file
 from vbraille.sessions.record.anonymous import number_of
 from vbraille.sessions.record.bids import SESSION, files
-from vbraille.sessions.record.export import encode, to_csv, write_new
-from vbraille.sessions.record.folder import missing
+from vbraille.sessions.record.export import encode, to_csv
 from vbraille.sessions.record.participants import alike, label_of
 from vbraille.wording import setting
 
@@ -156,9 +155,9 @@ def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
             parent.mkdir(exist_ok=True)
             written.append(parent)
         for path, content in new.items():
-            write_new(path, content)
+            write_file(path, content)
             written.append(path)
-        _replace(folder / _PEOPLE, people)
+        write_file(folder / _PEOPLE, people, replace=True, durable=True)
     except BaseException as fault:
         for path in reversed(written):
             with suppress(OSError):  # where somebody else has put something meanwhile
@@ -166,22 +165,6 @@ def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
         if isinstance(fault, OSError):
             raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
         raise
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Write a file anew: it is the old one until it is wholly the new one."""
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        with partial.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
-    except OSError as error:
-        raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
 
 
 def _about(record: Record) -> dict[str, Any]:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import csv
-import errno
 import io
-import os
 from bisect import bisect_left, bisect_right
-from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,18 +13,15 @@ import numpy as np
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
-from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.planning.design import StringList
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.traces import left_places_mm
 from vbraille.sessions.record.trajectory import Trajectory, duration, edges_mm
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -182,7 +176,7 @@ def walk(
         What the row's duration is of; why there is none; None for what has no trace
         to be read: comparisons, what is on paper, what is not answered.
     """
-    progress = Progress(record.plan, record.told.events)
+    progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)
@@ -345,47 +339,3 @@ def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "")
 def encode(text: str) -> bytes:
     """UTF-8 of a text; what is no text, in a directory's name, is spelled."""
     return text.encode("utf-8", "backslashreplace")
-
-
-def write_new(path: Path, content: bytes) -> None:
-    """Write a file that is not there yet: whole, or not at all.
-
-    Raises
-    ------
-    InputError
-        If it is there, or cannot be made.
-    VbrailleError
-        If the disk does not take it.
-    """
-    if not path.name:
-        raise InputError(f"{path} is a directory; give the name of a file with {setting('out')}")
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        try:
-            file = partial.open("wb")
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror}") from None
-        with file:
-            file.write(content)
-        _put(partial, path)
-    except FileExistsError:
-        raise InputError(
-            f"{path} is there already; give another name with {setting('out')}"
-        ) from None
-    except OSError as error:
-        raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
-
-
-def _put(partial: Path, path: Path) -> None:
-    """Give a file its name, unless another has it."""
-    try:
-        os.link(partial, path)
-    except OSError as error:
-        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
-            raise
-        if path.exists():  # a disk without hard links, such as a memory stick
-            raise FileExistsError from None
-        partial.rename(path)

@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import gzip
 import json
-import os
 import platform
 import sys
 import zlib
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
@@ -21,18 +19,20 @@ import numpy as np
 
 from vbraille import __version__
 from vbraille.errors import InputError, VbrailleError
+from vbraille.files import write_folder
 from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.procedure import FixedOrder
 from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
 from vbraille.sessions.record.salvage import salvage
 from vbraille.sessions.record.traces import TRACE, Trace, read_last_tie, read_trace
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.record.journal import JournalContents, Tie
 
 FORMAT = 4
@@ -57,6 +57,8 @@ class Record:
         What is done, and in which order.
     told
         The journal, when it was read.
+    procedure
+        What says which trial comes next.
     """
 
     folder: Path
@@ -64,27 +66,12 @@ class Record:
     protocol: Protocol
     plan: Plan
     told: JournalContents
+    procedure: Procedure
 
     @property
     def centred(self) -> bool:
         """Whether its traces have places of the array's centre; else they are its left column's."""
         return self.told.format >= _CENTRED_FROM
-
-
-def check_free(folder: Path) -> None:
-    """See that a new session can have this directory.
-
-    Raises
-    ------
-    InputError
-        If there is something already, or it cannot be seen.
-    """
-    try:
-        taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
-    if taken:
-        raise InputError(f"{folder} is there already; give a new directory with {setting('out')}")
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
@@ -97,8 +84,6 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     VbrailleError
         If the disk does not take it.
     """
-    folder = folder.absolute()
-    check_free(folder)
     files = {
         PROTOCOL: protocol.text.encode(),
         PLAN: plan.to_json().encode(),
@@ -110,28 +95,7 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     sums = {name: sha256(content).hexdigest() for name, content in files.items()}
     # The others' checksums are in the journal, as its first event.
     files[journal.NAME] = journal.first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
-    partial = folder.with_name(f".{folder.name}.partial")
-    made: list[Path] = []  # each in the one before
-    try:
-        for parent in missing(folder.parent):
-            parent.mkdir()
-            made.append(parent)
-        _remove(partial)  # of a session that was killed being born
-        partial.mkdir()
-        made.append(partial)
-        _fill(partial, files)
-        partial.rename(folder)
-        _sync(folder.parent)
-    except BaseException as fault:
-        with suppress(OSError):
-            _remove(partial)
-        for parent in reversed(made):
-            with suppress(OSError):  # what is in use stays
-                parent.rmdir()
-        if isinstance(fault, OSError):
-            kind = VbrailleError if partial in made else InputError
-            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
-        raise
+    write_folder(folder, files, durable=True, clear=_clear)
 
 
 def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
@@ -217,12 +181,14 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     """
     told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
+    plan = Plan.from_json(contents[PLAN])
     return Record(
         folder,
         json.loads(contents[HEAD]),
         parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True),
-        Plan.from_json(contents[PLAN]),
+        plan,
         told,
+        FixedOrder(plan.trials),
     )
 
 
@@ -280,11 +246,6 @@ def check_end(folder: Path, told: JournalContents) -> None:
             )
 
 
-def missing(folder: Path) -> list[Path]:
-    """Directories that are not there yet, each in the one before."""
-    return [path for path in (*reversed(folder.parents), folder) if not path.exists()]
-
-
 def versions() -> dict[str, str]:
     """Versions of all that has a part in what the actuators do."""
     return {
@@ -319,31 +280,8 @@ def _is_member(path: Path, trace: Trace) -> bool:
     return True
 
 
-def _fill(folder: Path, files: dict[str, bytes]) -> None:
-    for name, content in files.items():
-        _write(folder / name, content)
-    _sync(folder)
-
-
-def _remove(folder: Path) -> None:
-    """Remove a directory with the files that a session is born with, and with no others."""
-    with suppress(FileNotFoundError):
-        for name in (*FILES, journal.NAME):
-            (folder / name).unlink(missing_ok=True)
-        folder.rmdir()
-
-
-def _write(path: Path, content: bytes) -> None:
-    with path.open("xb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _sync(folder: Path) -> None:
-    """Have a directory's names on the disk."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+def _clear(partial: Path) -> None:
+    """Remove what is left of a session that was killed being born, and nothing else."""
+    for name in (*FILES, journal.NAME):
+        (partial / name).unlink(missing_ok=True)
+    partial.rmdir()

@@ -38,5 +38,20 @@ def participants_in(room: Path) -> dict[str, str]:
     return found
 
 
+def nearly_same(room: Path, participant: str) -> tuple[str, str] | None:
+    """Another participant of a directory whose pseudonym is nearly that of a new one.
+
+    Returns
+    -------
+    tuple[str, str] or None
+        The pseudonym, and the name of a session of theirs; None if there is none, or the
+        participant is known there.
+    """
+    known = participants_in(room)
+    if participant in known:
+        return None
+    return next(((other, known[other]) for other in known if alike(other, participant)), None)
+
+
 def _plain(pseudonym: str) -> str:
     return label_of(re.sub(r"(?<![0-9])0+(?=[0-9])", "", pseudonym)).lower()

@@ -9,12 +9,13 @@ import time
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.sessions.simulated.observer import Observer
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
@@ -23,23 +24,28 @@ if TYPE_CHECKING:
     from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
 
+PROGRAM = "program"  # what the record calls answers that a program has given
 MOST_NOISE = 100.0
 _WAIT_S = 1.0
 # What two stimuli are compared by, as the protocol and the observer call it.
 _COMPARED: dict[str, Parameter] = {"dot_width_mm": "dot width", "dot_gap_mm": "gap"}
 
 
+@runtime_checkable
 class Answers(Protocol):
     """A source of lines for the console.
 
     Attributes
     ----------
+    name : str
+        What the record calls them.
     typed : bool
         Whether a person types them, who is waited for at breaks and may need practice.
     felt : bool
         Whether they come from what is felt of a device.
     """
 
+    name: str
     typed: bool
     felt: bool
 
@@ -60,6 +66,7 @@ class Answers(Protocol):
 class Typed:
     """Lines of standard input, a terminal or not."""
 
+    name = "typed"
     typed = True
     felt = False
 
@@ -140,6 +147,7 @@ class ScriptedAnswers:
             if n > after and line.strip() and not line.lstrip().startswith("#")
         ]
         self.path = path
+        self.name = str(path)
         self._given = 0
 
     def lines(self, wait_s: float) -> list[str]:
@@ -191,6 +199,7 @@ class Simulated:
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
+        self.name = f"simulated:{noise:g}"
         model: Model = protocol.model
         style = replace(model.style, mapping=protocol.mapping, geometry=protocol.geometry)
         self._observer = Observer(model.display, style, noise=noise)
@@ -232,9 +241,14 @@ def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> An
     kind, _, noise = spec.partition(":")
     if kind == "typed" and not noise:
         return Typed()
+    if spec == PROGRAM:
+        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     if kind == "simulated":
         try:
-            return Simulated(protocol, plan, float(noise or 0.0))
+            answers = Simulated(protocol, plan, float(noise or 0.0))
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
-    return ScriptedAnswers(Path(spec), after)
+    else:
+        answers = ScriptedAnswers(Path(spec), after)
+    answers.name = spec
+    return answers

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.translate import Undefined
 from vbraille.translate.undefined import describe
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.layout.pages import Line
@@ -53,7 +54,7 @@ class Unknown:
         return (
             f"the table {self._table.name} does not know {total} "
             f"character{'' if total == 1 else 's'} ({', '.join(named)}), {self._written()}; "
-            f"--undefined chooses mark, name, code or drop"
+            f"{setting('undefined')} chooses mark, name, code or drop"
         )
 
     def _written(self) -> str:

@@ -7,8 +7,8 @@ import pytest
 
 from tests.devices.bench import Bench
 from tests.engine.test_loop import info
-from vbraille.cli.checking import check
 from vbraille.devices.wire.messages import Encoder
+from vbraille.engine.checking import check
 from vbraille.engine.clock import ManualClock
 from vbraille.simulation.simulated import SimulatedDevice
 

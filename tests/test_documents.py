@@ -1,0 +1,110 @@
+"""The README and the pages of docs/: their commands can be given, and what they name is there."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from vbraille.cli.parser import parse
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
+# Pages that lead somebody to a first success: their commands are copied as they stand.
+DOORS = [ROOT / "README.md", *(ROOT / f"docs/{name}.md" for name in ("reading", "lab", "building"))]
+
+_BLOCK = re.compile(r"^```\w*\n(.*?)^```$|^    (\S.*\n)", re.MULTILINE | re.DOTALL)
+_COMMANDS = re.compile(r"^```sh\n(.*?)^```$|^    (\S[^\n]*\n)", re.MULTILINE | re.DOTALL)
+_INLINE = re.compile(r"`([^`\n]+)`")
+_LINK = re.compile(r"\]\(([^)#\s]+)[^)\s]*\)")
+_OPTION = re.compile(r"--[a-z][a-z-]*")
+_FILE = re.compile(r"(?:vbraille|tests|texts|docs)/[\w./-]*\w/?")
+_MODULE = re.compile(r"vbraille(?:\.[A-Za-z_]\w*)+")
+
+
+def of_each(pages):
+    return pytest.mark.parametrize(
+        "page", pages, ids=[str(page.relative_to(ROOT)) for page in pages]
+    )
+
+
+def commands(page):
+    """What a reader of a page would copy, a line each, in its order."""
+    blocks = _COMMANDS.finditer(page.read_text(encoding="utf-8"))
+    return [line for block in blocks for line in (block[1] or block[2]).splitlines() if line]
+
+
+def code(page):
+    """What stands in backquotes in the sentences of a page."""
+    return _INLINE.findall(_BLOCK.sub("", page.read_text(encoding="utf-8")))
+
+
+def helps(capsys, *words):
+    """Help of the program, of its commands and of their actions."""
+    with pytest.raises(SystemExit):
+        parse([*words, "--help"])
+    text = capsys.readouterr().out
+    names = re.findall(r"^    ([a-z]+) ", text, re.MULTILINE) if "..." in text else []
+    return text + "".join(helps(capsys, *words, name) for name in names)
+
+
+@of_each(DOORS)
+def test_each_command_can_be_given_as_it_is_written(page):
+    given = commands(page)
+    longer = [words for words in code(page) if words.startswith("vbraille ") and " --" in words]
+    assert given
+    for line in given + longer:
+        program, *words = shlex.split(line.partition(" > ")[0])
+        if program == "make":
+            targets = (ROOT / "Makefile").read_text()
+            assert all(re.search(rf"^{word}:", targets, re.MULTILINE) for word in words), line
+        elif program == "vbraille" and "--help" not in words:
+            assert parse(words).command == words[0]
+        else:
+            assert program == "vbraille" or line == ". .venv/bin/activate", line
+
+
+@of_each(DOORS)
+def test_each_text_that_a_command_takes_is_there(page):
+    for line in commands(page):
+        for name in _FILE.findall(line):
+            assert (ROOT / name).exists(), line
+
+
+@of_each(DOORS)
+def test_each_option_that_is_named_is_one(page, capsys):
+    known = set(_OPTION.findall(helps(capsys)))
+    named = {option for words in code(page) for option in _OPTION.findall(words)}
+    assert named <= known
+
+
+@of_each(PAGES)
+def test_each_link_leads_somewhere(page):
+    for target in _LINK.findall(page.read_text(encoding="utf-8")):
+        assert "://" in target or (page.parent / target).exists(), target
+
+
+@of_each(PAGES)
+def test_each_file_that_is_named_is_there(page):
+    for words in code(page):
+        for name in _FILE.findall(words):
+            assert (ROOT / name).exists() or "…" in words, name
+
+
+@of_each(PAGES)
+def test_each_module_and_what_it_is_said_to_have_is_there(page):
+    for words in code(page):
+        for name in _MODULE.findall(words):
+            place, parts = ROOT, name.split(".")
+            while parts and (place / parts[0]).is_dir():
+                place /= parts.pop(0)
+            if parts and (place / f"{parts[0]}.py").is_file():
+                place /= f"{parts.pop(0)}.py"
+            source = (place if place.is_file() else place / "__init__.py").read_text()
+            assert all(re.search(rf"\b{part}\b", source) for part in parts), name
+
+
+def test_a_picture_has_words():
+    for page in PAGES:
+        for words in re.findall(r"!\[([^\]]*)\]", page.read_text(encoding="utf-8")):
+            assert len(words.split()) > 10, (page.name, words)

@@ -1,0 +1,203 @@
+"""Files and directories that are written whole, or not at all.
+
+What is being written stands under another name beside its own, which it gets once it is whole.
+Whatever ends the writing early, a signal or a full disk, leaves nothing of it behind.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError, VbrailleError
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
+    from typing import BinaryIO
+
+
+@contextmanager
+def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
+    """Give the place to write a file to, which gets its own name once the block is done.
+
+    Parameters
+    ----------
+    path
+        The file to make.
+    replace
+        Whether it may take the place of a file that is there, which is the old one till then.
+
+    Raises
+    ------
+    FileExistsError
+        If there is a file that may not be replaced.
+    OSError
+        If the file cannot have its name for another reason.
+    """
+    partial = _partial(path)
+    try:
+        yield partial
+        if replace:
+            partial.replace(path)
+        else:
+            _name(partial, path)
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+
+
+def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bool = False) -> None:
+    """Write a file: whole, or not at all.
+
+    Parameters
+    ----------
+    path, content
+        The file, and what is to be in it.
+    replace
+        Whether it may take the place of a file that is there.
+    durable
+        Whether it must be on the disk when this returns, and not in the system's memory alone.
+
+    Raises
+    ------
+    InputError
+        If it is there and may not be replaced, or cannot be made.
+    VbrailleError
+        If the disk does not take it.
+    """
+    if not path.name:
+        raise InputError(f"{path} is a directory; give the name of a file with {setting('out')}")
+    try:
+        with whole_file(path, replace=replace) as partial:
+            try:
+                file = partial.open("wb")
+            except OSError as error:
+                raise InputError(f"{path} cannot be written: {error.strerror}") from None
+            with file:
+                _fill(file, content, durable=durable)
+    except FileExistsError:
+        raise InputError(
+            f"{path} is there already; give another name with {setting('out')}"
+        ) from None
+    except OSError as error:
+        raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
+
+
+def write_folder(
+    folder: Path,
+    files: Mapping[str, bytes],
+    *,
+    durable: bool = False,
+    clear: Callable[[Path], None] = shutil.rmtree,
+) -> None:
+    """Make a directory with files, and the directories that it is in: all of it, or nothing.
+
+    Parameters
+    ----------
+    folder
+        Not there yet, or empty.
+    files
+        What is to be in each file, by their paths in the directory.
+    durable
+        Whether all must be on the disk when this returns, and not in the system's memory alone.
+    clear
+        Removes what was left under the other name by a process that was killed.
+
+    Raises
+    ------
+    InputError
+        If there is something already, or no directory can be made there.
+    VbrailleError
+        If the disk does not take it.
+    """
+    folder = folder.absolute()
+    check_free(folder)
+    partial = _partial(folder)
+    made: list[Path] = []  # each in the one before
+    try:
+        for parent in missing(folder.parent):
+            parent.mkdir()
+            made.append(parent)
+        if partial.exists():
+            clear(partial)
+        partial.mkdir()
+        made.append(partial)
+        for name, content in files.items():
+            path = partial / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("wb") as file:
+                _fill(file, content, durable=durable)
+        if durable:
+            _sync(partial)
+        partial.rename(folder)
+        if durable:
+            _sync(folder.parent)
+    except BaseException as fault:
+        if partial in made:
+            shutil.rmtree(partial, ignore_errors=True)
+        for parent in reversed(made):
+            with suppress(OSError):  # what is in use stays
+                parent.rmdir()
+        if isinstance(fault, OSError):
+            kind = VbrailleError if partial in made else InputError
+            raise kind(f"{folder} cannot be written: {fault.strerror}") from None
+        raise
+
+
+def check_free(folder: Path) -> None:
+    """See that a new directory can have this name.
+
+    Raises
+    ------
+    InputError
+        If there is something already, or it cannot be seen.
+    """
+    try:
+        taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
+    if taken:
+        raise InputError(f"{folder} is there already; give a new directory with {setting('out')}")
+
+
+def missing(folder: Path) -> list[Path]:
+    """Directories that are not there yet, each in the one before."""
+    return [path for path in (*reversed(folder.parents), folder) if not path.exists()]
+
+
+def _partial(path: Path) -> Path:
+    """What is being written is called so until it is whole."""
+    return path.with_name(f".{path.name}.partial")
+
+
+def _fill(file: BinaryIO, content: bytes, *, durable: bool) -> None:
+    file.write(content)
+    if durable:
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _name(partial: Path, path: Path) -> None:
+    """Give a file its name, unless another has it."""
+    try:
+        os.link(partial, path)
+    except OSError as error:
+        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP):
+            raise
+        if path.exists():  # a disk without hard links, such as a memory stick
+            raise FileExistsError from None
+        partial.rename(path)
+
+
+def _sync(folder: Path) -> None:
+    """Have a directory's names on the disk."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,103 @@
+"""What a session begins with: a plan, what is said of the participant, the head of its record."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from vbraille.errors import InputError
+from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.protocol import Protocol, load_protocol
+from vbraille.sessions.record.folder import FORMAT, versions
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from vbraille.sessions.conditions import Conditions
+    from vbraille.sessions.planning.plan import Plan
+
+_MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
+
+
+def plan_session(
+    protocol: str | Path | Protocol,
+    participant: str,
+    seed: int | None = None,
+    order: int | None = None,
+    texture: float | None = None,
+    contrast: float | None = None,
+) -> tuple[Protocol, Plan]:
+    """Protocol and plan of a session, its seed drawn if none is given; see `Session.create`."""
+    if not isinstance(protocol, Protocol):
+        protocol = load_protocol(str(protocol))
+    if seed is None:
+        seed = secrets.randbelow(_MOST_DRAWN)
+    plan = make_plan(protocol, participant, seed, order, texture=texture, contrast=contrast)
+    return protocol, plan
+
+
+def told_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
+    """What the protocol asks about the participant, as given; empty where nothing is.
+
+    Raises
+    ------
+    InputError
+        If it does not ask for that, or the answer is none of its choices.
+    """
+    names = [field.name for field in protocol.fields]
+    for name in given:
+        if name not in names:
+            raise InputError(
+                f"{protocol.name} does not ask for {name!r}; "
+                f"it asks for {', '.join(names) or 'nothing'}"
+            )
+    for field in protocol.fields:
+        value = given.get(field.name)
+        if value is None:
+            continue
+        if field.choices and value not in field.choices:
+            raise InputError(f"{field.name} is {value!r}; it must be {' or '.join(field.choices)}")
+        if not value.isprintable():
+            raise InputError(f"{field.name} is {value!r}; it must be one line of text")
+    return {name: given.get(name, "") for name in names}
+
+
+def head_of(
+    protocol: Protocol,
+    plan: Plan,
+    fields: Mapping[str, str],
+    conditions: Conditions,
+) -> dict[str, Any]:
+    """What the record begins with: who, what and with what; JSON takes it as it is.
+
+    Parameters
+    ----------
+    protocol, plan, conditions
+        Of the session.
+    fields
+        What is said of the participant.
+    """
+    display = protocol.model.display
+    return {
+        "format": FORMAT,
+        "protocol": protocol.name,
+        "participant": plan.participant,
+        "seed": plan.seed,
+        "order": plan.order,
+        "model": protocol.model.name,
+        "array": {
+            name: getattr(display, name)
+            for name in ("rows", "columns", "column_pitch_mm", "row_pitch_mm")
+        },
+        "mapping": protocol.mapping.name,
+        "geometry": asdict(protocol.geometry),
+        "fields": dict(fields),
+        "device": conditions.device,
+        "hand": conditions.hand,
+        "answers": conditions.answers,
+        "fast": conditions.fast,
+        "rate_hz": conditions.rate_hz,
+        "versions": versions(),
+    }

@@ -1,0 +1,62 @@
+"""What a session is run with: its device, where answers come from, how time goes by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vbraille.display import check_rate
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+SOUNDS = ("auto", "tones", "bell", "none")
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """What a session is run with.
+
+    Parameters
+    ----------
+    device
+        Spec of the device, such as "serial:/dev/ttyACM0"; "sim" is a simulated one.
+    hand
+        What moves the simulated device: "slow", "fluent" or "sweep:SPEED", among others.
+    answers
+        Where answers come from, unless `Session.run` is given them: "typed",
+        "simulated:NOISE", or the name of a file with a line for each trial.
+    rate_hz
+        Frames a second, 1 to 10,000.
+    fast
+        Whether a simulated session runs as fast as the machine can, and not in real time.
+    sound
+        How the participant hears signals: "auto", "tones", "bell" or "none".
+
+    Raises
+    ------
+    InputError
+        If the rate is out of range, or there is no such sound.
+    """
+
+    device: str = "sim"
+    hand: str = "slow"
+    answers: str = "typed"
+    rate_hz: float = 1000.0
+    fast: bool = False
+    sound: str = "auto"
+
+    def __post_init__(self) -> None:
+        check_rate(self.rate_hz)
+        if self.sound not in SOUNDS:
+            raise InputError(f"there is no sound {self.sound!r}; give {', '.join(SOUNDS)}")
+
+    @classmethod
+    def of(cls, head: Mapping[str, Any]) -> Conditions:
+        """Conditions that a session began with, as the head of its record has them."""
+        names = ("device", "hand", "answers", "rate_hz", "fast")
+        return cls(**{name: head[name] for name in names})
+
+
+USUAL = Conditions()

@@ -1,0 +1,102 @@
+"""Answers that are ready before they are asked for: those of a program, and of a file, checked."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.sessions.running.answers import PROGRAM, ScriptedAnswers
+from vbraille.sessions.running.orders import find_order
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.progress import Progress
+    from vbraille.sessions.simulated.skin import Exploration
+
+
+class GivenAnswers:
+    """Lines of a program, the next one whenever a trial has been read.
+
+    Parameters
+    ----------
+    protocol
+        What the answers are to.
+    given
+        The lines, one for each trial, or a function that gives the line for a trial. A function
+        may give None, and the lines may end: the session then stops, and can be resumed.
+    """
+
+    name = PROGRAM
+    typed = False
+    felt = False
+
+    def __init__(
+        self, protocol: Protocol, given: Iterable[str] | Callable[[Trial], str | None]
+    ) -> None:
+        self._protocol = protocol
+        if callable(given):
+            self._give = given
+        else:
+            lines = iter(given)
+            self._give = lambda _trial: next(lines, None)
+
+    def lines(self, wait_s: float) -> list[str]:
+        """Nothing, after a wait: lines are given to trials."""
+        time.sleep(wait_s)
+        return []
+
+    def next(
+        self, trial: Trial, _attempt: int, _felt: list[Exploration], /
+    ) -> tuple[str, int] | None:
+        """Line of the program for a trial.
+
+        Raises
+        ------
+        InputError
+            If it is neither an answer to the trial nor an order.
+        """
+        line = self._give(trial)
+        if line is None:
+            return None
+        try:
+            _read(self._protocol, trial, line)
+        except ValueError as error:
+            raise InputError(f"{line!r} for trial {trial.number}: {error}") from None
+        return line, 0
+
+
+def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress) -> None:
+    """Raise InputError if a line of the file is no answer to its trial: nothing is begun then."""
+    planned = progress.procedure.trials
+    if planned is None:  # which trials come is not known yet
+        return
+    trials = iter(planned[progress.done :])
+    correcting, answered = progress.correcting, progress.last_answered
+    for line, number in script.left:
+        found = find_order(line)
+        if found is not None and found[0].word == "undo":
+            correcting = correcting or answered
+        if found is not None and found[0].word != "answer":
+            continue
+        trial = correcting or next(trials, None)
+        if trial is None:
+            raise InputError(f"{script.path} line {number}: there is no trial left to answer")
+        try:
+            _read(protocol, trial, line)
+        except ValueError as error:
+            raise InputError(f"{script.path} line {number}: {error}") from None
+        correcting, answered = None, trial if correcting is None else answered
+
+
+def _read(protocol: Protocol, trial: Trial, line: str) -> None:
+    """Read a line as its trial will; ValueError if it is an answer, and none to that."""
+    # Here and not above: numba takes long to load, and the host starts meanwhile.
+    from vbraille.sessions.running.console import read_line
+
+    found = find_order(line)
+    if found is None or found[0].word == "answer":
+        read_line(protocol, trial, line if found is None else found[1])

@@ -1,0 +1,206 @@
+"""One sitting of a session: what goes on around its course, from the device to the record."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from vbraille.caching import compiling_note
+from vbraille.devices.registry import TRAVEL_TOLERANCE_MM
+from vbraille.errors import InputError
+from vbraille.sessions.record import events
+from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
+from vbraille.sessions.record.folder import check_end
+from vbraille.sessions.record.journal import NAME, Journal, sum_of
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.console import Console
+from vbraille.sessions.running.course import Course
+from vbraille.sessions.running.showing import OnDevice
+from vbraille.sessions.running.sounds import Bell, Silence, Tones
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.display import Display
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.showing import RunEngine
+    from vbraille.sessions.running.sounds import Sound
+    from vbraille.simulation.steering import Steering
+
+
+class Sitting:
+    """One run of a session, with what it needs: an engine, answers, signals.
+
+    Parameters
+    ----------
+    engine
+        Drives the device; None on paper. Whoever made it closes it after a fault.
+    answers
+        Where answers come from.
+    steering
+        What tells the simulated hand what to read; None if a person's hand reads.
+    sound
+        Gives what makes the participant's signals, once the device is open.
+    real
+        Whether time is the machine's; else the device's own.
+    say, warn
+        Where to say what the experimenter should hear, and what should not stand among that.
+    before_rest
+        Is called before the array is brought to rest.
+    """
+
+    def __init__(
+        self,
+        engine: RunEngine | None,
+        answers: Answers,
+        steering: Steering | None,
+        *,
+        sound: Callable[[], Sound],
+        real: bool,
+        say: Callable[[str], None],
+        warn: Callable[[str], None],
+        before_rest: Callable[[], None],
+    ) -> None:
+        self._engine = engine
+        self._answers = answers
+        self._steering = steering
+        self._sound = sound
+        self._real = real
+        self._say = say
+        self._warn = warn
+        self._before_rest = before_rest
+        self._opened = False
+
+    def open(self, protocol: Protocol, plan: Plan) -> None:
+        """Wait until the engine runs, unless it does."""
+        if self._engine is None or self._opened:
+            return
+        if (note := compiling_note()) is not None:
+            self._warn(note)
+        self._engine.start()
+        self._opened = True
+        check_room(self._engine.display, protocol, plan)
+
+    def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
+        """Conduct the session until its end, or until it is stopped; how far it has come.
+
+        Parameters
+        ----------
+        record
+            What is there of the session.
+        why, spec, hand
+            What the journal tells of the run: start or resume, the device, and its hand.
+        """
+        with Journal(record.folder) as book:
+            check_end(record.folder, book.told)
+            torn_bytes = book.set_torn_aside()
+            self.open(record.protocol, record.plan)
+            progress = Progress(record.plan, book.told.events, record.procedure)
+            display = self._display(record, book)
+            sound = self._sound()
+            course = Course(
+                record.protocol,
+                record.plan,
+                book,
+                progress,
+                display,
+                waits=self._answers.typed,
+                corrects=not self._answers.felt,
+                say=self._say,
+                play=sound.play,
+                real=self._real,
+            )
+            told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
+            told |= self._since(book, progress)
+            told |= {"spec": spec, "hand": hand, "answers": self._answers.name}
+            practises = self._answers.typed or progress.begun
+            try:
+                if not practises:
+                    told["practice"] = "left out"
+                course.start(**told, clock="machine" if self._real else "manual")
+                if not practises:
+                    self._say("practice: left out, since answers are not typed")
+                    course.book.log(events.Begin)
+                Console(course, self._answers, say=self._say, real=self._real).run()
+            finally:
+                self._before_rest()
+                if display is not None:
+                    display.close()
+            if display is not None:
+                counts = {name: count for name, count in display.engine.counts.items() if count}
+                lost = display.engine.lost
+                trace = display.close_trace()
+                course.book.log(events.Closed, lost=lost, counts=counts, **trace)
+            self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
+        return progress
+
+    def _display(self, record: Record, book: Journal) -> OnDevice | None:
+        """What shows the stimuli; None on paper."""
+        if self._engine is None:
+            return None
+        return OnDevice(
+            self._engine,
+            record.protocol,
+            record.folder,
+            keeps=self._answers.felt,
+            # A session of format 1 is gone on with in that, whose traces are not tied.
+            tie=None if book.told.format == 1 else lambda: book.durable,
+            steering=self._steering,
+            centred=record.centred,
+        )
+
+    def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
+        """What a run tells of the time since the last one, and of what that left torn; said too."""
+        told: dict[str, Any] = {}
+        if book.told.format > 1:
+            told["boot"] = boot()
+        if torn := book.torn_file():
+            told["torn_file"] = torn
+        if progress.runs:
+            told |= gap(Moment.of(book.told.events[-1], progress.runs[-1]), Moment.now())
+            if (moved := say_moved(told)) is not None:
+                self._say(moved)
+            self._say(f"resume: {progress.of_all(progress.done)} trials have answers")
+        if book.told.torn:
+            self._say(
+                f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
+            )
+        return told
+
+
+def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sound:
+    """What makes the participant's signals: "auto", "tones", "bell" or "none".
+
+    Raises
+    ------
+    InputError
+        If tones are asked for and there is no audio output.
+    """
+    if wanted == "none" or (wanted == "auto" and not answers.typed):
+        return Silence()
+    if wanted != "bell":
+        try:
+            return Tones()
+        except OSError as error:
+            if wanted == "tones":
+                raise InputError(f"{error}; give {setting('sound')} bell, or none") from None
+        say("sound: the terminal's bell, since there is no audio output")
+    return Bell()
+
+
+def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
+    """Raise InputError if a device's carriage does not take its whole array over every stimulus."""
+    extent_mm = max(
+        stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
+        for stimulus in plan.stimuli()
+    )
+    needed_mm = extent_mm + info.span_mm
+    if needed_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:
+        raise InputError(
+            f"the carriage of {info.name} goes {info.travel_mm:g} mm and the longest string of "
+            f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')} or "
+            f"shorter strings"
+        )

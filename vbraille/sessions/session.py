@@ -1,0 +1,350 @@
+"""A session from its plan to its record: created, run, gone on with, and read as rows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from vbraille.devices import open_device
+from vbraille.engine.host import Host
+from vbraille.errors import InputError, VbrailleError
+from vbraille.files import check_free
+from vbraille.sessions.beginning import head_of, plan_session, told_fields
+from vbraille.sessions.conditions import USUAL, Conditions
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.folder import create, load
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import (
+    Answers,
+    ScriptedAnswers,
+    Typed,
+    parse_answers,
+    seed_of,
+)
+from vbraille.sessions.running.scripts import GivenAnswers, check_script
+from vbraille.simulation.specs import device_spec, refuse_hand, steering_of
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from vbraille.display import Display
+    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.showing import RunEngine
+    from vbraille.sessions.running.sounds import Sound
+
+    Say = Callable[[str], None]
+    # Where answers come from; see `Session.run`.
+    Source = str | Answers | Iterable[str] | Callable[[Trial], str | None]
+    # Makes what drives a device, out of its spec and of what the protocol is for.
+    MakeEngine = Callable[[str, Display], RunEngine]
+
+
+def _nobody(_sentence: str) -> None:
+    """Say something to nobody."""
+
+
+def _nothing() -> None:
+    """Do nothing."""
+
+
+class Session:
+    """A legibility session: `create` or `resume` it, `run` it, read its `trials`.
+
+    Parameters
+    ----------
+    folder
+        Where it is kept.
+    protocol, plan
+        What is done, and in which order.
+    conditions
+        What it is run with.
+    progress
+        How far it is.
+    engine
+        Makes what drives the device; None for what the conditions ask for.
+
+    Examples
+    --------
+    Four trials, read by a simulated reader on a simulated device as fast as the machine can:
+
+    >>> import tempfile
+    >>> from vbraille import Conditions, Session
+    >>> folder = tempfile.mkdtemp()
+    >>> fast = Conditions(fast=True, hand="sweep:200")
+    >>> session = Session.create(
+    ...     "letters", "P01", folder=f"{folder}/P01", seed=1, conditions=fast
+    ... )
+    >>> _ = session.run("simulated")
+    >>> len(session.trials), session.trials[0]["participant"]
+    (78, 'P01')
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        protocol: Protocol,
+        plan: Plan,
+        conditions: Conditions,
+        progress: Progress,
+        engine: MakeEngine | None = None,
+    ) -> None:
+        self.folder = folder
+        self.protocol = protocol
+        self.plan = plan
+        self.conditions = conditions
+        self.progress = progress
+        self.fields = told_fields(protocol, {})
+        self._begun = False  # whether it is on the disk
+        self._drawn = False  # whether nobody has given the seed
+        # Another hand for each participant, and each time that the session is gone on with.
+        drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
+        self._steering = steering_of(conditions.device)
+        spec = device_spec(conditions.device, conditions.hand, seed_of(drawn), self._steering)
+        if conditions.fast and not spec.startswith("sim:"):
+            raise InputError(
+                f"{setting('fast')} is for the simulated device; leave out {setting('device')}"
+            )
+        self._engine: RunEngine | None = None
+        if protocol.medium == "device":
+            wanted = protocol.model.on(protocol.geometry, conditions.rate_hz)
+            self._engine = (engine or self._usual_engine)(spec, wanted)
+
+    @classmethod
+    def create(
+        cls,
+        protocol: str | Path | Protocol,
+        participant: str,
+        *,
+        folder: str | Path | None = None,
+        seed: int | None = None,
+        order: int | None = None,
+        texture: float | None = None,
+        contrast: float | None = None,
+        fields: Mapping[str, str] | None = None,
+        conditions: Conditions = USUAL,
+        engine: MakeEngine | None = None,
+    ) -> Session:
+        """Plan a new session; nothing of it is on the disk before `run`.
+
+        Parameters
+        ----------
+        protocol
+            Name of one that comes with the program, a TOML file, or the protocol itself.
+        participant
+            A pseudonym.
+        folder
+            A new directory for it; PARTICIPANT-PROTOCOL-TIME if none is given.
+        seed
+            What the plan is drawn from; one is drawn if none is given.
+        order, texture, contrast
+            As of `vbraille.sessions.planning.plan.make_plan`.
+        fields
+            What the protocol asks about the participant, by name; the others stay empty.
+        conditions
+            What it is run with.
+        engine
+            Makes what drives the device, of its spec and the display that is wanted, for
+            programs that have a loop of their own; None for the usual one.
+
+        Raises
+        ------
+        InputError
+            If something cannot be used, or the directory is there already.
+        """
+        planned, plan = plan_session(protocol, participant, seed, order, texture, contrast)
+        name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
+        place = Path(name if folder is None else folder)
+        session = cls(place, planned, plan, conditions, Progress(plan), engine)
+        session.tell(fields or {})
+        session._drawn = seed is None
+        check_free(place)
+        return session
+
+    @classmethod
+    def resume(
+        cls, folder: str | Path, *, engine: MakeEngine | None = None, **changed: Any
+    ) -> Session:
+        """Go on with a session that was begun.
+
+        Parameters
+        ----------
+        folder
+            The session's directory.
+        engine
+            As for `create`.
+        changed
+            Those of the `Conditions` that are others than when the session began: device, hand,
+            answers, fast or sound. Where the answers are others it is not fast unless that is
+            said again.
+
+        Raises
+        ------
+        InputError
+            If it is no session, has ended, or something cannot be used.
+        VbrailleError
+            If its record is damaged.
+        """
+        record = load(Path(folder))
+        if record.told.damage is not None:
+            raise VbrailleError(
+                f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
+                f"{len(record.told.events)} events before it are whole, and nothing was changed"
+            )
+        progress = Progress(record.plan, record.told.events, record.procedure)
+        if progress.ended:
+            raise InputError(f"{record.folder} has ended; session export makes tables of it")
+        began = Conditions.of(record.head)
+        refuse_hand(changed.get("device", began.device), hand=changed.get("hand"))
+        if changed.get("answers", began.answers) != began.answers:
+            changed = {"fast": False, **changed}
+        conditions = replace(began, **changed)
+        session = cls(record.folder, record.protocol, record.plan, conditions, progress, engine)
+        session._begun = True
+        return session
+
+    @property
+    def record(self) -> Record:
+        """What the session's directory holds now; there is one as soon as it was run."""
+        return load(self.folder)
+
+    @property
+    def trials(self) -> list[dict[str, Any]]:
+        """A row for each planned trial, as `vbraille session export` writes them.
+
+        The columns are described in `vbraille.sessions.record.export.COLUMNS`.
+        """
+        from vbraille.sessions.record.export import Traces, rows
+
+        record = self.record
+        return rows(record, Traces(record))
+
+    def tell(self, fields: Mapping[str, str]) -> None:
+        """Answer what the protocol asks about the participant.
+
+        Raises
+        ------
+        InputError
+            If it does not ask for that, or the answer is none of its choices.
+        """
+        self.fields = told_fields(self.protocol, fields)
+
+    def answers(self, source: Source | None = None) -> Answers:
+        """Answers of a source, for `run`; checked now, before anything is begun.
+
+        Raises
+        ------
+        InputError
+            If they cannot be used with this session.
+        """
+        if source is None:
+            source = self.conditions.answers
+        if isinstance(source, str):
+            used = self.progress.script_lines.get(source, 0)
+            answers = parse_answers(source, self.protocol, self.plan, used)
+        elif isinstance(source, Answers):
+            answers = source
+        else:
+            answers = GivenAnswers(self.protocol, source)
+        if self.conditions.fast and isinstance(answers, Typed):
+            raise InputError(
+                f"{setting('fast')} is for answers that are not typed; "
+                f"give {setting('answers')} simulated"
+            )
+        if isinstance(answers, ScriptedAnswers):
+            check_script(answers, self.protocol, self.progress)
+        return answers
+
+    def run(
+        self,
+        answers: Source | None = None,
+        *,
+        say: Say = _nobody,
+        warn: Say = _nobody,
+        sound: Sound | None = None,
+        before_rest: Callable[[], None] = _nothing,
+    ) -> Self:
+        """Conduct the session until its end, or until it is stopped.
+
+        Parameters
+        ----------
+        answers
+            Where they come from: a spec as of `Conditions`, the lines themselves, or a function
+            that gives the line for a `Trial`; None for what the conditions say.
+        say
+            Is told what the experimenter should hear, one thing a call.
+        warn
+            Is told what should not stand among that: that something is compiled, and the seed
+            that was drawn.
+        sound
+            Makes the participant's signals; None for what the conditions say.
+        before_rest
+            Is called before the array is brought to rest: from then on nothing may disturb that.
+
+        Returns
+        -------
+        Session
+            The same.
+
+        Raises
+        ------
+        InputError
+            If something cannot be used; a new session is then not on the disk.
+        VbrailleError
+            If the device, or the disk, fails for good.
+        """
+        given = self.answers(answers)
+        begins = not self._begun
+        try:
+            if isinstance(self._engine, Host):
+                self._engine.launch()
+            # Here and not above: numba takes long to load, and the host starts meanwhile.
+            from vbraille.sessions.running.sitting import Sitting, make_sound
+
+            sitting = Sitting(
+                self._engine,
+                given,
+                self._steering,
+                sound=lambda: sound or make_sound(self.conditions.sound, given, say),
+                real=not self.conditions.fast,
+                say=say,
+                warn=warn,
+                before_rest=before_rest,
+            )
+            if begins:
+                sitting.open(self.protocol, self.plan)
+                create(
+                    self.folder,
+                    self.protocol,
+                    self.plan,
+                    head_of(self.protocol, self.plan, self.fields, self.conditions, given.name),
+                )
+                self._begun = True
+                if self._drawn:
+                    warn(f"seed: {self.plan.seed}")
+                say(f"session: {self.folder}")
+            self.progress = sitting.run(
+                self.record,
+                why="start" if begins else "resume",
+                spec=self.conditions.device,
+                hand=self.conditions.hand,
+            )
+        finally:
+            if self._engine is not None:
+                before_rest()
+                self._engine.close()
+        return self
+
+    def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
+        """What drives the device: a process of its own, or this one as fast as it can."""
+        if self.conditions.fast:
+            from vbraille.engine.batch import BatchEngine
+
+            return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
+        most = max(len(self.protocol.line(stimulus.masks)) for stimulus in self.plan.stimuli())
+        inherited = () if self._steering is None else (self._steering.descriptor,)
+        return Host(spec, wanted, self.protocol.model.style.room(wanted, most), pass_fds=inherited)
