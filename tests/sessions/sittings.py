@@ -102,16 +102,12 @@ class Sat:
 class Session:
     """A session on the disk, sat at once or several times."""
 
-    def __init__(
-        self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150",
-        procedure=None,
-    ):  # fmt: skip
+    def __init__(self, folder: Path, toml: str = MINI, participant="P1", seed=1, hand="sweep:150"):
         self.folder = folder
         self.protocol = parse_protocol(toml, "test")
         self.plan = make_plan(self.protocol, participant, seed)
         conditions = Conditions(hand=hand, fast=True)
         create(folder, self.protocol, self.plan, head_of(self.protocol, self.plan, {}, conditions))
-        self.procedure = procedure
 
     def person(self, *script):
         """A person who types these lines."""
@@ -119,18 +115,16 @@ class Session:
 
     def sit(self, *script, engine=BatchEngine, noise=0.0):
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
-        given = bool(script) and hasattr(script[0], "next")
-        person = script[0] if given else self.person(*script)
+        person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
         said, played = person.said, Played()
         session = door.Session.resume(
             self.folder,
             fast=True,
-            procedure=self.procedure,
             engine=lambda spec, wanted: engine(open_device(spec, wanted), poll_ticks=100),
         )
         session.run(person if script else f"simulated:{noise:g}", say=said.append, sound=played)
         record = session.record
-        progress = Progress(self.plan, record.told.events, self.procedure)
+        progress = Progress(self.plan, record.told.events)
         return Sat(said, record.told.events, played.tones, record, progress, session.progress)
 
 

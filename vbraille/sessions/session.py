@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan, Trial
-    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.showing import RunEngine
@@ -133,7 +132,6 @@ class Session:
         contrast: float | None = None,
         fields: Mapping[str, str] | None = None,
         conditions: Conditions = USUAL,
-        procedure: Procedure | None = None,
         engine: MakeEngine | None = None,
     ) -> Session:
         """Plan a new session; nothing of it is on the disk before `run`.
@@ -154,8 +152,6 @@ class Session:
             What the protocol asks about the participant, by name; the others stay empty.
         conditions
             What it is run with.
-        procedure
-            Says which trial comes next; None for the order of the plan.
         engine
             Makes what drives the device, of its spec and the display that is wanted, for
             programs that have a loop of their own; None for the usual one.
@@ -168,7 +164,7 @@ class Session:
         planned, plan = plan_session(protocol, participant, seed, order, texture, contrast)
         name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
         place = Path(name if folder is None else folder)
-        session = cls(place, planned, plan, conditions, Progress(plan, (), procedure), engine)
+        session = cls(place, planned, plan, conditions, Progress(plan), engine)
         session.tell(fields or {})
         session._drawn = seed is None
         check_free(place)
@@ -176,12 +172,7 @@ class Session:
 
     @classmethod
     def resume(
-        cls,
-        folder: str | Path,
-        *,
-        procedure: Procedure | None = None,
-        engine: MakeEngine | None = None,
-        **changed: Any,
+        cls, folder: str | Path, *, engine: MakeEngine | None = None, **changed: Any
     ) -> Session:
         """Go on with a session that was begun.
 
@@ -189,7 +180,7 @@ class Session:
         ----------
         folder
             The session's directory.
-        procedure, engine
+        engine
             As for `create`.
         changed
             Those of the `Conditions` that are others than when the session began: device, hand,
@@ -209,7 +200,7 @@ class Session:
                 f"{record.folder} is damaged: of {journal.NAME} {record.told.damage}; the "
                 f"{len(record.told.events)} events before it are whole, and nothing was changed"
             )
-        progress = Progress(record.plan, record.told.events, procedure)
+        progress = Progress(record.plan, record.told.events, record.procedure)
         if progress.ended:
             raise InputError(f"{record.folder} has ended; session export makes tables of it")
         began = Conditions.of(record.head)
@@ -340,7 +331,6 @@ class Session:
                 say(f"session: {self.folder}")
             self.progress = sitting.run(
                 self.record,
-                self.progress.procedure,
                 why="start" if begins else "resume",
                 spec=self.conditions.device,
                 hand=self.conditions.hand,

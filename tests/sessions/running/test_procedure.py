@@ -1,23 +1,29 @@
 """Which trial comes next: by the plan, or by the answers, whatever happens to the session."""
 
 import shutil
-from dataclasses import replace
+from copy import copy
+from dataclasses import dataclass, replace
 
 import pytest
 
-from tests.sessions.sittings import MINI, Session, crash, of
+from tests.sessions.sittings import MINI, Person, Played, Session, crash, of
+from vbraille.devices import open_device
+from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.planfile import stimulus_to_json
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
 from vbraille.sessions.planning.stimuli import Trial
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.folder import Record, load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.replay import frames
+from vbraille.sessions.running.sitting import Sitting
+from vbraille.simulation.specs import device_spec, steering_of
 
 PRACTICE = MINI + '[practice]\ntrials = 1\nstrings = ["ca"]\n'
 STEP = 0.125
 WRONG = {1: "?", 2: "⠉", 3: "?", 4: "?", 5: "⠉"}  # in trials of which it is not the string
 COUNT = 5
+TYPED = {"⠁": "a", "⠉": "c", "⠈": "4", "⠀": "0"}
 
 
 class Staircase:
@@ -41,22 +47,61 @@ class Staircase:
 class Reader:
     """Answers by the number of the trial alone, so that it says the same after a crash."""
 
+    name = "right or wrong"
     typed = felt = False
-
-    def __init__(self):
-        self.said = []
 
     def lines(self, _wait_s):
         return []
 
+    last = 0
+
     def next(self, trial, *_):
-        return WRONG[trial.number] if not trial.practice else "ca", 0
+        if self.last == COUNT:
+            return None
+        self.last = trial.number
+        return WRONG[trial.number], 0
 
 
-def session(folder, toml=MINI):
-    sitting = Session(folder, toml, hand="sweep:300")
-    sitting.procedure = Staircase(sitting.plan.trials[0])
-    return sitting
+@dataclass
+class Sat:
+    """A session that went by a staircase, after it was run."""
+
+    session: Session
+    record: Record
+    said: list
+
+    @property
+    def events(self):
+        return self.record.told.events
+
+    def progress(self, count=None):
+        """How far it is after some of its events."""
+        return Progress(self.record.plan, self.events[:count], self.record.procedure)
+
+
+def staircase(session):
+    """Session as it is on the disk, that goes by a staircase."""
+    record = load(session.folder)
+    return replace(record, procedure=Staircase(record.plan.trials[0]))
+
+
+def sit(session, answers=None):
+    """Run a session by a staircase, as it goes by a plan elsewhere."""
+    said, steering = [], steering_of("sim")
+    spec = device_spec("sim", "sweep:300", 1, steering)
+    engine = BatchEngine(
+        open_device(spec, session.protocol.model.on(session.protocol.geometry)), poll_ticks=100
+    )
+    sitting = Sitting(
+        engine, Reader() if answers is None else answers, steering, sound=Played, real=False,
+        say=said.append if answers is None else answers.said.append, warn=said.append,
+        before_rest=lambda: None,
+    )  # fmt: skip
+    try:
+        sitting.run(staircase(session), why="test", spec="sim", hand="sweep:300")
+    finally:
+        engine.close()
+    return Sat(session, staircase(session), said)
 
 
 def asked(events):
@@ -71,9 +116,8 @@ def asked(events):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A session that nobody disturbed, with a trial of practice."""
-    sitting = session(tmp_path_factory.mktemp("procedure") / "s", PRACTICE)
-    return sitting, sitting.sit(Reader())
+    """A session that nobody disturbed; its practice is left out."""
+    return sit(Session(tmp_path_factory.mktemp("procedure") / "s", PRACTICE))
 
 
 def test_a_fixed_order_gives_the_plan_whatever_is_answered(tmp_path):
@@ -86,23 +130,25 @@ def test_a_fixed_order_gives_the_plan_whatever_is_answered(tmp_path):
 
 
 def test_a_staircase_goes_by_the_answers_and_ends_when_it_says_so(whole):
-    sitting, sat = whole
-    (first,) = sitting.plan.trials[0].stimuli
-    right = [answer == sitting.plan.trials[0].presented for answer in WRONG.values()]
+    (shown,) = whole.session.plan.trials[0].stimuli
+    right = [answer == whole.session.plan.trials[0].presented for answer in WRONG.values()]
     steps = [0.5 + STEP * (n - 2 * sum(right[:n])) for n in range(COUNT)]
-    assert [asked(sat.events)[n] for n in range(1, COUNT + 1)] == steps
+    assert [asked(whole.events)[n] for n in range(1, COUNT + 1)] == steps
     assert len(set(steps)) > 1
-    assert stimulus_to_json(first).keys() == of(sat.events, "presented")[0]["shown"].keys()
-    assert "ready: trial 3" in sat.said
-    assert f"end: all trials are done; {COUNT} have answers" in sat.said
-    assert (sat.progress.done, sat.progress.planned, sat.progress.ended) == (COUNT, None, True)
+    first = of(whole.events, "presented")[0]
+    assert first["shown"] == stimulus_to_json(
+        replace(shown, tuning=replace(shown.tuning, texture=0.5))
+    )
+    assert "ready: trial 3" in whole.said
+    assert f"end: all trials are done; {COUNT} have answers" in whole.said
+    progress = whole.progress()
+    assert (progress.done, progress.planned, progress.ended) == (COUNT, None, True)
 
 
 def test_every_beginning_of_it_asks_for_the_trial_that_came_next(whole):
-    sitting, sat = whole
-    textures = asked(sat.events)
-    for count in range(len(sat.events) + 1):
-        progress = Progress(sitting.plan, sat.events[:count], sitting.procedure)
+    textures = asked(whole.events)
+    for count in range(len(whole.events) + 1):
+        progress = whole.progress(count)
         trial = progress.next_trial
         if trial is None:
             assert progress.done == COUNT
@@ -112,30 +158,29 @@ def test_every_beginning_of_it_asks_for_the_trial_that_came_next(whole):
 
 
 def test_killed_between_any_two_events_it_goes_on_with_the_same_questions(whole, tmp_path):
-    sitting, sat = whole
-    lines = (sitting.folder / "journal.jsonl").read_bytes().splitlines(keepends=True)
-    for count in range(2, len(lines)):
-        copy = session(tmp_path / "new", PRACTICE)
-        shutil.rmtree(copy.folder)
-        copy.folder = shutil.copytree(sitting.folder, tmp_path / f"{count}")
-        crash(copy.folder, sum(map(len, lines[:count])))
-        again = copy.sit(Reader())
-        assert again.events[:count] == sat.events[:count]
-        assert asked(again.events) == asked(sat.events), count
-        assert again.progress.ended
+    lines = (whole.record.folder / "journal.jsonl").read_bytes().splitlines(keepends=True)
+    session = copy(whole.session)
+    kinds = [event.kind for event in whole.events]
+    for count in range(1, kinds.index("end") + 1):
+        session.folder = shutil.copytree(whole.record.folder, tmp_path / f"{count}")
+        crash(session.folder, sum(map(len, lines[:count])))
+        again = sit(session)
+        assert again.events[:count] == whole.events[:count]
+        assert asked(again.events) == asked(whole.events), count
+        assert again.progress().ended
 
 
 def test_an_answer_that_is_corrected_changes_what_comes_next_unless_that_was_shown(tmp_path):
-    right = session(tmp_path / "r").plan.trials[0].presented
-    for n, (said, first) in enumerate((("answer: trial 1", 0.375), ("cue: trial 2", 0.625))):
-        sitting = session(tmp_path / f"{n}")
-        typed = "?" if right == "⠉" else "c"
-        sat = sitting.sit(
-            ("read:", typed), (said, "undo"), ("undo: trial 1", "1" if right == "⠁" else "0"),
-            ("read:", "stop"),
-        )  # fmt: skip
-        corrected = of(sat.events, "answer")[1]["answer"] == right
-        assert asked(sat.events)[2] == (first if corrected else 0.625)
+    for said, texture in (("answer: trial 1", 0.5 - STEP), ("cue: trial 2", 0.5 + STEP)):
+        session = Session(tmp_path / said[:3])
+        right = TYPED[session.plan.trials[0].presented]
+        sat = sit(session, Person([
+            ("read:", "?"), (said, "undo"), ("undo: trial 1", right),
+            ("read:|cue: trial 2", "stop"),
+        ]))  # fmt: skip
+        assert of(sat.events, "answer")[0]["answer"] == "?"
+        assert sat.progress().trials[1].answer == session.plan.trials[0].presented
+        assert asked(sat.events)[2] == texture
 
 
 def test_what_was_shown_is_replayed_and_exported_from_the_journal_alone(tmp_path):

@@ -125,7 +125,7 @@ def read_sitting(folder: Path) -> SessionTrials:
         If a file other than the journal and the traces is missing or not what it was.
     """
     record = load(folder)
-    progress = Progress(record.plan, record.told.events)
+    progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record)
     rows: list[dict[str, Any]] = []
     readings: dict[int, Reading | str] = {}

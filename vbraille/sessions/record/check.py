@@ -99,7 +99,7 @@ def check(record: Record) -> Iterator[Finding]:
         yield Finding(f"plan: {error}", good=False)
     yield from _check_journal(told)
     yield from _check_torn(record.folder, told)
-    progress = Progress(record.plan, told.events)
+    progress = Progress(record.plan, told.events, record.procedure)
     yield from _check_traces(record, progress)
     state = "ended" if progress.ended else "not ended, session resume goes on"
     yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")

@@ -176,7 +176,7 @@ def walk(
         What the row's duration is of; why there is none; None for what has no trace
         to be read: comparisons, what is on paper, what is not answered.
     """
-    progress = Progress(record.plan, record.told.events)
+    progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)

@@ -20,6 +20,7 @@ import numpy as np
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
 from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.procedure import FixedOrder
 from vbraille.sessions.planning.protocol import Protocol, parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.record.journal import JournalContents, Tie
 
 FORMAT = 4
@@ -55,6 +57,8 @@ class Record:
         What is done, and in which order.
     told
         The journal, when it was read.
+    procedure
+        What says which trial comes next.
     """
 
     folder: Path
@@ -62,6 +66,7 @@ class Record:
     protocol: Protocol
     plan: Plan
     told: JournalContents
+    procedure: Procedure
 
     @property
     def centred(self) -> bool:
@@ -176,12 +181,14 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     """
     told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
+    plan = Plan.from_json(contents[PLAN])
     return Record(
         folder,
         json.loads(contents[HEAD]),
         parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True),
-        Plan.from_json(contents[PLAN]),
+        plan,
         told,
+        FixedOrder(plan.trials),
     )
 
 

@@ -225,6 +225,10 @@ class Progress:
         trials = self.procedure.trials
         return None if trials is None else len(trials)
 
+    def of_all(self, number: int) -> str:
+        """Say a number of trials, and of how many, if that is known."""
+        return f"{number}" if self.planned is None else f"{number} of {self.planned}"
+
     def told(self, trial: Trial) -> TrialRecord:
         """What is known of a trial."""
         return (self.practice if trial.practice else self.trials)[trial.number]

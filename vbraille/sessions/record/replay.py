@@ -114,7 +114,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
     VbrailleError
         If a trace cannot be read.
     """
-    progress = Progress(record.plan, record.told.events)
+    progress = Progress(record.plan, record.told.events, record.procedure)
     pictures = _Pictures(record, progress)
     for run in progress.runs:
         if not run.trace:

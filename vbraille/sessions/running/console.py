@@ -311,7 +311,7 @@ class Console:
         course = self._course
         course.withdraw()
         course.book.log(events.Stop)
-        done = course.of_all(self._progress.done)
+        done = self._progress.of_all(self._progress.done)
         self._say(f"stopped: {done} trials have answers; session resume goes on")
         course.phase = Phase.OVER
 

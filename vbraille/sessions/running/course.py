@@ -142,16 +142,11 @@ class Course:
         trial = self.open_trial
         return trial is not None and self._stimulus + 1 < len(trial.stimuli)
 
-    def of_all(self, number: int) -> str:
-        """Say a number of trials, and of how many, if that is known."""
-        planned = self.progress.planned
-        return f"{number}" if planned is None else f"{number} of {planned}"
-
     def name(self, trial: Trial) -> str:
         """What to call a trial."""
         if trial.practice:
             return f"practice {trial.number} of {len(self.plan.practice)}"
-        return f"trial {self.of_all(trial.number)}"
+        return f"trial {self.progress.of_all(trial.number)}"
 
     def start(self, **started: Any) -> None:
         """Begin a run with the engine started; `started` are more fields of the journal's `Run`."""
@@ -187,7 +182,7 @@ class Course:
     def end(self, why: str) -> None:
         """End the session for good."""
         self.book.log(events.End, why=why)
-        self._say(f"end: {why}; {self.of_all(self.progress.done)} have answers")
+        self._say(f"end: {why}; {self.progress.of_all(self.progress.done)} have answers")
         self.phase = Phase.OVER
 
     def have_break(self) -> None:

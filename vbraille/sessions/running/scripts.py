@@ -73,7 +73,10 @@ class GivenAnswers:
 
 def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress) -> None:
     """Raise InputError if a line of the file is no answer to its trial: nothing is begun then."""
-    trials = iter(progress.plan.trials[progress.done :])
+    planned = progress.procedure.trials
+    if planned is None:  # which trials come is not known yet
+        return
+    trials = iter(planned[progress.done :])
     correcting, answered = progress.correcting, progress.last_answered
     for line, number in script.left:
         found = find_order(line)

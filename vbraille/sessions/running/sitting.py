@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
-    from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
@@ -85,17 +84,13 @@ class Sitting:
         self._opened = True
         check_room(self._engine.display, protocol, plan)
 
-    def run(
-        self, record: Record, procedure: Procedure, *, why: str, spec: str, hand: str
-    ) -> Progress:
+    def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
         """Conduct the session until its end, or until it is stopped; how far it has come.
 
         Parameters
         ----------
         record
             What is there of the session.
-        procedure
-            Says which trial comes next.
         why, spec, hand
             What the journal tells of the run: start or resume, the device, and its hand.
         """
@@ -103,7 +98,7 @@ class Sitting:
             check_end(record.folder, book.told)
             torn_bytes = book.set_torn_aside()
             self.open(record.protocol, record.plan)
-            progress = Progress(record.plan, book.told.events, procedure)
+            progress = Progress(record.plan, book.told.events, record.procedure)
             display = self._display(record, book)
             sound = self._sound()
             course = Course(
@@ -137,7 +132,8 @@ class Sitting:
             if display is not None:
                 counts = {name: count for name, count in display.engine.counts.items() if count}
                 lost = display.engine.lost
-                course.book.log(events.Closed, lost=lost, counts=counts, **display.close_trace())
+                trace = display.close_trace()
+                course.book.log(events.Closed, lost=lost, counts=counts, **trace)
             self._say(f"record: {sum_of((record.folder / NAME).read_bytes())}")
         return progress
 
@@ -167,7 +163,7 @@ class Sitting:
             told |= gap(Moment.of(book.told.events[-1], progress.runs[-1]), Moment.now())
             if (moved := say_moved(told)) is not None:
                 self._say(moved)
-            self._say(f"resume: {progress.done} of {len(progress.plan.trials)} trials have answers")
+            self._say(f"resume: {progress.of_all(progress.done)} trials have answers")
         if book.told.torn:
             self._say(
                 f"torn: {len(book.told.torn)} bytes at the end of the journal are in journal.torn"
