@@ -109,8 +109,8 @@ def test_a_file_that_is_gone_or_another_is_said(tmp_path, put, name):
 
 def test_a_trace_is_held_against_what_the_journal_tells_of_it(tmp_path):
     session = Session(tmp_path / "s")
-    told = session.sit().record.told
-    told = replace(told, events=told.events[:-1])  # without the one that tells how it was closed
+    ended = session.sit().record.told
+    told = replace(ended, events=ended.events[:-1])  # before the trace was closed
     path = tmp_path / "s" / "trace-001.gz"
     whole = path.read_bytes()
 
