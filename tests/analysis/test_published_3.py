@@ -22,8 +22,8 @@ from vbraille.analysis.input.trials import Places, chosen, name_cell
 from vbraille.analysis.measures import characters, confusion, doterrors
 from vbraille.analysis.measures.legibility import averages, legibility
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import load_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import load_protocol
 
 READ, CHARACTERS, PAIRS = TOLD["table_3_1"], TOLD["table_3_4"], TOLD["table_3_5"]
 TUNED, DESIGN = TOLD["tuning_3_3"], TOLD["legibility_3_4_design"]

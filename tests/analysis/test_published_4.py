@@ -13,8 +13,8 @@ from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.measures.levels import analyses, level_means, t_tests
 from vbraille.analysis.schemas import Kind, round_half_up, to_print
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import load_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import load_protocol
 
 LETTERS = TOLD["chapter_4"]
 

@@ -17,7 +17,7 @@ from tests.conftest import SEED
 from tests.sessions.sittings import Session
 from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
 from vbraille.engine.record import Flag
-from vbraille.sessions.planning.protocol import builtin_text
+from vbraille.sessions.planning.protocolfiles import builtin_text
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.record.journal import Journal
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.stimuli import Trial
 
 SITTINGS = 5
 TRIAL_S, GAP_S = 12.0, 0.5

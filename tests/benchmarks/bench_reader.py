@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result, vbraille
-from vbraille.sessions.planning.protocol import builtin_text
+from vbraille.sessions.planning.protocolfiles import builtin_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -19,8 +19,8 @@ from tests.benchmarks.killing import kill_often
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
 from tests.sessions.planning.rulebook import broken_rules
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record.events import Answer, Closed
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace

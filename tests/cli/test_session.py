@@ -17,7 +17,7 @@ import pytest
 from tests.cli import program
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import COMPARED, MINI, crash
-from vbraille.sessions.planning.protocol import builtin_names
+from vbraille.sessions.planning.protocolfiles import builtin_names
 from vbraille.sessions.record.traces import read_trace
 
 WHO = ("--participant", "P07")

@@ -7,8 +7,9 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import Protocol, load_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.protocolfiles import load_protocol
 from vbraille.sessions.record.folder import FORMAT, versions
 
 if TYPE_CHECKING:

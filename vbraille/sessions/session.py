@@ -31,8 +31,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from vbraille.display import Display
-    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.sessions.running.sounds import Sound
@@ -147,7 +148,7 @@ class Session:
         seed
             What the plan is drawn from; one is drawn if none is given.
         order, texture, contrast
-            As of `vbraille.sessions.planning.plan.make_plan`.
+            As of `vbraille.sessions.planning.making.make_plan`.
         fields
             What the protocol asks about the participant, by name; the others stay empty.
         conditions

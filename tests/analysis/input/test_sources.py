@@ -16,8 +16,8 @@ from vbraille.analysis.measures.characters import strings
 from vbraille.analysis.measures.movement import correlations
 from vbraille.analysis.schemas import to_csv as frame_to_csv
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protocol
 from vbraille.sessions.record.export import rows, to_csv
 from vbraille.sessions.record.folder import load
 

@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from vbraille.sessions.planning.plan import make_plan
+from vbraille.sessions.planning.making import make_plan
 
 
 def broken_rules(protocol, participant, seed):

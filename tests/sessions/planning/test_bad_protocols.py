@@ -5,7 +5,7 @@ import re
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\n'
 VBD_HEAD = f'{HEAD}model = "vbd"\n'

@@ -15,8 +15,10 @@ from tests.sessions.planning.rulebook import broken_rules
 from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Rules
-from vbraille.sessions.planning.plan import Plan, check_plan, make_plan
-from vbraille.sessions.planning.protocol import builtin_names, load_protocol, parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.plan import Plan
+from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
+from vbraille.sessions.planning.rules import check_plan
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")

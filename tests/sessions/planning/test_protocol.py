@@ -16,7 +16,7 @@ from vbraille.render import MAPPINGS, Tuning
 from vbraille.sessions import planning
 from vbraille.sessions.planning.conduct import Question, Tone
 from vbraille.sessions.planning.practice import Practice
-from vbraille.sessions.planning.protocol import (
+from vbraille.sessions.planning.protocolfiles import (
     builtin_names,
     builtin_text,
     load_protocol,

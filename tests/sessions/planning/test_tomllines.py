@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.sessions.planning import tomllines
-from vbraille.sessions.planning.protocol import builtin_names, builtin_text
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
 from vbraille.sessions.planning.tomllines import lines_of
 
 NASTY = (

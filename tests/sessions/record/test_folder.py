@@ -7,8 +7,8 @@ import pytest
 
 from tests.sessions.sittings import MINI, Session
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.events import Closed
 from vbraille.sessions.record.folder import create, load, read_told_trace
 

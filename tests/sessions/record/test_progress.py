@@ -3,8 +3,8 @@
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import events
 from vbraille.sessions.record.progress import Progress
 

@@ -6,8 +6,8 @@ import pytest
 from tests.sessions.sittings import MINI, Session, of
 from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import builtin_text, parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import builtin_text, parse_protocol
 from vbraille.sessions.running.answers import ScriptedAnswers, Simulated, parse_answers
 from vbraille.sessions.simulated.skin import Exploration
 

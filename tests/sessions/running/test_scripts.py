@@ -4,8 +4,8 @@ import pytest
 
 from tests.sessions.sittings import MINI
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import make_plan
-from vbraille.sessions.planning.protocol import parse_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.running.answers import PROGRAM, Answers, parse_answers
 from vbraille.sessions.running.scripts import GivenAnswers
 from vbraille.sessions.session import Session

@@ -10,8 +10,7 @@ import pandas as pd
 
 from vbraille.braille.spelling import to_braille
 from vbraille.sessions.planning.design import StringList
-from vbraille.sessions.planning.protocol import parse_protocol
-from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, parse_protocol
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.strokes import Reading
-    from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.cli.stopping import EAR
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
-from vbraille.sessions.planning.protocol import builtin_names, builtin_text, load_protocol
+from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.participants import nearly_same
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     import argparse
 
     from vbraille.sessions.planning.conduct import Question
-    from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.session import Session
 

@@ -15,7 +15,8 @@ from vbraille.render import Tuning
 from vbraille.sessions.planning.stimuli import Stimuli, Stimulus
 
 if TYPE_CHECKING:
-    from vbraille.sessions.planning.plan import Plan
+    from collections.abc import Mapping
+
     from vbraille.sessions.planning.stimuli import Trial
 
 _Plan = TypeVar("_Plan")
@@ -30,12 +31,10 @@ class _Version(msgspec.Struct):
     format: int
 
 
-def encode(plan: Plan) -> str:
-    """JSON of a plan, a trial a line."""
-    head = {"format": plan.version}
-    head |= {name: getattr(plan, name) for name in ("protocol", "participant", "seed", "order")}
+def encode(head: Mapping[str, str | int], lists: Mapping[str, tuple[Trial, ...]]) -> str:
+    """JSON of a plan, a trial a line: what stands at its head, then its lists of trials."""
     lines = [f"{_json(name)}: {_json(value)}" for name, value in head.items()]
-    for name, trials in (("practice", plan.practice), ("trials", plan.trials)):
+    for name, trials in lists.items():
         written = ",\n".join(map(_trial, trials))
         lines.append(f"{_json(name)}: [\n{written}\n]" if trials else f"{_json(name)}: []")
     return "{\n" + ",\n".join(lines) + "\n}\n"

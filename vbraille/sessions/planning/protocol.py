@@ -10,11 +10,10 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-import msgspec
 from msgspec import field
 
+from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.render import MODELS
-from vbraille.sessions.planning.agreement import check_agreement
 from vbraille.sessions.planning.appearance import Appearance, Condition
 from vbraille.sessions.planning.conduct import (
     FaultRules,
@@ -24,24 +23,27 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
-from vbraille.sessions.planning.design import Choice, Combinations, Rules, StringList
+from vbraille.sessions.planning.design import (
+    MOST_TRIALS,
+    Choice,
+    Combinations,
+    Rules,
+    StringList,
+)
 from vbraille.sessions.planning.practice import Practice
-from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, read_file
-from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
-from vbraille.sessions.planning.tomlfile import Table, TomlFile, which
+from vbraille.sessions.planning.spellings import SpellingKeys
+from vbraille.sessions.planning.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
     from vbraille.render import BrailleStyle, Mapping, Model, Tuning
-
-__all__ = ["Protocol", "builtin_names", "builtin_text", "load_protocol", "parse_protocol"]
 
 FORMAT = 1
 ONLY_CONDITION = "all"
 _NAME = re.compile(r"[a-z0-9-]{1,40}")
 
 
-class _File(Table, frozen=True, kw_only=True):
+class ProtocolFile(Table, frozen=True, kw_only=True):
     """What a protocol's file has, key by key."""
 
     format: int
@@ -63,7 +65,7 @@ class _File(Table, frozen=True, kw_only=True):
     fields: tuple[Question, ...] = ()
 
 
-class Protocol(_File, frozen=True, kw_only=True, dict=True):
+class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     """What a session shows, and how it is conducted: what its file has, and what follows from it.
 
     Parameters
@@ -117,7 +119,7 @@ class Protocol(_File, frozen=True, kw_only=True, dict=True):
         check_line("source", self.source)
         if self.model_name not in MODELS:
             raise ValueError(f"model is {self.model_name!r}{which(self.model_name, MODELS)}")
-        check_agreement(self)
+        _check_agreement(self)
 
     @property
     def model(self) -> Model:
@@ -193,72 +195,101 @@ class Protocol(_File, frozen=True, kw_only=True, dict=True):
         return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
 
 
-def load_protocol(spec: str) -> Protocol:
-    """Read a protocol.
-
-    Parameters
-    ----------
-    spec
-        Name of one that comes with the program; or a file, if it ends in
-        ``.toml`` or has a ``/`` in it.
+def _check_agreement(protocol: Protocol) -> None:
+    """Check what no table of a protocol can check by itself.
 
     Raises
     ------
-    InputError
-        If there is no such protocol, or it cannot be used.
+    ValueError
+        If values do not go together.
     """
-    if spec.endswith(".toml") or "/" in spec:
-        return parse_protocol(read_file(spec), spec)
-    return parse_protocol(builtin_text(spec), f"{spec}.toml")
+    for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
+        names = [value.name for value in named]
+        for number, name in enumerate(names, 1):
+            if name in names[: number - 1]:
+                raise ValueError(
+                    f"[[{table}]] number {number} name is {name!r} again; give each its own"
+                )
+    _check_tuning(protocol)
+    problem = protocol.practice.problem(protocol.design)
+    if problem:
+        raise ValueError(f"[practice] {problem}")
+    _check_trials(protocol)
+    _check_cells(protocol)
+    _check_lines(protocol)
+    _check_letters(protocol)
 
 
-def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
-    """Check a protocol.
+def _check_tuning(protocol: Protocol) -> None:
+    table = "[display]"
+    try:
+        protocol.style  # noqa: B018
+        for number, condition in enumerate(protocol.listed, 1):
+            table = f"[[conditions]] number {number}"
+            protocol.tuning(condition)
+    except ValueError as error:
+        raise ValueError(f"{table} {error}") from None
 
-    Parameters
-    ----------
-    text
-        TOML.
-    where
-        The file, as messages name it.
-    planned
-        Whether it is that of a session: its plan has been made, and what version 0.1 took
-        is taken still (blanks and dot numbers in strings, practice of the test's items).
 
-    Raises
-    ------
-    InputError
-        If it cannot be used. One sentence says where, why, and what to do.
-    """
-    file = TomlFile(text, where)
-    file.read(_Format)  # before all keys are known: another format may have others
-    keys = file.read(_Keyed, read_keys).keys
-    tables = file.read(_File, spelled(keys, planned=planned))
-    with file.checking():
-        protocol = Protocol(**msgspec.structs.asdict(tables), text=text)
-        if protocol.practice.trials and not protocol.practice.items and not planned:
+def _check_trials(protocol: Protocol) -> None:
+    trials, blocks = protocol.trials, protocol.design.blocks
+    if trials + protocol.practice.trials > MOST_TRIALS:
+        raise ValueError(
+            f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
+        )
+    if blocks != "conditions" and not 1 <= blocks <= trials:
+        raise ValueError(
+            f"[design] blocks is {blocks}; it must be 1 to {trials}, "
+            f"since there are {trials} trials"
+        )
+
+
+def _check_cells(protocol: Protocol) -> None:
+    """Check that the display shows all dots of what is shown."""
+    model, mapping, design = protocol.model, protocol.mapping, protocol.design
+    shown = mapping.shown_dots()
+    how = (
+        f"'s row {mapping.left[0] + 1}"
+        if mapping.rows == 1
+        else f" with the mapping {mapping.name}"
+    )
+    only = f"the {model.title}{how} shows {name_dots(shown)} only"
+    practised = {mask for line in protocol.practice.lines(design) for mask in line}
+    for table, masks in (("[design]", design.masks), ("[practice]", practised)):
+        for mask in sorted(masks):
+            if mask & ~shown:
+                cell = f"{to_braille((mask,))} ({name_dots(mask)})"
+                raise ValueError(f"{table} has the cell {cell}, and {only}; leave the cell out")
+    for key, mask in protocol.keys.items():
+        if mask & ~shown:
+            raise ValueError(f"[keys] {key} is {name_dots(mask)}, and {only}; leave the key out")
+
+
+def _check_lines(protocol: Protocol) -> None:
+    """Check that the display has room for the longest line, at each value that is compared."""
+    model, design, practice = protocol.model, protocol.design, protocol.practice
+    values = design.values if isinstance(design, Choice) else (None,)
+    longest = max((design.cells, *map(len, practice.lines(design))))
+    whose = "[design]" if longest == design.cells else "[practice]"
+    for value in (*values, *sorted(set(practice.values))):
+        at = "" if value is None else f" at a value of {value:g} mm"
+        try:
+            room = protocol.geometry_at(value).cells_per_line(model.display.span_mm)
+        except ValueError as error:
+            raise ValueError(f"[design]{at}: {error}") from None
+        cells = protocol.lead_cells + longest
+        if cells > room:
             raise ValueError(
-                f"[practice] has no items of its own, and those of the test would be given away; "
-                f"give {'values' if protocol.parameter else 'strings'} that the test does not "
-                f"have, or trials = 0"
-            )
-    return protocol
-
-
-class _Format(msgspec.Struct):
-    """What is known of a file of any format."""
-
-    format: int
-
-    def __post_init__(self) -> None:
-        if self.format != FORMAT:
-            raise ValueError(
-                f"format is {self.format}, and this vbraille knows format {FORMAT}; "
-                f"use a vbraille that knows it"
+                f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
+                f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
             )
 
 
-class _Keyed(msgspec.Struct):
-    """What is read before the strings that are spelled by it."""
-
-    keys: SpellingKeys = field(default_factory=SpellingKeys)
+def _check_letters(protocol: Protocol) -> None:
+    rules = protocol.rules
+    if isinstance(protocol.design, StringList):
+        problem = rules.problem(protocol.design.items())
+        if problem:
+            raise ValueError(f"[rules] {problem}; change the strings or the rule")
+    elif (rules.each_letter, rules.each_letter_at_least) != (None, None):
+        raise ValueError("[rules] count the letters of kind = 'list'; leave them out")

@@ -1,12 +1,17 @@
-"""Where protocols are read from: the program's own folder, or a file."""
+"""Protocols are read: from the program's own folder, or from a file."""
 
 from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
 
+import msgspec
+from msgspec import field
+
 from vbraille.errors import InputError
-from vbraille.sessions.planning.tomlfile import which
+from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
+from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
+from vbraille.sessions.planning.tomlfile import TomlFile, which
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
 _MOST_BYTES = 1_000_000
@@ -60,3 +65,74 @@ def read_file(path: str) -> str:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(f"{path} is not UTF-8 in line {line}; save it as UTF-8") from None
+
+
+def load_protocol(spec: str) -> Protocol:
+    """Read a protocol.
+
+    Parameters
+    ----------
+    spec
+        Name of one that comes with the program; or a file, if it ends in
+        ``.toml`` or has a ``/`` in it.
+
+    Raises
+    ------
+    InputError
+        If there is no such protocol, or it cannot be used.
+    """
+    if spec.endswith(".toml") or "/" in spec:
+        return parse_protocol(read_file(spec), spec)
+    return parse_protocol(builtin_text(spec), f"{spec}.toml")
+
+
+def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
+    """Check a protocol.
+
+    Parameters
+    ----------
+    text
+        TOML.
+    where
+        The file, as messages name it.
+    planned
+        Whether it is that of a session: its plan has been made, and what version 0.1 took
+        is taken still (blanks and dot numbers in strings, practice of the test's items).
+
+    Raises
+    ------
+    InputError
+        If it cannot be used. One sentence says where, why, and what to do.
+    """
+    file = TomlFile(text, where)
+    file.read(_Format)  # before all keys are known: another format may have others
+    keys = file.read(_Keyed, read_keys).keys
+    tables = file.read(ProtocolFile, spelled(keys, planned=planned))
+    with file.checking():
+        protocol = Protocol(**msgspec.structs.asdict(tables), text=text)
+        if protocol.practice.trials and not protocol.practice.items and not planned:
+            raise ValueError(
+                f"[practice] has no items of its own, and those of the test would be given away; "
+                f"give {'values' if protocol.parameter else 'strings'} that the test does not "
+                f"have, or trials = 0"
+            )
+    return protocol
+
+
+class _Format(msgspec.Struct):
+    """What is known of a file of any format."""
+
+    format: int
+
+    def __post_init__(self) -> None:
+        if self.format != FORMAT:
+            raise ValueError(
+                f"format is {self.format}, and this vbraille knows format {FORMAT}; "
+                f"use a vbraille that knows it"
+            )
+
+
+class _Keyed(msgspec.Struct):
+    """What is read before the strings that are spelled by it."""
+
+    keys: SpellingKeys = field(default_factory=SpellingKeys)

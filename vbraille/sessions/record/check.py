@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import VbrailleError
-from vbraille.sessions.planning.plan import check_plan
+from vbraille.sessions.planning.rules import check_plan
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Lost, Run
 from vbraille.sessions.record.folder import (

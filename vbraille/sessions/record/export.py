@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.sessions.planning.plan import Trial
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
     from vbraille.sessions.record.progress import TrialRecord

@@ -21,7 +21,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.procedure import FixedOrder
-from vbraille.sessions.planning.protocol import Protocol, parse_protocol
+from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
 from vbraille.sessions.record.salvage import salvage
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.sessions.planning.procedure import Procedure
+    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.journal import JournalContents, Tie
 
 FORMAT = 4

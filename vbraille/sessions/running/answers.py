@@ -20,8 +20,9 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
-    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
 

@@ -19,8 +19,8 @@ from vbraille.sessions.running.orders import ORDERS, find_order
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.course import Course
 

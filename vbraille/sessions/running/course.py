@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
     from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.conduct import Tone
-    from vbraille.sessions.planning.plan import Plan, Trial
+    from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.running.showing import Happened, OnDevice

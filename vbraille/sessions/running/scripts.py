@@ -12,8 +12,8 @@ from vbraille.sessions.running.orders import find_order
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from vbraille.sessions.planning.plan import Trial
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.simulated.skin import Exploration
 

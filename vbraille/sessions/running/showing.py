@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.braille.tuning import Tuning
-    from vbraille.sessions.planning.plan import Stimulus
     from vbraille.sessions.planning.protocol import Protocol as Design
+    from vbraille.sessions.planning.stimuli import Stimulus
     from vbraille.sessions.record.events import Event
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
