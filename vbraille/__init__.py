@@ -10,7 +10,7 @@ with examples.
 
 from importlib import import_module
 
-from vbraille.version import __version__
+from vbraille.version import __version__ as __version__
 
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
@@ -80,7 +80,6 @@ __all__ = [
     "Session",
     "Tuning",
     "VbrailleError",
-    "__version__",
     "analyse",
     "open",
     "render_text",

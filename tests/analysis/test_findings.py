@@ -152,9 +152,8 @@ def test_what_has_no_number_is_not_told_as_one(results):
     tables = []
     for table in results.result_tables():
         if table.name == "information":
-            empty = [row | {"corrected_bits": None, "note": "too few"} for row in table.records()]
-            kept = tuple(tuple(row[name] for name in table.names) for row in empty)
-            tables.append(replace(table, rows=kept))
+            empty = table.frame.assign(corrected_bits=float("nan"), note="too few")
+            tables.append(replace(table, frame=empty))
     assert findings(tables) == ("How much information answers carried is not known: too few.",)
 
 

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from tests.sessions.sittings import Session
 from vbraille.analysis.statistics.sphericity import mauchly_exact_p, mauchly_p
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.protocolfiles import builtin_text
+from vbraille.sessions.record import events
 from vbraille.sessions.record.check import check_folder
 from vbraille.sessions.record.folder import versions
 from vbraille.sessions.record.journal import Journal
@@ -144,12 +145,11 @@ def _sit(session: Session, random: np.random.Generator) -> None:
     with Journal(session.folder) as journal:
         trace = TraceWriter(session.folder / "trace-001.gz", tie=lambda: journal.durable)
 
-        def log(event: str, trial: Trial | None = None, **fields: object) -> None:
+        def log(kind: type[events.Event], trial: Trial | None = None, **fields: Any) -> None:
             of = {} if trial is None else {"trial": trial.number}
-            at = {"t_s": ticks / TICKS_A_S}
-            journal.append({"event": event, **of, **fields, **at}, durable=False)
+            journal.append(kind(**of, **fields, t_s=ticks / TICKS_A_S))
 
-        log("run", why="start", trace="trace-001.gz", versions=versions())
+        log(events.Run, why="start", trace="trace-001.gz", versions=versions())
         for trial in session.plan.trials:
             line = session.protocol.line(trial.stimuli[0].masks)
             middle_mm = array.span_mm / 2  # of the array, right of the left column that hands move
@@ -157,8 +157,8 @@ def _sit(session: Session, random: np.random.Generator) -> None:
             still = np.full(round(GAP_S * TICKS_A_S), -middle_mm)
             waiting = _ticks(still, ticks, trial.number - 1, Flag.PAUSED | Flag.RESTING, random)
             ticks += waiting.size
-            log("presented", trial, attempt=1, stimulus=0, line=trial.number)
-            log("cue", trial)
+            log(events.Presented, trial, attempt=1, stimulus=0, line=trial.number)
+            log(events.Cue, trial)
             motion = hand.read_line(-array.span_mm, end_mm)
             # As it reads, but stretched: all trials are of one length.
             at_s = np.linspace(0.0, motion.duration_s, round(TRIAL_S * TICKS_A_S))
@@ -167,12 +167,12 @@ def _sit(session: Session, random: np.random.Generator) -> None:
             for part in np.array_split(np.concatenate([waiting, felt]), 25):
                 trace.add(part)
             ticks += felt.size
-            log("read", trial, attempt=1, stimulus=0)
+            log(events.Read, trial, attempt=1, stimulus=0)
             wrong = random.random() < _WRONG
-            log("answer", trial, attempt=1, answer="?" * 5 if wrong else trial.presented)
+            log(events.Answer, trial, attempt=1, answer="?" * 5 if wrong else trial.presented)
         trace.close()
-        log("end", why="all trials are done")
-        log("closed", lost=0, counts={}, **trace.closed())
+        log(events.End, why="all trials are done")
+        log(events.Closed, lost=0, counts={}, **trace.closed())
 
 
 def _ticks(

@@ -11,6 +11,7 @@ from tests.cli.test_session import words
 from tests.cli.test_session_bad_input import contents
 from tests.sessions.sittings import MINI, Session
 from vbraille.sessions.record.check import check_folder
+from vbraille.sessions.record.events import Cue, Note
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.journal import Journal, Tie, encode
 from vbraille.sessions.record.traces import TraceWriter, read_last_tie, read_trace
@@ -166,7 +167,7 @@ def test_a_chunk_names_the_last_event_that_is_on_the_disk(tmp_path):
     assert read_last_tie(session.folder / "trace-001.gz") == trace.ties[-1]
     with Journal(session.folder) as journal:
         assert journal.durable == Tie(0, 0)  # nobody knows what of the others is
-        journal.append({"event": "cue", "t_s": 1.0}, durable=False)
+        journal.append(Cue(trial=1, t_s=1.0))
         assert journal.durable == Tie(0, 0)
-        journal.append({"event": "note", "text": "", "t_s": 1.0})
+        journal.append(Note(text="", t_s=1.0))
         assert journal.durable.number == len(told.events) + 2

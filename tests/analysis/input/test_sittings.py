@@ -10,6 +10,7 @@ from vbraille.analysis.input.sittings import MOST_PICKED, Example, _examples, pi
 from vbraille.analysis.input.strokes import IN_PART, ONE_PASS, PATTERNS, Reading
 from vbraille.errors import InputError
 from vbraille.sessions.record import journal
+from vbraille.sessions.record.events import Run
 from vbraille.sessions.record.export import NEVER_CAME, rows
 from vbraille.sessions.record.folder import load, versions
 from vbraille.sessions.record.journal import Journal
@@ -223,8 +224,7 @@ def test_runs_by_different_programs_are_all_told(folder, tmp_path):
     copy = cut(folder, tmp_path / "s", "answer", 1)
     with Journal(copy) as opened:
         for number in ("9.9", "9.9", "9.10"):
-            run = {"event": "run", "versions": versions() | {"numpy": number}, "t_s": 9.0}
-            opened.append(run, durable=False)
+            opened.append(Run(why="resume", versions=versions() | {"numpy": number}, t_s=9.0))
     told = read_sitting(copy).versions
     assert told["numpy"] == f"{versions()['numpy']}, 9.9, 9.10"
     assert told["python"] == versions()["python"]

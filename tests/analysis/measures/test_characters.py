@@ -113,10 +113,10 @@ def test_by_number_of_dots():
 
 @pytest.mark.parametrize("of", [characters, dots])
 def test_answers_of_another_length_are_told(of):
-    table = of(*answers("P1 T0 ac aa", "P1 T0 ac a"))
+    table = of(answers("P1 T0 ac aa", "P1 T0 ac a")[1])
     assert sum(table.frame["presented"].tolist()) == 2
     assert table.notes[0].startswith("1 answer of another number of places")
-    none = of(*answers("P1 T0 ac a"))
+    none = of(answers("P1 T0 ac a")[1])
     assert none.rows == ()
     assert none.notes[0] == "no answer has as many places as its string"
     assert len(none.notes) == 2

@@ -5,13 +5,14 @@ from copy import copy
 from dataclasses import dataclass, replace
 
 import pytest
+from msgspec import structs
 
 from tests.sessions.sittings import MINI, Person, Played, Session, crash, of
 from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.sessions.planning.planfile import stimulus_to_json
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
-from vbraille.sessions.planning.stimuli import Trial
+from vbraille.sessions.planning.stimuli import Stimuli, Trial
 from vbraille.sessions.record.export import rows
 from vbraille.sessions.record.folder import Record, load
 from vbraille.sessions.record.progress import Progress
@@ -41,7 +42,7 @@ class Staircase:
         texture = 0.5 + STEP * (len(history) - 2 * right)
         (stimulus,) = self.first.stimuli
         shown = replace(stimulus, tuning=replace(stimulus.tuning, texture=texture))
-        return replace(self.first, number=len(history) + 1, stimuli=(shown,))
+        return structs.replace(self.first, number=len(history) + 1, stimuli=Stimuli((shown,)))
 
 
 class Reader:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from msgspec import structs
+
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.planfile import stimulus_from_json
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
+from vbraille.sessions.planning.stimuli import Stimuli
 from vbraille.sessions.record import events
 
 if TYPE_CHECKING:
@@ -128,7 +131,7 @@ class TrialRecord:
         stimuli = list(self.trial.stimuli)
         for showing in self.last_attempt:
             stimuli[showing.stimulus] = showing.stimulus_of(self.trial)
-        return replace(self.trial, stimuli=tuple(stimuli))
+        return structs.replace(self.trial, stimuli=Stimuli(stimuli))
 
 
 class Progress:
