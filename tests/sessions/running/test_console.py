@@ -7,7 +7,7 @@ from vbraille.braille.spelling import say_cells
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.record import Flag
 from vbraille.sessions.record.notes import read_notes
-from vbraille.sessions.running.orders import ORDERS
+from vbraille.sessions.running.console import ORDERS
 
 PRACTICE = '[practice]\ntrials = 2\nstrings = ["ac", "ca"]\n'
 ALL = [("read:", "c")] * 4

@@ -14,7 +14,7 @@ from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.sessions.record import events
 from vbraille.sessions.running.course import POLL_S, Phase
-from vbraille.sessions.running.orders import ORDERS, find_order
+from vbraille.sessions.running.orders import Order
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -113,7 +113,7 @@ class Console:
             self.answer(line)
         else:
             order, rest = found
-            getattr(self, order.name)(rest)
+            order.handler(self, rest)
 
     def _ask(self) -> None:
         """Ask whoever does not type, where somebody who types would be waited for."""
@@ -157,7 +157,7 @@ class Console:
             verdict = "right" if answer == trial.presented else "wrong"
             self._say(f"practice: {verdict}, it was {self._spoken(trial.presented)}")
 
-    # Orders, by the names that `vbraille.sessions.running.orders` gives them
+    # What the orders do
 
     def answer(self, line: str) -> None:
         """Take an answer to the open trial, or to the one that was taken back."""
@@ -348,3 +348,33 @@ def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
         keys=protocol.keys,
         shown_dots=protocol.mapping.shown_dots(),
     )
+
+
+ORDERS = (
+    Order("answer", Console.answer, "before an answer that is also one of these words", takes=True),
+    Order(
+        "undo", Console.undo, "take back the last answer, and type it anew; the record keeps both"
+    ),
+    Order("repeat", Console.repeat, "show the open trial again, from its start"),
+    Order("note", Console.note, "write the rest of the line into the record", takes=True),
+    Order("pause", Console.pause, "rest the array at once; again, or Enter, goes on"),
+    Order("go", Console.go_on, "go on, as Enter does"),
+    Order("break", Console.have_break, "a break, after the open trial"),
+    Order("begin", Console.begin, "end practice"),
+    Order(
+        "contrast", Console.contrast, "set the contrast, 0 to 1, unless the plan does", takes=True
+    ),
+    Order("texture", Console.texture, "set the texture, 0 to 1, unless the plan does", takes=True),
+    Order("stop", Console.stop, "end for now; session resume goes on"),
+    Order("help", Console.help, "say what there is to type"),
+)
+_BY_WORD = {order.word: order for order in ORDERS}
+
+
+def find_order(line: str) -> tuple[Order[Console], str] | None:
+    """Order of a line, and what stands after its word; None if the line is no order."""
+    word, _, rest = line.strip().partition(" ")
+    order = _BY_WORD.get(word.lower())
+    if order is None or (rest.strip() and not order.takes):
+        return None
+    return order, rest.strip()

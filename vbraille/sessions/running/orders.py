@@ -1,20 +1,26 @@
-"""What an experimenter may type beside answers."""
+"""Orders: what an experimenter may type beside answers."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+To = TypeVar("To")
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class Order(Generic[To]):
     """An order.
 
     Parameters
     ----------
     word
-        That it is typed by.
-    name
-        Name of the method of `vbraille.sessions.running.console.Console` that does it.
+        The word that it is typed by.
+    handler
+        Does it: it is given whom the order is to, and what stands after the word.
     help
         What it does, for people.
     takes
@@ -22,32 +28,6 @@ class Order:
     """
 
     word: str
-    name: str
+    handler: Callable[[To, str], None]
     help: str
     takes: bool = False
-
-
-ORDERS = (
-    Order("answer", "answer", "before an answer that is also one of these words", takes=True),
-    Order("undo", "undo", "take back the last answer, and type it anew; the record keeps both"),
-    Order("repeat", "repeat", "show the open trial again, from its start"),
-    Order("note", "note", "write the rest of the line into the record", takes=True),
-    Order("pause", "pause", "rest the array at once; again, or Enter, goes on"),
-    Order("go", "go_on", "go on, as Enter does"),
-    Order("break", "have_break", "a break, after the open trial"),
-    Order("begin", "begin", "end practice"),
-    Order("contrast", "contrast", "set the contrast, 0 to 1, unless the plan does", takes=True),
-    Order("texture", "texture", "set the texture, 0 to 1, unless the plan does", takes=True),
-    Order("stop", "stop", "end for now; session resume goes on"),
-    Order("help", "help", "say what there is to type"),
-)
-_BY_WORD = {order.word: order for order in ORDERS}
-
-
-def find_order(line: str) -> tuple[Order, str] | None:
-    """Order of a line, and what stands after its word; None if it is none."""
-    word, _, rest = line.strip().partition(" ")
-    order = _BY_WORD.get(word.lower())
-    if order is None or (rest.strip() and not order.takes):
-        return None
-    return order, rest.strip()
