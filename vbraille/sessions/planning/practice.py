@@ -42,7 +42,7 @@ class Practice(Table, frozen=True):
         return self.strings or tuple(permutations(self.values, 2))
 
     def lines(self, design: Design) -> list[tuple[int, ...]]:
-        """Items of practice: the strings, or all pairs of different values in both orders."""
+        """Cells of all strings practised, with delimiters; empty if values are compared."""
         before, after = design.around
         return [(*before, *string, *after) for string in self.strings]
 
