@@ -1,4 +1,4 @@
-"""What an experimenter may type beside answers."""
+"""Orders that an experimenter may type beside answers."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """An order.
+    """An order that an experimenter may type.
 
     Parameters
     ----------
     word
-        That it is typed by.
+        Word that the order is typed as.
     name
-        Name of the method of `vbraille.sessions.running.console.Console` that does it.
+        Name of the method of `vbraille.sessions.running.console.Console` that does the order.
     help
-        What it does, for people.
+        What the order does, in words for people.
     takes
-        Whether something stands after the word.
+        Whether more text may follow the word.
     """
 
     word: str
@@ -45,7 +45,7 @@ _BY_WORD = {order.word: order for order in ORDERS}
 
 
 def find_order(line: str) -> tuple[Order, str] | None:
-    """Order of a line, and what stands after its word; None if it is none."""
+    """Order that a line gives, and the text after its word; None if it is no order."""
     word, _, rest = line.strip().partition(" ")
     order = _BY_WORD.get(word.lower())
     if order is None or (rest.strip() and not order.takes):
