@@ -302,7 +302,7 @@ def posed(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.void]:
     Returns
     -------
     `TRACE`[n]
-        The same ticks. If only x was measured, y and its velocity are 0.
+        Ticks with places of the centre; y and its velocity are 0 if only x was measured.
     """
     if ticks.dtype == TRACE:
         return ticks
