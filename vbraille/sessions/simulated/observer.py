@@ -6,8 +6,8 @@ the plan, the tuning or the profile. It is for pilots, power analyses and tests.
 own, and claims nothing about anybody's skin.
 
 **What is felt.** The contactors stand at pitch p along x. w is the swing of a row's contactors
-away from their idle end; rows that show the same dots are averaged. Between neighbours i and i +
-1 the skin is strained (Lévesque 2009, fig. 3.10) by
+away from their idle end; rows that show the same dots are averaged. Between neighbours
+i and i + 1 the skin is strained (Lévesque 2009, fig. 3.10) by
 
     s(u) = [w_{i+1} - w_i] / p,    u = x - S/2 + (i + 1/2) p,                (1)
 
