@@ -1,4 +1,4 @@
-"""What a session begins with: a plan, what is said of the participant, the head of its record."""
+"""What a session begins with: its plan, facts about the participant, the head of its record."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.conditions import Conditions
     from vbraille.sessions.planning.plan import Plan
 
-_MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down
+_MOST_DRAWN = 1_000_000  # so that a seed that is drawn is short enough to be written down by hand
 
 
 def plan_session(
@@ -30,7 +30,10 @@ def plan_session(
     texture: float | None = None,
     contrast: float | None = None,
 ) -> tuple[Protocol, Plan]:
-    """Protocol and plan of a session, its seed drawn if none is given; see `Session.create`."""
+    """Make the protocol and the plan of a session; a seed is drawn if none is given.
+
+    `Session.create` describes the arguments.
+    """
     if not isinstance(protocol, Protocol):
         protocol = load_protocol(str(protocol))
     if seed is None:
@@ -40,12 +43,12 @@ def plan_session(
 
 
 def told_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
-    """What the protocol asks about the participant, as given; empty where nothing is.
+    """Answers to all of the protocol's questions about the participant; empty where none is given.
 
     Raises
     ------
     InputError
-        If it does not ask for that, or the answer is none of its choices.
+        If the protocol has no such question, or the answer is none of the question's choices.
     """
     names = [field.name for field in protocol.fields]
     for name in given:
@@ -71,14 +74,14 @@ def head_of(
     fields: Mapping[str, str],
     conditions: Conditions,
 ) -> dict[str, Any]:
-    """What the record begins with: who, what and with what; JSON takes it as it is.
+    """Content of session.json: who takes part, what is shown, and with which equipment.
 
     Parameters
     ----------
     protocol, plan, conditions
-        What the session does, in which order, and with what.
+        What the session shows, in which order, and with which equipment.
     fields
-        What is said of the participant.
+        Answers to the protocol's questions about the participant.
     """
     display = protocol.model.display
     return {

@@ -1,4 +1,4 @@
-"""What a session is run with: its device, where answers come from, how time goes by."""
+"""What a session is run with: its device, the source of its answers, and its pace."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ SOUNDS = ("auto", "tones", "bell", "none")
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """What a session is run with.
+    """What a session is run with, beside its protocol and its plan.
 
     Parameters
     ----------
     device
-        Spec of the device, such as "serial:/dev/ttyACM0"; "sim" is a simulated one.
+        Spec of the device, such as "serial:/dev/ttyACM0"; "sim" is a simulated device.
     hand
         What moves the simulated device: "slow", "fluent" or "sweep:SPEED", among others.
     answers
-        Where answers come from, unless `Session.run` is given them: "typed",
+        Source of the answers, unless `Session.run` is given one: "typed",
         "simulated:NOISE", or the name of a file with a line for each trial.
     rate_hz
-        Frames a second, 1 to 10,000.
+        Number of frames that are sent in a second, 1 to 10,000.
     fast
-        Whether a simulated session runs as fast as the machine can, and not in real time.
+        Whether a simulated session runs as fast as the machine can instead of in real time.
     sound
         How the participant hears signals: "auto", "tones", "bell" or "none".
 
     Raises
     ------
     InputError
-        If the rate is out of range, or there is no such sound.
+        If the rate is out of range, or the sound is none of those four.
     """
 
     device: str = "sim"
@@ -54,7 +54,7 @@ class Conditions:
 
     @classmethod
     def of(cls, head: Mapping[str, Any]) -> Conditions:
-        """Conditions that a session began with, as the head of its record has them."""
+        """Conditions that a session began with, read from its session.json."""
         names = ("device", "hand", "answers", "rate_hz", "fast")
         return cls(**{name: head[name] for name in names})
 

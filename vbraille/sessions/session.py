@@ -1,4 +1,4 @@
-"""A session from its plan to its record: created, run, gone on with, and read as rows."""
+"""A session from its plan to its record: it is created, run, resumed, and read as rows."""
 
 from __future__ import annotations
 
@@ -39,18 +39,19 @@ if TYPE_CHECKING:
     from vbraille.sessions.running.sounds import Sound
 
     Say = Callable[[str], None]
-    # Where answers come from; see `Session.run`.
+    # What answers may be taken from; see `Session.run`.
     Source = str | Answers | Iterable[str] | Callable[[Trial], str | None]
-    # Makes what drives a device, out of its spec and of what the protocol is for.
+    # Makes the engine that drives a device, from the device's spec and the display that the
+    # protocol is written for.
     MakeEngine = Callable[[str, Display], RunEngine]
 
 
 def _nobody(_sentence: str) -> None:
-    """Say something to nobody."""
+    """Ignore a sentence: this is where sentences go that nobody wants to hear."""
 
 
 def _nothing() -> None:
-    """Do nothing."""
+    """Do nothing, where no call was asked for before the array comes to rest."""
 
 
 class Session:
@@ -59,15 +60,16 @@ class Session:
     Parameters
     ----------
     folder
-        Where it is kept.
+        Directory that the session is kept in.
     protocol, plan
-        What is done, and in which order.
+        What the session shows, and in which order.
     conditions
-        What it is run with.
+        What the session is run with, such as its device.
     progress
-        How far it is.
+        How far the session has come.
     engine
-        Makes what drives the device; None for what the conditions ask for.
+        Function that makes the engine which drives the device; None for the engine that the
+        conditions ask for.
 
     Examples
     --------
@@ -105,9 +107,9 @@ class Session:
         self.conditions = conditions
         self.progress = progress
         self.fields = told_fields(protocol, {})
-        self._begun = False  # whether it is on the disk
-        self._drawn = False  # whether nobody has given the seed
-        # Another hand for each participant, and each time that the session is gone on with.
+        self._begun = False  # whether the session is on the disk
+        self._drawn = False  # whether the seed was drawn, since none was given
+        # The simulated hand differs between participants, and each time that a session is resumed.
         drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
         self._steering = steering_of(conditions.device)
         spec = device_spec(conditions.device, conditions.hand, seed_of(drawn), self._steering)
@@ -135,32 +137,34 @@ class Session:
         conditions: Conditions = USUAL,
         engine: MakeEngine | None = None,
     ) -> Session:
-        """Plan a new session; nothing of it is on the disk before `run`.
+        """Plan a new session; nothing is written to the disk before `run`.
 
         Parameters
         ----------
         protocol
-            Name of one that comes with the program, a TOML file, or the protocol itself.
+            Name of a protocol that comes with the program, a TOML file, or the protocol itself.
         participant
-            A pseudonym.
+            Pseudonym of the participant.
         folder
-            A new directory for it; PARTICIPANT-PROTOCOL-TIME if none is given.
+            New directory for the session; PARTICIPANT-PROTOCOL-TIME if none is given.
         seed
-            What the plan is drawn from; one is drawn if none is given.
+            Number that all random choices of the plan follow from; one is drawn if none is given.
         order, texture, contrast
-            As of `vbraille.sessions.planning.making.make_plan`.
+            These are described at `vbraille.sessions.planning.making.make_plan`.
         fields
-            What the protocol asks about the participant, by name; the others stay empty.
+            Answers to the protocol's questions about the participant, by the names of the
+            questions; questions that are not answered stay empty.
         conditions
-            What it is run with.
+            What the session is run with, such as its device.
         engine
-            Makes what drives the device, of its spec and the display that is wanted, for
-            programs that have a loop of their own; None for the usual one.
+            Function that makes the engine which drives the device, from the device's spec and the
+            display that is wanted. It is for programs that have a loop of their own; None for
+            the usual engine.
 
         Raises
         ------
         InputError
-            If something cannot be used, or the directory is there already.
+            If an argument cannot be used, or the directory exists already.
         """
         planned, plan = plan_session(protocol, participant, seed, order, texture, contrast)
         name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
@@ -175,25 +179,26 @@ class Session:
     def resume(
         cls, folder: str | Path, *, engine: MakeEngine | None = None, **changed: Any
     ) -> Session:
-        """Go on with a session that was begun.
+        """Go on with a session that was begun earlier.
 
         Parameters
         ----------
         folder
             The session's directory.
         engine
-            As for `create`.
+            Function that makes the engine, as for `create`.
         changed
-            Those of the `Conditions` that are others than when the session began: device, hand,
-            answers, fast or sound. Where the answers are others it is not fast unless that is
-            said again.
+            Fields of the `Conditions` that differ from when the session began: device, hand,
+            answers, fast or sound. If the answers come from elsewhere now, the session is not
+            fast unless that is asked for again.
 
         Raises
         ------
         InputError
-            If it is no session, has ended, or something cannot be used.
+            If the directory holds no session, the session has ended, or an argument cannot be
+            used.
         VbrailleError
-            If its record is damaged.
+            If the session's record is damaged.
         """
         record = load(Path(folder))
         if record.told.damage is not None:
@@ -215,7 +220,7 @@ class Session:
 
     @property
     def record(self) -> Record:
-        """What the session's directory holds now; there is one as soon as it was run."""
+        """What the session's directory holds now; the directory exists once the session was run."""
         return load(self.folder)
 
     @property
@@ -235,17 +240,17 @@ class Session:
         Raises
         ------
         InputError
-            If it does not ask for that, or the answer is none of its choices.
+            If the protocol has no such question, or the answer is none of the question's choices.
         """
         self.fields = told_fields(self.protocol, fields)
 
     def answers(self, source: Source | None = None) -> Answers:
-        """Answers of a source, for `run`; checked now, before anything is begun.
+        """Make the source of answers for `run`, and check it before anything is begun.
 
         Raises
         ------
         InputError
-            If they cannot be used with this session.
+            If the answers cannot be used with this session.
         """
         if source is None:
             source = self.conditions.answers
@@ -279,36 +284,37 @@ class Session:
         Parameters
         ----------
         answers
-            Where they come from: a spec as of `Conditions`, the lines themselves, or a function
-            that gives the line for a `Trial`; None for what the conditions say.
+            Source of the answers: a spec as in `Conditions`, the lines themselves, or a function
+            that gives the line for a `Trial`; None for the source that the conditions name.
         say
-            Is told what the experimenter should hear, one thing a call.
+            Function that is called with each sentence that the experimenter should hear.
         warn
-            Is told what should not stand among that: that something is compiled, and the seed
-            that was drawn.
+            Function that is called with sentences which should be kept apart from those: that
+            code is being compiled, and which seed was drawn.
         sound
-            Makes the participant's signals; None for what the conditions say.
+            Device that makes the participant's signals; None for the one that the conditions name.
         before_rest
-            Is called before the array is brought to rest: from then on nothing may disturb that.
+            Function that is called just before the array is brought to rest, which nothing may
+            interrupt.
 
         Returns
         -------
         Session
-            The same.
+            This session itself.
 
         Raises
         ------
         InputError
-            If something cannot be used; a new session is then not on the disk.
+            If an argument cannot be used; a new session is then not on the disk.
         VbrailleError
-            If the device, or the disk, fails for good.
+            If the device or the disk fails and does not recover.
         """
         given = self.answers(answers)
         begins = not self._begun
         try:
             if isinstance(self._engine, Host):
                 self._engine.launch()
-            # Here and not above: numba takes long to load, and the host starts meanwhile.
+            # This import stands here because numba takes long to load; the host starts meanwhile.
             from vbraille.sessions.running.sitting import Sitting, make_sound
 
             sitting = Sitting(
@@ -343,7 +349,7 @@ class Session:
         return self
 
     def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
-        """What drives the device: a process of its own, or this one as fast as it can."""
+        """Make the usual engine: a process of its own, or a loop in this one if it runs fast."""
         if self.conditions.fast:
             from vbraille.engine.batch import BatchEngine
 

@@ -1,1 +1,1 @@
-"""What is shown to whom, in which order: protocols and plans, before anyone sits down."""
+"""Protocols and plans: what will be shown to whom, in which order, before a session begins."""

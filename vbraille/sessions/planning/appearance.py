@@ -1,4 +1,4 @@
-"""How strings are shown: the display's style, and what conditions have of their own."""
+"""How strings are shown: the display's style, and how each condition may differ from it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ MOST_LEAD = 20
 
 
 class Tuned(Table, frozen=True, kw_only=True):
-    """Values of `Tuning`; what is left out is None.
+    """Values that a file gives for a `Tuning`; a value that is left out is None.
 
     Parameters
     ----------
     texture, contrast, cycles
-        As in `Tuning`.
+        These are described at `Tuning`.
 
     Raises
     ------
@@ -43,16 +43,16 @@ class Tuned(Table, frozen=True, kw_only=True):
 
     @property
     def given(self) -> dict[str, Any]:
-        """Values that are not left out, by their names in `Tuning`."""
+        """Values that the file gives, by their names in `Tuning`."""
         return _given(self, ("texture", "contrast", "cycles"))
 
     def tune(self, model: Model, tuning: Tuning) -> Tuning:
-        """A tuning of a model, with the values that are given here instead of its own.
+        """Tuning in which the values given here take the place of its own.
 
         Raises
         ------
         ValueError
-            If the model has no such value.
+            If the model has no use for one of the values.
         """
         if self.cycles is not None and model.style.profile is Profile.HALF_SINE:
             raise ValueError(
@@ -63,12 +63,12 @@ class Tuned(Table, frozen=True, kw_only=True):
 
 
 class Condition(Tuned, frozen=True):
-    """What a design is shown with: the display's tuning, but for the values given here.
+    """One condition of a protocol: the display's tuning, but for the values given here.
 
     Parameters
     ----------
     name
-        Of the condition.
+        Name of the condition.
 
     Raises
     ------
@@ -84,18 +84,18 @@ class Condition(Tuned, frozen=True):
 
 
 class Appearance(Tuned, frozen=True, kw_only=True):
-    """What ``[display]`` has; what is left out is None, and the model's own is taken.
+    """The table ``[display]``. A value that is left out is None, and the model's own is used.
 
     Parameters
     ----------
     dot_row
-        Of the VBD: which row of dots is shown, from 1.
+        Row of dots that the VBD shows, from 1.
     mapping
-        Of the STReSS²: name of the mapping.
+        Name of the mapping that the STReSS² uses.
     lead_cells
-        Blank cells before each string.
+        Number of blank cells before each string.
     dot_width_mm, dot_spacing_mm, cell_gap_mm, row_spacing_mm, line_pitch_mm, travel_mm
-        As in `Geometry`.
+        These are described at `Geometry`.
 
     Raises
     ------
@@ -105,7 +105,7 @@ class Appearance(Tuned, frozen=True, kw_only=True):
 
     dot_row: int | None = None
     mapping: str | None = None
-    # One cell: at the left stop the array's right column then stands well before the first dot.
+    # With one cell, the array's right column is well before the first dot at the left stop.
     lead_cells: int = 1
     dot_width_mm: float | None = None
     dot_spacing_mm: float | None = None
@@ -125,7 +125,7 @@ class Appearance(Tuned, frozen=True, kw_only=True):
         Raises
         ------
         ValueError
-            If values do not go together, or are not of the model.
+            If values contradict each other, or the model has no use for them.
         """
         geometry = replace(model.style.geometry, **_given(self, BOUNDS_MM))
         tuning = self.tune(model, model.style.tuning)

@@ -1,4 +1,4 @@
-"""Orders: by chance that is the same on every machine, and balanced over participants."""
+"""Orders of trials: shuffles that are the same on every machine, and balanced orders."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ _Item = TypeVar("_Item")
 class Chance:
     """Shuffles that are the same on every machine and for every Python.
 
-    Python promises the same numbers for a seed of `random.Random.random` alone:
-    so the shuffle is made of these, and a text becomes a seed by its SHA-256.
+    Python promises only that `random.Random.random` gives the same numbers for a seed in every
+    version. So the shuffle is made of these numbers alone, and the seed is the SHA-256 of a text.
 
     Parameters
     ----------
     seed
-        Any text.
+        Any text; equal texts give equal shuffles.
     """
 
     def __init__(self, seed: str) -> None:
         self._random = random.Random(int.from_bytes(sha256(seed.encode()).digest(), "big")).random
 
     def shuffled(self, items: Iterable[_Item]) -> list[_Item]:
-        """Items in one of all their orders, each as likely (Fisher and Yates)."""
+        """Items in random order, in which every order is equally likely (Fisher and Yates)."""
         order = list(items)
         for last in range(len(order) - 1, 0, -1):
             other = int(self._random() * (last + 1))
@@ -44,18 +44,19 @@ class Chance:
     ) -> list[_Item]:
         """Items in an order in which no two neighbours have the same content.
 
-        Each is drawn from those left that differ from the one before, all as likely; but
-        what more than half of those left have comes next, since it would come twice
-        running else. So items that come equally often are equally likely at every place.
+        Each item is drawn from the items left whose content differs from the one before, and all
+        of these are equally likely. But a content that more than half of the items left have
+        comes next, since otherwise it would have to come twice in a row later. So contents that
+        are equally frequent are equally likely at every place.
 
         Parameters
         ----------
         items
-            In any order.
+            The items, in any order.
         content
-            Tells the content of an item.
+            Function that gives the content of an item.
         before
-            Content of what comes before them; None if nothing does.
+            Content of the item that comes before all of these; None if there is no such item.
 
         Raises
         ------
@@ -83,24 +84,24 @@ class Chance:
 
 
 def balanced_orders(number: int) -> list[tuple[int, ...]]:
-    """Orders of so many conditions, balanced for place and for what goes before.
+    """Orders of a number of conditions, balanced for place and for what goes before.
 
-    Over all of them each condition is equally often in each place, and follows
-    each other one equally often (E. J. Williams, 1949): a square of as many
-    orders as conditions, and with its mirror image if their number is odd.
+    Over all orders together, each condition is equally often in each place, and follows each
+    other condition equally often (E. J. Williams, 1949). There are as many orders as conditions;
+    if that number is odd, their mirror images are added.
 
     Parameters
     ----------
     number
-        How many conditions there are, at least 1.
+        Number of conditions, at least 1.
 
     Returns
     -------
     list of tuple of int
-        Each of 0 … number - 1, once.
+        Orders of the numbers 0 … number - 1, each of which is in every order once.
     """
-    # 0, 1, n-1, 2, n-2, …: neighbours differ by each of 1 … n-1 once (n even), or twice with the
-    # mirror image (n odd).
+    # The first order is 0, 1, n-1, 2, n-2, …: its neighbours differ by each of 1 … n-1 once if n
+    # is even, and twice together with the mirror image if n is odd.
     first = [(place + 1) // 2 if place % 2 else -(place // 2) for place in range(number)]
     square = [tuple((row + step) % number for step in first) for row in range(number)]
     if number % 2 and number > 1:

@@ -1,4 +1,4 @@
-"""How a session is conducted: its pace, its sounds, and what is asked before it."""
+"""How a session is conducted: its pace, its sounds, and the questions asked before it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import re
 
 from vbraille.sessions.planning.tomlfile import Table
 
-# Of protocols, conditions and fields: they become columns of tables and parts of file names.
+# Form of the names of conditions and fields, which become columns of tables and parts of file
+# names.
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
 LONGEST_LINE = 200
 
@@ -17,7 +18,7 @@ def check_name(what: str, name: str) -> None:
     Raises
     ------
     ValueError
-        If it has other characters than `NAME`.
+        If the name does not match `NAME`.
     """
     if not NAME.fullmatch(name):
         raise ValueError(
@@ -26,12 +27,12 @@ def check_name(what: str, name: str) -> None:
 
 
 def check_line(what: str, text: str) -> None:
-    """Check a line that people read.
+    """Check a line of text that is for people.
 
     Raises
     ------
     ValueError
-        If it is empty or too long.
+        If the line is empty or too long.
     """
     if not 1 <= len(text.strip()) <= LONGEST_LINE:
         raise ValueError(
@@ -45,7 +46,7 @@ def check_range(what: str, value: float | None, low: float, high: float, unit: s
     Raises
     ------
     ValueError
-        If it is out of range.
+        If the number is out of range.
     """
     if value is not None and not low <= value <= high:
         raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
@@ -57,9 +58,9 @@ class TrialPace(Table, frozen=True):
     Parameters
     ----------
     gap_s
-        From the answer to the next cue.
+        Seconds from the answer to the next start signal.
     warning_s
-        From the cue to the audible warning; None for no warning.
+        Seconds from the start signal to the audible warning; None for no warning.
 
     Raises
     ------
@@ -81,10 +82,10 @@ class SessionPace(Table, frozen=True):
     Parameters
     ----------
     limit_s
-        After which no trial begins; None for no limit.
+        Seconds after which no further trial begins; None for no limit.
     break_every
-        Trials of a block from one break to the next; None for breaks between
-        blocks only.
+        Number of trials in a block from one break to the next; None for breaks between blocks
+        only.
 
     Raises
     ------
@@ -101,12 +102,12 @@ class SessionPace(Table, frozen=True):
 
 
 class Tone(Table, frozen=True, array_like=True):
-    """A sound: a sine of so many Hz for so many ms, which a file has as a list of the two.
+    """A sound: a sine, which a file gives as a list of its frequency and its duration.
 
     Parameters
     ----------
     frequency_hz, duration_ms
-        Frequency and length of the sine.
+        Frequency of the sine in Hz, and how long it lasts in ms.
 
     Raises
     ------
@@ -123,14 +124,14 @@ class Tone(Table, frozen=True, array_like=True):
 
 
 class SignalSound(Table, frozen=True):
-    """What is heard.
+    """The sounds that the participant hears.
 
     Parameters
     ----------
     cue
-        A trial begins.
+        Sound which says that a trial begins.
     warning
-        It has gone on for `TrialPace.warning_s`.
+        Sound which says that the trial has gone on for `TrialPace.warning_s`.
     """
 
     cue: Tone = Tone(880.0, 150.0)
@@ -138,21 +139,21 @@ class SignalSound(Table, frozen=True):
 
 
 class Question(Table, frozen=True):
-    """A question about the participant, asked before the session; nothing personal.
+    """A question about the participant, asked before the session. It asks for nothing personal.
 
     Parameters
     ----------
     name
-        Of the column that it makes.
+        Name of the question, and of the column of its answers in tables.
     ask
-        The question, one line.
+        The question as it is asked, in one line.
     choices
-        The answers there are; none for any.
+        The answers that may be given; empty if any answer may.
 
     Raises
     ------
     ValueError
-        If a text cannot be used, or a choice stands twice.
+        If a text cannot be used, or a choice is given twice.
     """
 
     name: str
@@ -169,12 +170,12 @@ class Question(Table, frozen=True):
 
 
 class FaultRules(Table, frozen=True):
-    """What becomes of a trial in which the device failed.
+    """What is done about a trial in which the device failed.
 
     Parameters
     ----------
     repeat
-        Whether it is shown again; else it stays, and is marked.
+        Whether the trial is shown again; if not, it counts as it is, and is marked.
     """
 
     repeat: bool = True

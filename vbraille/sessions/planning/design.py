@@ -1,4 +1,4 @@
-"""What is shown in each condition of a session, and how often; which conditions there are."""
+"""Designs: what is shown in each condition of a session, how often, and in which blocks."""
 
 from __future__ import annotations
 
@@ -16,28 +16,29 @@ if TYPE_CHECKING:
 
 MOST_TRIALS = 10_000
 
-Item = tuple[float, ...]  # the cells asked for, or the values compared
+Item = tuple[float, ...]  # dot masks of the cells asked for, or the values compared
 
 _LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
 
 
 class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What every design has.
+    """What designs of every kind have in common.
 
     Parameters
     ----------
     repeats
-        Of each thing, in each condition.
+        How often each item is shown in each condition.
     blocks
-        Conditions are mixed and spread over so many, or "conditions": a block each.
+        Number of blocks, over which the mixed conditions are spread; or "conditions" if each
+        condition has a block of its own.
     order
-        Of the blocks of conditions: "balanced" over participants, "listed" or "shuffled"; None
-        if it was left out.
+        Order of the blocks of conditions: "balanced" over participants, "listed" or "shuffled";
+        None if the file does not say it.
 
     Raises
     ------
     ValueError
-        If a number is out of range, or there are no blocks of conditions to order.
+        If a number is out of range, or an order is given though conditions have no blocks.
     """
 
     repeats: int = 1
@@ -53,31 +54,30 @@ class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
 
     @property
     def around(self) -> tuple[Masks, Masks]:
-        """Delimiters before and after what is asked for."""
+        """Dot masks of the delimiters before and after the cells asked for."""
         return Masks(), Masks()
 
     def content(self, item: Item) -> Item:
-        """What an item shows, whatever the order of its cells where they come in any order."""
+        """What an item shows; equal for two items that count as showing the same."""
         return item
 
 
 class Combinations(_Design, frozen=True, tag="combinations"):
-    """Every combination of some cells.
+    """A design that shows every combination of some cells.
 
     Parameters
     ----------
     characters
         Dot masks of the cells.
     length
-        Cells of a combination.
+        Number of cells in a combination.
     before, after
-        Dot masks of the delimiters: shown, but not asked for.
+        Dot masks of the delimiters, which are shown but not asked for.
 
     Raises
     ------
     ValueError
-        If a number is out of range, a cell stands twice, or nothing raised
-        would be shown.
+        If a number is out of range, a cell is given twice, or a combination would have no dots.
     """
 
     characters: tuple[Mask, ...]
@@ -99,22 +99,22 @@ class Combinations(_Design, frozen=True, tag="combinations"):
 
     @property
     def around(self) -> tuple[Masks, Masks]:
-        """Delimiters before and after what is asked for."""
+        """Dot masks of the delimiters before and after the cells asked for."""
         return self.before, self.after
 
     @property
     def trials(self) -> int:
-        """Trials of each condition."""
+        """Number of trials in each condition."""
         return len(self.characters) ** self.length * self.repeats
 
     @property
     def cells(self) -> int:
-        """Cells of the longest line."""
+        """Number of cells in the longest line."""
         return len(self.before) + self.length + len(self.after)
 
     @property
     def masks(self) -> frozenset[int]:
-        """All cells that are shown."""
+        """Dot masks of all cells that are shown."""
         return frozenset(self.before + self.characters + self.after)
 
     def items(self) -> Sequence[Item]:
@@ -123,19 +123,19 @@ class Combinations(_Design, frozen=True, tag="combinations"):
 
 
 class StringList(_Design, frozen=True, tag="list"):
-    """Strings of a list.
+    """A design that shows the strings of a list.
 
     Parameters
     ----------
     strings
-        Dot masks of each.
+        Dot masks of the strings.
     reorder
-        Whether the cells of a string come in another order at each showing.
+        Whether the cells of a string are shown in another order each time.
 
     Raises
     ------
     ValueError
-        If a number is out of range, or a string shows nothing raised.
+        If a number is out of range, or a string has no dots.
     """
 
     strings: tuple[Masks, ...]
@@ -154,29 +154,32 @@ class StringList(_Design, frozen=True, tag="list"):
 
     @property
     def trials(self) -> int:
-        """Trials of each condition."""
+        """Number of trials in each condition."""
         return len(self.strings) * self.repeats
 
     @property
     def cells(self) -> int:
-        """Cells of the longest line."""
+        """Number of cells in the longest line."""
         return max(map(len, self.strings))
 
     @property
     def masks(self) -> frozenset[int]:
-        """All cells that are shown."""
+        """Dot masks of all cells that are shown."""
         return frozenset(mask for masks in self.strings for mask in masks)
 
     def items(self) -> Sequence[tuple[int, ...]]:
-        """Cells of the trials of a condition, in the order of the design."""
+        """Cells asked for in the trials of a condition, in the order of the design."""
         return list(self.strings) * self.repeats
 
     def content(self, item: Item) -> Item:
-        """Cells of an item, sorted if they come in any order."""
+        """Cells of an item, sorted if their order changes from showing to showing."""
         return tuple(sorted(item)) if self.reorder else item
 
     def listed(self, masks: tuple[int, ...]) -> tuple[int, ...] | None:
-        """String of the list that these cells are an order of; None if none is, or none changes."""
+        """String of the list that these cells are an order of.
+
+        None if there is no such string, or strings are always shown in their own order.
+        """
         if not self.reorder:
             return None
         cells = self.content(masks)
@@ -184,22 +187,23 @@ class StringList(_Design, frozen=True, tag="list"):
 
 
 class Choice(_Design, frozen=True, tag="choice"):
-    """Pairs of one string at two values of a parameter.
+    """A design that compares one string at two values of a parameter.
 
     Parameters
     ----------
     parameter
-        What is compared; ``dot_gap_mm`` is from edge to edge between the two dots of a cell.
+        Length that is compared; ``dot_gap_mm`` is the gap between the two dots of a cell, from
+        edge to edge.
     values
-        To compare.
+        Values of the parameter in mm; each is compared with each other one.
     string
-        Dot masks of what is shown at both.
+        Dot masks of the string that is shown at both values.
 
     Raises
     ------
     ValueError
-        If a number is out of range, there are no two different values, or the
-        string does not show the parameter.
+        If a number is out of range, there are fewer than two values, a value is given twice, or
+        the parameter cannot be felt in the string.
     """
 
     parameter: Literal["dot_width_mm", "dot_gap_mm"]
@@ -221,17 +225,17 @@ class Choice(_Design, frozen=True, tag="choice"):
 
     @property
     def trials(self) -> int:
-        """Trials of each condition."""
+        """Number of trials in each condition."""
         return len(self.values) * (len(self.values) - 1) * self.repeats
 
     @property
     def cells(self) -> int:
-        """Cells of the line."""
+        """Number of cells in the line."""
         return len(self.string)
 
     @property
     def masks(self) -> frozenset[int]:
-        """All cells that are shown."""
+        """Dot masks of all cells that are shown."""
         return frozenset(self.string)
 
     def items(self) -> Sequence[Item]:
@@ -243,18 +247,19 @@ Design = Combinations | StringList | Choice
 
 
 class Rules(Table, frozen=True):
-    """What a plan must keep beside its design.
+    """Rules that a plan must follow beside its design.
 
     Parameters
     ----------
     each_letter
-        How often each letter of the alphabet is shown in each condition, exactly; None if it
-        does not matter.
+        Exact number of times that each letter of the alphabet is shown in each condition; None
+        for any number.
     each_letter_at_least
-        The same, at least.
+        Least number of times that each letter is shown in each condition; None for any number.
     never_twice_running
-        Whether no two neighbouring trials may show the same: the same string, the same cells
-        in whatever order where they are reordered, or the same two values one after the other.
+        Whether no two neighbouring trials may show the same. Two trials show the same if they
+        have the same string, the same cells in any order where cells are reordered, or the same
+        two values in the same order.
 
     Raises
     ------
@@ -271,7 +276,7 @@ class Rules(Table, frozen=True):
         check_range("each_letter_at_least", self.each_letter_at_least, 1, MOST_TRIALS)
 
     def problem(self, lines: Iterable[tuple[int, ...]]) -> str:
-        """Say which letter is shown too often or too seldom in a condition; empty if none is."""
+        """Sentence about a letter that is shown too often or too seldom; empty if all is right."""
         shown = Counter(mask for masks in lines for mask in masks)
         for letter, mask in LETTERS.items():
             if self.each_letter not in (None, shown[mask]):

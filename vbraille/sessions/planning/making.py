@@ -1,4 +1,4 @@
-"""Plans are made: of a protocol, a participant and a seed, the same one on every machine."""
+"""Making of plans: a protocol, a participant and a seed give the same plan on every machine."""
 
 from __future__ import annotations
 
@@ -40,26 +40,26 @@ def make_plan(
     texture: float | None = None,
     contrast: float | None = None,
 ) -> Plan:
-    """Plan a session, and check it.
+    """Make the plan of a session, and check it.
 
     Parameters
     ----------
     protocol
-        What is shown.
+        Protocol that the session follows.
     participant
-        A pseudonym; the last number in it says which balanced order it is.
+        Pseudonym of the participant; the last number in it chooses the balanced order.
     seed
-        Of all that is drawn.
+        Number that all random choices follow from.
     order
-        Which of the balanced orders, from 1, instead of the participant's. They
-        come round again.
+        Number of the balanced order, from 1, if the participant's number should not choose it. A
+        number beyond the last order starts again from the first.
     texture, contrast
-        Instead of the display's, in those conditions that do not give their own.
+        Values that replace the display's own, in conditions that do not give a value.
 
     Raises
     ------
     InputError
-        If something cannot be used with this protocol.
+        If an argument cannot be used with this protocol.
     """
     try:
         check_participant(participant)
@@ -76,7 +76,7 @@ def make_plan(
         for block, shown in enumerate(blocks, 1)
         for item, condition in shown
     ]
-    # By chances of its own: another number of practice trials leaves the others as they are.
+    # Practice is shuffled separately, so that the number of its trials does not change the others.
     practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
     plan = Plan(
         protocol=protocol.name,
@@ -91,7 +91,7 @@ def make_plan(
 
 
 def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition]:
-    """Conditions with what is given instead of the display's own values."""
+    """Conditions of a protocol, with the given values where a condition has none of its own."""
     given = {name: float(value) for name, value in given.items() if value is not None}
     for name in given:
         if all(name in condition.given for condition in protocol.conditions):
@@ -125,7 +125,7 @@ def _choose_order(protocol: Protocol, participant: str, order: int | None) -> in
 def _blocks(
     protocol: Protocol, conditions: list[Condition], order: int, chance: Chance
 ) -> list[list[_Shown]]:
-    """What each block shows, not yet shuffled."""
+    """Items and conditions of each block, not yet shuffled."""
     items = _items(protocol, chance)
     if protocol.design.blocks == "conditions":
         places = list(range(len(conditions)))
@@ -135,8 +135,8 @@ def _blocks(
             places = chance.shuffled(places)
         return [[(item, conditions[place]) for item in items[place]] for place in places]
     blocks: list[list[_Shown]] = [[] for _ in range(protocol.design.blocks)]
-    # Dealt like cards, and each condition goes on where the one before it ended: so no block gets
-    # more than one more of a condition than another, nor more than one more in all.
+    # Items are dealt to the blocks like cards, and each condition goes on where the one before it
+    # ended. So two blocks never differ by more than one item, of one condition or of all.
     dealt = cycle(blocks)
     for condition, shown in zip(conditions, items, strict=True):
         for item in chance.shuffled(shown):
@@ -145,7 +145,7 @@ def _blocks(
 
 
 def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> list[list[_Shown]]:
-    """What each block shows, in the order in which it does."""
+    """Items and conditions of each block, in the order in which they are shown."""
     if not protocol.rules.never_twice_running:
         return [chance.shuffled(block) for block in blocks]
 
@@ -168,7 +168,7 @@ def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> 
 
 
 def _items(protocol: Protocol, chance: Chance) -> list[list[Item]]:
-    """What each condition shows, with the cells of its strings in their order."""
+    """Items of each condition; if the design reorders strings, their cells are shuffled."""
     items: list[Item] = [*protocol.design.items()]
     if not (isinstance(protocol.design, StringList) and protocol.design.reorder):
         return [items for _ in protocol.conditions]
@@ -177,7 +177,7 @@ def _items(protocol: Protocol, chance: Chance) -> list[list[Item]]:
 
 
 def _reorderings(cells: Item, chance: Chance) -> Iterator[Item]:
-    """Orders of some cells by chance, without end; none comes again before all have come."""
+    """Endless random orders of some cells; no order returns before all others have come."""
     seen: set[Item] = set()
     all_orders = _count_orders(cells)
     while True:
@@ -190,16 +190,16 @@ def _reorderings(cells: Item, chance: Chance) -> Iterator[Item]:
 
 
 def _count_orders(cells: Item) -> int:
-    """How many different orders some cells have: n! by the product of k! of equal ones."""
+    """Number of different orders of some cells: n! divided by k! for each k equal cells."""
     count = 1
     for place in range(1, len(cells)):
-        # Whole at every step: the orders of the first cells, one more each time.
+        # Each step counts the orders of one cell more, so that the division leaves no remainder.
         count = count * (place + 1) // cells[: place + 1].count(cells[place])
     return count
 
 
 def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -> list[Trial]:
-    """Trials of the items of practice, and of all conditions, alike."""
+    """Practice trials, in which each item, and each condition, is used about equally often."""
     practice, design = protocol.practice, protocol.design
     reorders = isinstance(design, StringList) and design.reorder
     orders = {item: _reorderings(item, chance) for item in practice.items if reorders}
@@ -215,7 +215,7 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
 
 
 def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> Trial:
-    """Make a trial of an item of the design; it gets its number later."""
+    """Make a trial that shows an item of the design; the trial gets its number later."""
     design, tuning = protocol.design, protocol.tuning(condition)
     if isinstance(design, Choice):
         shown = [(design.string, value) for value in item]

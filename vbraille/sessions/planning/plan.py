@@ -1,4 +1,4 @@
-"""The plan of a session: all that will be shown, in its order, before the first trial."""
+"""The plan of a session: all that will be shown, in order, fixed before the first trial."""
 
 from __future__ import annotations
 
@@ -9,28 +9,29 @@ from vbraille.sessions.planning.stimuli import Stimulus, Trial, check_participan
 
 
 class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """All trials of a session, in order. Its file has its fields in this order.
+    """All trials of a session, in order. The plan's file has the fields in the order given here.
 
     Parameters
     ----------
     version
-        Of how it was made: 1 drew practice from the test, and did not draw by the protocol's
-        name. Nothing makes such plans any more; those of sessions are kept.
+        Version of the rules that the plan was made by, 1 or 2. Version 1 drew practice from the
+        test, and its random choices did not depend on the protocol's name. No such plans are made
+        any more; sessions that have one keep it.
     protocol
-        Its name.
+        Name of the protocol.
     participant
-        A pseudonym.
+        Pseudonym of the participant.
     seed
-        Of all that is drawn.
+        Number that all random choices followed from.
     order
-        Which of the balanced orders of conditions, from 1; 0 if there is only one.
+        Number of the balanced order of conditions, from 1; 0 if there is only one order.
     practice, trials
-        In the order in which they are shown.
+        Practice trials and trials of the test, each in the order in which they are shown.
 
     Raises
     ------
     ValueError
-        If the participant, the seed or the order cannot be used.
+        If the participant, the seed, the order or the version cannot be used.
     """
 
     version: int = field(name="format", default=planfile.VERSIONS[-1])
@@ -50,22 +51,22 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise ValueError(f"version is {self.version}; it must be 1 or 2")
 
     def stimuli(self) -> list[Stimulus]:
-        """All stimuli of all trials, practice among them."""
+        """All stimuli of all trials, practice included."""
         return [stimulus for trial in (*self.practice, *self.trials) for stimulus in trial.stimuli]
 
     def to_json(self) -> str:
-        """JSON, a trial a line; the same bytes on every machine."""
+        """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
         head = {"format": self.version}
         head |= {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
         return planfile.encode(head, {"practice": self.practice, "trials": self.trials})
 
     @classmethod
     def from_json(cls, text: str) -> Plan:
-        """Read the plan that `to_json` wrote.
+        """Read a plan that `to_json` wrote.
 
         Raises
         ------
         InputError
-            If it is damaged.
+            If the text is damaged.
         """
         return planfile.decode(text, cls)

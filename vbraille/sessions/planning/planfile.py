@@ -1,4 +1,4 @@
-"""Trials ↔ JSON, a trial a line."""
+"""Conversion of trials to JSON and back, with one trial on each line."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 _Plan = TypeVar("_Plan")
 
-VERSIONS = (1, 2)  # of the making of plans; the file's layout is the same
+VERSIONS = (1, 2)  # rules that plans were made by; the file's layout is the same for both
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
 
 
 class _Version(msgspec.Struct):
-    """What is known of a plan of any version."""
+    """The one key that plans of every version have."""
 
     format: int
 
 
 def encode(head: Mapping[str, str | int], lists: Mapping[str, tuple[Trial, ...]]) -> str:
-    """JSON of a plan, a trial a line: what stands at its head, then its lists of trials."""
+    """JSON of a plan: first the values of its head, then its lists with one trial on each line."""
     lines = [f"{_json(name)}: {_json(value)}" for name, value in head.items()]
     for name, trials in lists.items():
         written = ",\n".join(map(_trial, trials))
@@ -41,12 +41,12 @@ def encode(head: Mapping[str, str | int], lists: Mapping[str, tuple[Trial, ...]]
 
 
 def decode(text: str, kind: type[_Plan]) -> _Plan:
-    """Read what `encode` wrote.
+    """Read a plan that `encode` wrote, as a value of the given type.
 
     Raises
     ------
     InputError
-        If it is damaged, or of another version.
+        If the text is damaged, or its version is not known.
     """
     try:
         version = msgspec.json.decode(text, type=_Version).format
@@ -63,7 +63,7 @@ def decode(text: str, kind: type[_Plan]) -> _Plan:
 
 
 def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
-    """Strings, numbers and None that say all of a stimulus, as plan.json has them."""
+    """Describe a stimulus completely by strings, numbers and None, as in plan.json."""
     return {
         "cells": to_braille(stimulus.masks),
         "value_mm": stimulus.value,
@@ -73,12 +73,12 @@ def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
 
 
 def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
-    """Make the stimulus that `stimulus_to_json` wrote.
+    """Make a stimulus from the description that `stimulus_to_json` gives.
 
     Raises
     ------
     ValueError
-        If something is missing, is not of its type or is out of range.
+        If a value is missing, has the wrong type or is out of range.
     """
     if set(written) != _OF_STIMULUS:
         raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
@@ -100,5 +100,5 @@ def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:
 
 
 def _json(value: object) -> str:
-    # Not msgspec's own, which writes 0.00001 where plans have had 1e-05.
+    # The standard library writes 1e-05, as plans always have had it; msgspec would write 0.00001.
     return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -1,4 +1,4 @@
-"""Practice: trials before block 1, of items that the test does not show."""
+"""Practice: trials before the first block, whose items the test does not show."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from vbraille.sessions.planning.tomlfile import Table
 
 
 class Practice(Table, frozen=True):
-    """What is practised.
+    """The table ``[practice]`` of a protocol: what is practised, and how often.
 
     Parameters
     ----------
     trials
-        How many there are.
+        Number of practice trials.
     strings, values
-        What they show, instead of the design's own: dot masks of the cells asked for, or values
-        that are compared. None if there is no practice, and in protocols of version 0.1, whose
-        practice was drawn from the test.
+        Items that practice shows: dot masks of the cells asked for, or values that are compared.
+        Both are empty if there is no practice, and in protocols of version 0.1, whose practice
+        was drawn from the test.
 
     Raises
     ------
     ValueError
-        If there are too many.
+        If the number of trials is out of range.
     """
 
     trials: int = 0
@@ -38,16 +38,16 @@ class Practice(Table, frozen=True):
 
     @property
     def items(self) -> tuple[Item, ...]:
-        """What trials of practice show: each string, or two of the values in each order."""
+        """Items of practice: the strings, or all pairs of two different values in both orders."""
         return self.strings or tuple(permutations(self.values, 2))
 
     def lines(self, design: Design) -> list[tuple[int, ...]]:
-        """Cells of all lines that are practised, delimiters and all; none of comparisons."""
+        """Cells of all strings practised, with delimiters; empty if values are compared."""
         before, after = design.around
         return [(*before, *string, *after) for string in self.strings]
 
     def problem(self, design: Design) -> str:
-        """Say what cannot be practised beside a test of that design; empty if all can."""
+        """Say why this practice does not go with a test of a design; empty if it does."""
         compares = isinstance(design, Choice)
         if self.strings if compares else self.values:
             given, wanted = ("strings", "values") if compares else ("values", "strings")

@@ -1,7 +1,7 @@
-"""Which trial comes next: by a plan that was made before the session, or by the answers so far.
+"""Choice of the next trial: by a plan made before the session, or by the answers so far.
 
-A procedure keeps nothing of its own. All that it goes by is the history, which a session's journal
-has, so that one that was killed and is gone on with asks the same question again.
+A procedure has no memory of its own. It decides by the history alone, which the session's journal
+keeps. So a session that was killed and is resumed asks the same question again.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Answered:
     Parameters
     ----------
     trial
-        What was shown, and asked.
+        The trial as it was planned.
     answer
         The answer that counts; `vbraille.braille.spelling` says how it is written.
     """
@@ -32,35 +32,35 @@ class Answered:
 
 
 class Procedure(Protocol):
-    """Says which trial comes next. The same history must always give the same trial."""
+    """Rule that chooses the next trial. The same history must always give the same trial."""
 
     @property
     def trials(self) -> Sequence[Trial] | None:
-        """All trials in their order, if that is known before the first; None if answers say it."""
+        """All trials in order, if they are known beforehand; None if they depend on the answers."""
         ...
 
     def next(self, history: Sequence[Answered], /) -> Trial | None:
-        """Trial that comes after those of a history, numbered after the last; None if none does.
+        """Trial that follows a history, with the next number; None if there are no more trials.
 
-        Practice is no part of the history. An answer that was taken back is not in it either, but
-        the one that was given instead, in its place.
+        The history leaves practice out. Where an answer was taken back, the history has in its
+        place the answer that was given instead.
         """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class FixedOrder:
-    """The trials of a plan, one after the other, whatever is answered.
+    """Procedure that follows a plan, whatever is answered.
 
     Parameters
     ----------
     trials
-        All of them, in their order.
+        All trials of the plan, in order.
     """
 
     trials: tuple[Trial, ...]
 
     def next(self, history: Sequence[Answered], /) -> Trial | None:
-        """Trial of the plan after so many answers; None after the last."""
+        """Trial of the plan that follows the answered ones; None after the last."""
         done = len(history)
         return self.trials[done] if done < len(self.trials) else None

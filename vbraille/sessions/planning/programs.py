@@ -1,4 +1,4 @@
-"""Stimuli, compiled for the kernels."""
+"""Stimuli as pictures that the compiled code can show."""
 
 from __future__ import annotations
 
@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 def render(
     protocol: Protocol, stimulus: Stimulus, tuning: Tuning, *, anchor_mm: float | None = None
 ) -> Program:
-    """Picture of a stimulus, for places of the array's centre, or of the anchor that is given."""
+    """Make the picture of a stimulus.
+
+    The picture is for places of the array's centre, or of another point of the array if an anchor
+    is given.
+    """
     style = replace(
         protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry, tuning=tuning
     )

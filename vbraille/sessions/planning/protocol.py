@@ -1,6 +1,6 @@
-"""A protocol: what a session shows, to be repeated by another lab from one file.
+"""A protocol: all that a session shows, in one file, so that another lab can repeat it.
 
-`docs/session-format.md` and the files in ``protocols/`` describe the TOML.
+`docs/session-format.md` and the files in ``protocols/`` describe the format.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _NAME = re.compile(r"[a-z0-9-]{1,40}")
 
 
 class ProtocolFile(Table, frozen=True, kw_only=True):
-    """What a protocol's file has, key by key."""
+    """The keys of a protocol's file."""
 
     format: int
     name: str
@@ -66,46 +66,46 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
-    """What a session shows, and how it is conducted: what its file has, and what follows from it.
+    """What a session shows, and how it is conducted.
 
     Parameters
     ----------
     format
-        Of the file: 1.
+        Format of the file, which is 1.
     name, title, source
-        What options call it, what people do, and where it comes from.
+        Name of the protocol in options, what participants do, and where the protocol comes from.
     model_name
-        The display, by its name.
+        Name of the display's model.
     medium
-        "device", or "paper": what the source shows on paper or on a
-        conventional display, timed by key.
+        "device"; or "paper" for strings that are read on paper or on a conventional display, and
+        timed by a key.
     display
         How strings are shown on the display.
     keys
-        Dot mask of each spelling beside a to z.
+        Dot masks of the characters that may spell a cell beside a to z.
     design
         What is shown in each condition.
     listed
-        Conditions of the file; none if there is only one, without a name.
+        Conditions that the file lists; empty if there is only one, which has no name there.
     rules
-        What the finished plan is checked for, beside its design.
+        Rules that the finished plan is checked for, beside its design.
     practice
-        What comes before block 1.
+        Practice before the first block.
     trial, session
-        Their paces.
+        Pace of each trial, and of the whole session.
     faults
-        What becomes of a trial in which the device failed.
+        What is done about a trial in which the device failed.
     sound
-        What is heard.
+        Sounds that the participant hears.
     fields
-        What is asked about the participant.
+        Questions about the participant.
     text
-        The TOML, as read.
+        The file's TOML text, as it was read.
 
     Raises
     ------
     ValueError
-        If values are out of range or do not go together.
+        If values are out of range or contradict each other.
     """
 
     text: str
@@ -123,27 +123,27 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def model(self) -> Model:
-        """The display."""
+        """Model of the display."""
         return MODELS[self.model_name]
 
     @cached_property
     def style(self) -> BrailleStyle:
-        """How strings are shown on it."""
+        """How strings are shown on the display."""
         return self.display.style(self.model)
 
     @property
     def mapping(self) -> Mapping:
-        """Which dots its rows show."""
+        """Which dots the rows of the display's array show."""
         return self.style.mapping
 
     @property
     def geometry(self) -> Geometry:
-        """Distances on it."""
+        """Distances between the dots of a line, and the length of the carriage's travel."""
         return self.style.geometry
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """One or more."""
+        """Conditions of the protocol, at least one."""
         return self.listed or (Condition(name=ONLY_CONDITION),)
 
     @property
@@ -153,34 +153,34 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def task(self) -> str:
-        """What the participant does: read "strings", or make a "choice"."""
+        """What the participant does: "strings" for reading strings, "choice" for comparing two."""
         return "choice" if isinstance(self.design, Choice) else "strings"
 
     @property
     def parameter(self) -> str | None:
-        """What is compared, "dot_width_mm" or "dot_gap_mm"; None if strings are read."""
+        """Length that is compared, "dot_width_mm" or "dot_gap_mm"; None if strings are read."""
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
     def trials(self) -> int:
-        """Trials of all conditions, without practice."""
+        """Number of trials in all conditions, practice left out."""
         return self.design.trials * len(self.conditions)
 
     @property
     def lead_cells(self) -> int:
-        """Blank cells before each string, so that the array at its left stop is clear of it."""
+        """Number of blank cells before each string, which keep it clear of the left stop."""
         return self.display.lead_cells
 
     def tuning(self, condition: Condition) -> Tuning:
-        """What a condition is shown with."""
+        """Tuning that a condition is shown with."""
         return condition.tune(self.model, self.style.tuning)
 
     def line(self, masks: tuple[int, ...]) -> tuple[int, ...]:
-        """Cells of the line that a string is shown as."""
+        """Cells of the line on which a string is shown, with the blank ones before it."""
         return (0,) * self.lead_cells + masks
 
     def geometry_at(self, value: float | None) -> Geometry:
-        """Geometry at a value of the parameter compared; None for that of the display.
+        """Geometry at a value of the parameter compared; that of the display if the value is None.
 
         Raises
         ------
@@ -191,17 +191,17 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             return self.geometry
         if self.design.parameter == "dot_width_mm":
             return replace(self.geometry, dot_width_mm=value)
-        # From edge to edge, as the source has it: the centres stand a dot's width further apart.
+        # The gap is from edge to edge; the centres of the dots are a dot's width further apart.
         return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
 
 
 def _check_agreement(protocol: Protocol) -> None:
-    """Check what no table of a protocol can check by itself.
+    """Check that the tables of a protocol agree with each other.
 
     Raises
     ------
     ValueError
-        If values do not go together.
+        If values contradict each other.
     """
     for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
         names = [value.name for value in named]
@@ -245,7 +245,7 @@ def _check_trials(protocol: Protocol) -> None:
 
 
 def _check_cells(protocol: Protocol) -> None:
-    """Check that the display shows all dots of what is shown."""
+    """Check that the display can show every dot of every cell used."""
     model, mapping, design = protocol.model, protocol.mapping, protocol.design
     shown = mapping.shown_dots()
     how = (

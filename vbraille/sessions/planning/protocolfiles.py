@@ -1,4 +1,4 @@
-"""Protocols are read: from the program's own folder, or from a file."""
+"""Reading of protocols, from the program's own folder or from a file."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def builtin_names() -> list[str]:
 
 
 def builtin_text(name: str) -> str:
-    """TOML of a protocol that comes with the program.
+    """TOML text of a protocol that comes with the program.
 
     Raises
     ------
     InputError
-        If there is none of that name; it names the nearest.
+        If there is no protocol of that name; the message suggests the nearest name.
     """
     names = builtin_names()
     if name not in names:
@@ -46,7 +46,7 @@ def read_file(path: str) -> str:
     Raises
     ------
     InputError
-        If it cannot be read, is far too large or is not UTF-8.
+        If the file cannot be read, is far too large or is not UTF-8.
     """
     try:
         with Path(path).open("rb") as file:
@@ -73,7 +73,7 @@ def load_protocol(spec: str) -> Protocol:
     Parameters
     ----------
     spec
-        Name of one that comes with the program; or a file, if it ends in
+        Name of a protocol that comes with the program; or the path of a file, if it ends in
         ``.toml`` or has a ``/`` in it.
 
     Raises
@@ -87,25 +87,26 @@ def load_protocol(spec: str) -> Protocol:
 
 
 def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
-    """Check a protocol.
+    """Make a protocol from the text of its file, and check it.
 
     Parameters
     ----------
     text
-        TOML.
+        TOML text of the protocol.
     where
-        The file, as messages name it.
+        Name of the file, for messages.
     planned
-        Whether it is that of a session: its plan has been made, and what version 0.1 took
-        is taken still (blanks and dot numbers in strings, practice of the test's items).
+        Whether the protocol belongs to a session, whose plan has been made. If so, what version
+        0.1 allowed is still allowed: blanks and dot numbers in strings, and practice with the
+        test's items.
 
     Raises
     ------
     InputError
-        If it cannot be used. One sentence says where, why, and what to do.
+        If the protocol cannot be used. One sentence says where, why, and what to do.
     """
     file = TomlFile(text, where)
-    file.read(_Format)  # before all keys are known: another format may have others
+    file.read(_Format)  # this comes first, since another format may have other keys
     keys = file.read(_Keyed, read_keys).keys
     tables = file.read(ProtocolFile, spelled(keys, planned=planned))
     with file.checking():
@@ -120,7 +121,7 @@ def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
 
 
 class _Format(msgspec.Struct):
-    """What is known of a file of any format."""
+    """The one key that files of every format have."""
 
     format: int
 
@@ -133,6 +134,6 @@ class _Format(msgspec.Struct):
 
 
 class _Keyed(msgspec.Struct):
-    """What is read before the strings that are spelled by it."""
+    """The table ``[keys]``, which is read first because strings are spelled with it."""
 
     keys: SpellingKeys = field(default_factory=SpellingKeys)

@@ -1,4 +1,4 @@
-"""Does a finished plan keep the rules of its design? Counted from what it shows alone."""
+"""Check of a finished plan against the rules of its design, whatever way it was made."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
     Raises
     ------
     InputError
-        If it breaks a rule; it says which.
+        If the plan breaks a rule; the message says which.
     """
     wanted = _wanted(protocol)
     try:
@@ -66,12 +66,12 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
 
 
 def _practised(protocol: Protocol) -> set[Item]:
-    """What practice may show."""
+    """Items that practice may show."""
     return set(map(protocol.design.content, protocol.practice.items))
 
 
 def _check_practice(protocol: Protocol, plan: Plan) -> None:
-    """Check that nothing of the test is practised."""
+    """Check that practice shows no item of the test."""
     shown = {_content(protocol, trial) for trial in plan.trials}
     for trial in plan.practice:
         if _content(protocol, trial) in shown:
@@ -79,7 +79,7 @@ def _check_practice(protocol: Protocol, plan: Plan) -> None:
 
 
 def _check_neighbours(protocol: Protocol, plan: Plan) -> None:
-    """Check that no two neighbours show the same."""
+    """Check that no two neighbouring trials show the same."""
     for trials in (plan.practice, plan.trials):
         for trial, following in pairwise(trials):
             if _content(protocol, trial) == _content(protocol, following):
@@ -90,7 +90,7 @@ def _check_neighbours(protocol: Protocol, plan: Plan) -> None:
 
 
 def _wanted(protocol: Protocol) -> Counter[Item]:
-    """How often each condition must show each thing."""
+    """How often each condition must show each item."""
     design = protocol.design
     if isinstance(design, Combinations):
         things = product(design.characters, repeat=design.length)
@@ -102,14 +102,14 @@ def _wanted(protocol: Protocol) -> Counter[Item]:
 
 
 def _content(protocol: Protocol, trial: Trial) -> Item:
-    """What a trial shows, as `_wanted` has it."""
+    """Item that a trial shows, in the form in which `_wanted` counts items."""
     if isinstance(protocol.design, Choice):
         return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
     return protocol.design.content(trial.stimuli[0].masks[slice(*trial.asked)])
 
 
 def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item]) -> str:
-    """Say what is wrong with a trial by itself; empty if nothing is."""
+    """Say what is wrong with a single trial; empty if nothing is."""
     design = protocol.design
     if len(trial.stimuli) != (2 if isinstance(design, Choice) else 1):
         return f"has {len(trial.stimuli)} stimuli"
@@ -130,7 +130,7 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
 
 
 def _check_tuning(protocol: Protocol, plan: Plan) -> None:
-    """Check that each condition has one tuning, and its own values where it gives some."""
+    """Check that each condition has one tuning, which has the values that the protocol gives."""
     tunings = {condition.name: set() for condition in protocol.conditions}
     for trial in (*plan.practice, *plan.trials):
         if trial.condition not in tunings:
@@ -169,7 +169,7 @@ def _check_blocks(protocol: Protocol, plan: Plan) -> None:
 
 
 def _check_order(protocol: Protocol, plan: Plan) -> None:
-    """Check that each block is of one condition, and their order."""
+    """Check that each block has one condition, and that the blocks are in the right order."""
     listed = [condition.name for condition in protocol.conditions]
     shown = [name for _, name in dict.fromkeys((t.block, t.condition) for t in plan.trials)]
     if sorted(shown) != sorted(listed):
@@ -187,13 +187,13 @@ def _check_order(protocol: Protocol, plan: Plan) -> None:
 
 
 def check_balance(orders: list[tuple[int, ...]]) -> None:
-    """Check that orders are balanced over a full cycle of them.
+    """Check that orders of conditions are balanced, taken all together.
 
     Raises
     ------
     ValueError
-        If a condition is not equally often in each place, or does not follow
-        each other one equally often.
+        If a condition is not equally often in each place, or does not follow each other
+        condition equally often.
     """
     every = range(len(orders[0]))
     placed = Counter(place for order in orders for place in enumerate(order))
@@ -205,7 +205,7 @@ def check_balance(orders: list[tuple[int, ...]]) -> None:
 
 
 def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Item]) -> None:
-    """Check how often each condition shows each thing, and each letter."""
+    """Check how often each condition shows each item and each letter."""
     for condition in protocol.conditions:
         trials = [trial for trial in plan.trials if trial.condition == condition.name]
         shown = Counter(_content(protocol, trial) for trial in trials)

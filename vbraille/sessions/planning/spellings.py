@@ -1,4 +1,4 @@
-"""Cells as a protocol's file spells them → dot masks."""
+"""Conversion of cells, as a protocol's file spells them, to dot masks."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ if TYPE_CHECKING:
 
 
 class SpellingKeys(dict[str, int]):
-    """Dot mask of each spelling that ``[keys]`` adds to a to z."""
+    """Dot masks of the characters that ``[keys]`` adds to the letters a to z."""
 
 
 class Mask(int):
-    """Dot mask of a cell that is spelled by itself, so that dot numbers may be used."""
+    """Dot mask of a cell that stands alone in its file, where dot numbers may spell it."""
 
 
 class Masks(tuple[int, ...]):
-    """Dot masks of a string, spelled with a character a cell."""
+    """Dot masks of a string, each cell of which is spelled by one character."""
 
     __slots__ = ()
 
 
 def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
-    """What makes the types of this module from what `tomllib` read, for `msgspec.convert`.
+    """Make the function by which `msgspec.convert` fills the types of this module.
 
     Parameters
     ----------
     keys
-        Spellings beside a to z.
+        Dot masks of the characters beside a to z.
     planned
-        Whether strings are taken as version 0.1 took them: with blanks and dot numbers.
+        Whether strings may have blanks and dot numbers, as version 0.1 allowed.
     """
 
     def read(kind: type, value: Any) -> Any:
@@ -52,12 +52,12 @@ def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
 
 
 def read_keys(_kind: type, table: Any) -> SpellingKeys:
-    """Make the `SpellingKeys` of a table, for `msgspec.convert`.
+    """Read the table ``[keys]``, for `msgspec.convert`.
 
     Raises
     ------
     TypeError
-        If it is no table.
+        If the value is not a table.
     ValueError
         If a key cannot be used, or is not spelled as one cell.
     """

@@ -1,4 +1,4 @@
-"""What is under the hand in a trial."""
+"""Trials, and the stimuli that they put under the hand."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _PARTICIPANT = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
 def check_participant(participant: str) -> None:
-    """Check a participant's pseudonym: folders and tables are named by it.
+    """Check a participant's pseudonym, which folders and tables are named after.
 
     Raises
     ------
     ValueError
-        If it is none.
+        If the text cannot be a pseudonym.
     """
     if not _PARTICIPANT.fullmatch(participant):
         raise ValueError(
@@ -40,7 +40,7 @@ def check_seed(seed: int) -> None:
     Raises
     ------
     ValueError
-        If it is out of range.
+        If the seed is out of range.
     """
     if not 0 <= seed <= MOST_SEED:
         raise ValueError("seed is out of range; it must be 0 to 2⁶³ - 1")
@@ -48,21 +48,21 @@ def check_seed(seed: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Stimulus:
-    """One thing under the hand.
+    """A string that is put under the hand.
 
     Parameters
     ----------
     masks
-        Dot masks of all cells shown, delimiters too.
+        Dot masks of all cells shown, delimiters included.
     tuning, geometry
-        What they are shown with.
+        Tuning and distances that the cells are shown with.
     value
-        Of the parameter compared, in mm; None if none is.
+        Value in mm of the parameter that is compared; None if none is compared.
 
     Raises
     ------
     ValueError
-        If there is no cell, or one that has more than eight dots.
+        If there is no cell, or a dot mask is out of range.
     """
 
     masks: tuple[int, ...]
@@ -79,31 +79,32 @@ class Stimulus:
 
 
 class Stimuli(tuple[Stimulus, ...]):
-    """What is shown in a trial, one after the other."""
+    """The stimuli of a trial, in the order in which they are shown."""
 
     __slots__ = ()
 
 
 class Trial(Struct, frozen=True, forbid_unknown_fields=True):
-    """Something to read, or two things to compare. Files have its fields in this order.
+    """A trial: a string to read, or two to compare. Files have its fields in the order given here.
 
     Parameters
     ----------
     number
-        From 1 in the session; practice trials count on their own.
+        Number of the trial in the session, from 1. Practice trials are numbered separately.
     block
-        From 1; 0 is practice.
+        Number of the block, from 1; 0 for practice.
     condition
-        Its name.
+        Name of the condition.
     asked
-        Cells of the stimulus that are asked for, as [first, one past the last).
+        Cells of the stimulus that are asked for: index of the first, and of the one after the
+        last.
     stimuli
-        One to read, two to compare.
+        One stimulus to read, or two to compare.
 
     Raises
     ------
     ValueError
-        If a number is out of range.
+        If a number, or the number of stimuli, is out of range.
     """
 
     number: int
@@ -130,10 +131,10 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def practice(self) -> bool:
-        """Whether it is practice."""
+        """Whether the trial is practice."""
         return self.block == 0
 
     @property
     def presented(self) -> str:
-        """Unicode braille of the cells asked for (of the first stimulus, if there are two)."""
+        """Cells asked for, in Unicode braille; those of the first stimulus, if there are two."""
         return to_braille(self.stimuli[0].masks[slice(*self.asked)])

@@ -1,4 +1,4 @@
-"""TOML → typed values, or one sentence that says what is wrong with it, and in which line."""
+"""Reading of TOML into typed values, or into one sentence that says what is wrong and where."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 _Value = TypeVar("_Value")
 
-# Beyond this TOML readers differ, and no number of a protocol is so large.
+# TOML readers differ on larger numbers, and no number of a protocol is so large.
 _MOST_WHOLE = 2**63 - 1
 _LONGEST_QUOTE = 60
-# What msgspec calls a type, and what must stand in a file instead of something else.
+# Names that msgspec has for types, and what a file must have where such a type is wanted.
 _WANTED = {
     "int": "a whole number",
     "float": "a number",
@@ -39,27 +39,28 @@ _ABOUT = re.compile(r"(?:\[{1,2}(\w+)\]{1,2} )?(?:number (\d+) )?(.*)", re.DOTAL
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A table of a TOML file: its fields are the keys that the table may have.
+    """A table of a TOML file, whose fields are the keys that the table may have.
 
-    It checks itself in ``__post_init__``. The sentence of the `ValueError` begins with the words
-    of the key that it is about, if it is about one: by these its line is found.
+    A table checks its values in ``__post_init__``. If its `ValueError` is about one key, the
+    message begins with the words of that key, so that the line of the file can be found.
     """
 
 
 class TomlFile:
-    """A TOML text, and where it comes from.
+    """The text of a TOML file, together with the file's name.
 
     Parameters
     ----------
     text
-        What the file holds.
+        Text of the file.
     where
-        The file, as messages name it.
+        Name of the file, for messages.
 
     Raises
     ------
     InputError
-        If it is no TOML, or has a string of several lines or a number that is far too large.
+        If the text is not TOML, or has a string of several lines or a number that is far too
+        large.
     """
 
     def __init__(self, text: str, where: str) -> None:
@@ -79,19 +80,19 @@ class TomlFile:
     def read(
         self, kind: type[_Value], dec_hook: Callable[[type, Any], Any] | None = None
     ) -> _Value:
-        """Fill a value of a type, and have it check itself.
+        """Convert the file to a value of a type, which checks itself.
 
         Parameters
         ----------
         kind
-            A `Table`.
+            Type of the value, a `Table`.
         dec_hook
-            Makes what is in the file into types that msgspec does not know.
+            Function that makes values of types which msgspec does not know.
 
         Raises
         ------
         InputError
-            If a key is missing or not known, or a value is not of its type or out of range.
+            If a key is missing or not known, or a value has the wrong type or is out of range.
         """
         try:
             return msgspec.convert(self._tree, kind, dec_hook=dec_hook)
@@ -105,15 +106,15 @@ class TomlFile:
 
     @contextmanager
     def checking(self) -> Iterator[None]:
-        """Add the file and the line to what is said of the whole of it.
+        """Add the file and the line to the message of a `ValueError` about the file as a whole.
 
-        The sentence begins with the table that it is about, as ``[design]`` or ``[[fields]] number
-        2``, and then the words of the key; or with those alone for a key that is in no table.
+        The message must begin with the table that it is about, such as ``[design]`` or ``[[fields]]
+        number 2``, followed by the words of the key. For a key in no table it begins with those.
 
         Raises
         ------
         InputError
-            For a `ValueError` within.
+            If a `ValueError` was raised within.
         """
         try:
             yield
@@ -124,7 +125,7 @@ class TomlFile:
             raise InputError(f"{self._line(path, problem)}: {error}") from None
 
     def _explain(self, path: Path, message: str, types: list[inspect.Type]) -> NoReturn:
-        """Say in a sentence of ours what msgspec found."""
+        """Raise a sentence that says in plain words what msgspec found."""
         value = self._at(path)
         expected = _EXPECTED.match(message)
         if message.startswith("Object missing"):
@@ -147,7 +148,7 @@ class TomlFile:
     def _fail_unknown(
         self, path: Path, table: dict[str, Any], kinds: list[inspect.StructType]
     ) -> NoReturn:
-        """Name a key that a table cannot have, or not in a table of its kind."""
+        """Raise a sentence about a key that tables, or tables of this kind, cannot have."""
         own = [kind for kind in kinds if not kind.tag_field or table[kind.tag_field] == kind.tag]
         known = {name for kind in own for name in _keys(kind)}
         key = next((key for key in table if key not in known), "")
@@ -165,7 +166,7 @@ class TomlFile:
         self._fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
 
     def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
-        """Raise the sentence: in which line, of which table and key, what is wrong."""
+        """Raise a sentence that names the line, the table, the key and the problem."""
         named = self._named(path)
         if named and not problem.startswith(":"):
             is_item = isinstance(path[-1], int) and not isinstance(self._at(path), dict)
@@ -174,7 +175,7 @@ class TomlFile:
         raise InputError(f"{line}: {named}{problem}")
 
     def _named(self, path: Path) -> str:
-        """Table as it is written in the file, and key."""
+        """Table, as the file writes it, and key of a place in the file."""
         if path and isinstance(self._at(path[:1]), dict):
             label, rest = f"[{path[0]}]", path[1:]
         elif path and isinstance(self._at(path[:2]), dict):
@@ -185,7 +186,7 @@ class TomlFile:
         return f"{label}{keys}".strip()
 
     def _line(self, path: Path, problem: str) -> str:
-        """File and line of a place, or of the key in it with whose words a sentence begins."""
+        """File and line of a place, or of the key in it whose words begin the problem."""
         table = self._at(path)
         if isinstance(table, dict):
             path = (*path, *_steps_of(problem, table))
@@ -195,7 +196,7 @@ class TomlFile:
         return f"{self._where} line {lines[path]}" if path else self._where
 
     def _at(self, path: Path) -> Any:
-        """What stands at a path; None if nothing does."""
+        """Value at a path in the file; None if there is none."""
         value: Any = self._tree
         try:
             for step in path:
@@ -206,22 +207,22 @@ class TomlFile:
 
 
 def quote(value: object) -> str:
-    """A value of a file, as it can be said in a sentence."""
+    """Text for a value of a file, short enough to stand in a sentence."""
     try:
         said = repr(value)
-    # Python does not write whole numbers of thousands of digits, nor tables in tables without end.
+    # Python refuses to write numbers of thousands of digits, and tables that nest very deep.
     except (ValueError, RecursionError):
         return "too large a number" if isinstance(value, int) else "too large a table"
     return said if len(said) <= _LONGEST_QUOTE else f"{said[:_LONGEST_QUOTE]}…"
 
 
 def which(name: str, names: Collection[str]) -> str:
-    """End of a sentence about a name that says what comes nearest to it, and all that there is."""
+    """End of a sentence about an unknown name: the nearest known name, and all known names."""
     return f"; {nearest(name, names)}, and there is {', '.join(sorted(names))}"
 
 
 def _leaves(tree: object) -> Iterator[tuple[Path, object]]:
-    """Every value of a file that has no others in it, and its path; however deep they nest."""
+    """All values of a file that contain no other values, with their paths, at any depth."""
     left: list[tuple[Path, object]] = [((), tree)]
     while left:
         path, value = left.pop()
@@ -234,7 +235,7 @@ def _leaves(tree: object) -> Iterator[tuple[Path, object]]:
 
 
 def _types_at(kind: type, path: Path) -> list[inspect.Type]:
-    """Types that what stands at a path may have."""
+    """Types that the value at a path may have."""
     types = _each(inspect.type_info(kind))
     for step in path:
         found: list[inspect.Type] = []
@@ -264,7 +265,7 @@ def _keys(kind: inspect.StructType) -> list[str]:
 
 
 def _steps_of(problem: str, table: dict[str, Any]) -> Path:
-    """Key of a table with whose words a sentence begins, and the item that it names, if any."""
+    """Path to the key of a table, or item of it, whose words begin a problem; empty if none."""
     said = problem.lstrip("'\"").replace("_", " ")
     for key in sorted(table, key=len, reverse=True):
         words = re.escape(key.removesuffix("_mm").replace("_", " "))

@@ -1,4 +1,4 @@
-"""In which line of a TOML text each key, table and item stands, which `tomllib` does not tell."""
+"""Line numbers of the keys, tables and items of a TOML text, which `tomllib` does not tell."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-# Keys of tables and numbers of items, from 0, that lead from the whole file to a value in it.
+# The keys of tables and the indices of items that lead from the whole file to one value.
 Path = tuple[str | int, ...]
 
 _TOKEN = re.compile(
@@ -26,12 +26,12 @@ _TOKEN = re.compile(
 
 
 def lines_of(text: str) -> dict[Path, int]:
-    r"""Line of every key, table and item, from 1, by its path; but of those in braces.
+    r"""Line numbers, from 1, of keys, tables and items by their paths; braces are not looked into.
 
     Parameters
     ----------
     text
-        A TOML text that `tomllib` has read; of any other the lines mean nothing.
+        A TOML text that `tomllib` can read; for other texts the result means nothing.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def lines_of(text: str) -> dict[Path, int]:
     5
     """
     lines: dict[Path, int] = {}
-    tables: Counter[Path] = Counter()  # under each [[name]] so far
+    tables: Counter[Path] = Counter()  # number of tables under each [[name]] so far
     table: Path = ()
     for statement in _statements(text):
         tokens = [token for token, _ in statement]
@@ -64,7 +64,7 @@ def lines_of(text: str) -> dict[Path, int]:
 
 
 def _statements(text: str) -> Iterator[list[tuple[str, int]]]:
-    """Tokens of each header, and of each key with its value, and their lines."""
+    """Tokens, with their lines, of each header and of each key with its value."""
     statement: list[tuple[str, int]] = []
     depth, line = 0, 1
     for match in _TOKEN.finditer(f"{text}\n"):
@@ -80,8 +80,8 @@ def _statements(text: str) -> Iterator[list[tuple[str, int]]]:
 
 
 def _add_items(lines: dict[Path, int], path: Path, value: list[tuple[str, int]]) -> None:
-    """Add the lines of the items of a list, and of lists in it."""
-    places: list[int] = []  # of the items that stand open, each in the one before it
+    """Add the lines of the items of a list, and of the lists in it."""
+    places: list[int] = []  # indices of the items that are open, outermost first
     for token, line in value:
         if token in "]}":
             places.pop()

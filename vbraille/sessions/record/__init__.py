@@ -1,1 +1,1 @@
-"""What is kept of a session on the disk, and what is made of it."""
+"""The files of a session on the disk, and the tables that are made from them."""

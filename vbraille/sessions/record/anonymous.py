@@ -1,7 +1,7 @@
-"""Tables without what tells when a session was, or on which machine's paths.
+"""Tables without times of day, paths and notes, for those who give them away.
 
-Notes go too: what people type may tell anything. So does the name of a session's directory, which
-has a time in it; a number made of its first event takes its place.
+Notes are left out because people may type anything into them. The name of a session's directory,
+which has a time in it, is replaced by a number made from the session's first event.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ _SOURCES = ("typed", "simulated", "program")
 
 
 def number_of(record: Record) -> str:
-    """Eight digits that are this session's, whatever its directory is called."""
+    """Eight digits that identify a session, whatever its directory is called."""
     return f"{record.told.crcs[0] if record.told.crcs else 0:08x}"
 
 
 def without_paths(text: str) -> str:
-    """Text in which words that may be paths are left out."""
+    """Text with each word that may be a path replaced."""
     return _PATH.sub("(left out)", text)
 
 

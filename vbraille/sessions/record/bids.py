@@ -1,7 +1,7 @@
 """A session in the Brain Imaging Data Structure: trials as behaviour, traces as recordings.
 
-Behavioural data of BIDS 1.9, "Behavioral experiments (with no neural
-recordings)" and "Physiological recordings".
+The files follow BIDS 1.9, "Behavioral experiments (with no neural recordings)" and "Physiological
+recordings".
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.record.folder import Record
 
-_ROWS = 1000  # formatted at once
-_LEVEL = 3  # of gzip: higher ones take longer than all the rest
+_ROWS = 1000  # number of rows that are formatted at once
+_LEVEL = 3  # level of gzip; higher ones take longer than all the rest
 _UNITS = {name: unit for name in COLUMNS for unit in ("s", "mm") if name.endswith(f"_{unit}")}
-SESSION = "SessionNumber"  # by which a session is known to be in a dataset
+SESSION = "SessionNumber"  # key that tells which session a file in a dataset is of
 _CHANGED = "What was exported before 22 November 2026 has the place of the left column"
-# Column of a recording: where it comes from, how it is printed, and what it is.
+# Columns of a recording: field of the trace, format, unit and description.
 _RECORDED = {
     "x_mm": ("x_mm", "%.6g", "mm", f"place of the array's centre along the line. {_CHANGED}"),
     "y_mm": ("y_mm", "%.6g", "mm", "place across the lines, to the reader; 0 if not measured"),
@@ -44,12 +44,14 @@ _RECORDED = {
 
 
 def stem_of(record: Record, session: str) -> str:
-    """Path of a session's files in a dataset, up to what tells them apart.
+    """Path that all files of a session in a dataset begin with.
 
     Parameters
     ----------
+    record
+        The session.
     session
-        Its label among the participant's, such as "01".
+        Label of the session among those of the participant, such as "01".
     """
     who, task = label_of(record.plan.participant), label_of(record.plan.protocol)
     return f"sub-{who}/ses-{session}/beh/sub-{who}_ses-{session}_task-{task}"
@@ -62,17 +64,17 @@ def files(
     session: str = "01",
     without_times: bool = False,
 ) -> dict[str, bytes]:
-    """Files of a session, by their paths in the dataset.
+    """Contents of the files of a session, by their paths in the dataset.
 
     Parameters
     ----------
     record
         The session.
     traces
-        Its traces, for who wants to know what is wrong with them; what can be read of them
-        is written.
+        Traces of the session, if the caller wants to know what is wrong with them. The readable
+        parts of the traces are written in any case.
     session
-        Its label among the participant's.
+        Label of the session among those of the participant.
     without_times
         Whether times of day, paths and notes are left out.
     """
@@ -118,7 +120,7 @@ def _json(content: dict[str, Any]) -> bytes:
 def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
     described: dict[str, Any] = {
         SESSION: number_of(record),
-        "TaskName": record.protocol.name,  # of which the task in the files' names is made
+        "TaskName": record.protocol.name,  # which the task in the files' names is made from
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
     for name, what in COLUMNS.items():
@@ -133,7 +135,7 @@ def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
 
 
 def _recording(ticks: NDArray[np.void]) -> bytes:
-    """Columns of `TRACE`[n] at regular times: a row a deadline, n/a where it was missed."""
+    """Ticks of `TRACE`[n] as a table with a row for each deadline; n/a where one was missed."""
     due = ticks["tick"] + ticks["late"]
     row = "\t".join(form for _, form, _, _ in _RECORDED.values()) + "\n"
     missing = "\t".join(["n/a"] * len(_RECORDED)) + "\n"
@@ -148,6 +150,6 @@ def _recording(ticks: NDArray[np.void]) -> bytes:
                 some = part[at : at + _ROWS]
                 columns = (some[field].tolist() for field, _, _, _ in _RECORDED.values())
                 values = tuple(chain.from_iterable(zip(*columns, strict=True)))
-                # Formatted by the thousand, which is several times as fast as one by one.
+                # Rows are formatted many at a time, which is several times as fast as one by one.
                 file.write((row * some.size % values).replace("nan", "n/a").encode())
     return packed.getvalue()

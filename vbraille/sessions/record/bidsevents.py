@@ -1,4 +1,4 @@
-"""Events of a session as BIDS has them: a table a run, at times that its recording goes by."""
+"""Events of a session for BIDS: a table for each run, in the time of the run's recording."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ _LEFT_OUT = (Run, BreakWanted, Tuning, Closed, Lost)
 
 @dataclass(frozen=True, slots=True)
 class BidsRun:
-    """A run of a session.
+    """A run of a session, with its events.
 
     Parameters
     ----------
     event
-        The event that it began with.
+        Event that the run began with.
     events
-        What happened in it.
+        Events of the run, after that one.
     notes
         All notes of the session, by the numbers of their events.
     """
@@ -63,9 +63,10 @@ class BidsRun:
         Parameters
         ----------
         first_ns
-            Time of the first tick of the run's trace; None if it has none: the run begins then.
+            Time of the first tick of the run's trace; None if there is none, and times count
+            from the event that the run began with.
         without_times
-            Whether notes and what may be a path are left out.
+            Whether notes, and words that may be paths, are left out.
         """
         begun_s = self._begun_s(first_ns)
         rows = [
@@ -73,14 +74,14 @@ class BidsRun:
             for event in self.events
             if not isinstance(event, (*_LEFT_OUT, Note) if without_times else _LEFT_OUT)
         ]
-        # Some are written down a little after what was felt later.
+        # The journal may have an event a little later than one that happened after it.
         rows.sort(key=lambda row: row["onset"])
         if not rows:
             return "\t".join(EVENT_COLUMNS) + "\n"
         return to_csv(rows, "\t", "n/a")
 
     def _begun_s(self, first_ns: int | None) -> float:
-        """Time of the first tick, in seconds of the session."""
+        """Time of the first tick, in seconds that the session had run for."""
         for event in self.events:
             time_ns = getattr(event, "time_ns", None)
             if first_ns is not None and time_ns is not None:
@@ -103,7 +104,7 @@ class BidsRun:
 
 
 def _text_of(event: Event) -> str:
-    """Words that there are in an event."""
+    """Text that an event carries; empty for kinds without one."""
     match event:
         case Answer():
             return event.answer
@@ -117,7 +118,7 @@ def _text_of(event: Event) -> str:
 
 
 def runs_of(record: Record) -> list[BidsRun]:
-    """Runs of a session, in their order."""
+    """Runs of a session, in order."""
     notes = {note.event: note for note in read_notes(record.told.events)}
     runs: list[BidsRun] = []
     for event in record.told.events:

@@ -1,4 +1,4 @@
-"""Whether a session's directory is whole, and its files agree."""
+"""Check whether a session's directory is whole, and whether its files agree."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that was looked at.
+    """Result of one check.
 
     Parameters
     ----------
     text
-        What there is to say of it.
+        Sentence about what was found.
     good
-        Whether it is as it should be.
+        Whether all is as it should be.
     """
 
     text: str
@@ -52,21 +52,21 @@ class Finding:
 
 
 def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]:
-    """Look at every file of a session, also where not all can be used.
+    """Check every file of a session, even if some of them cannot be used.
 
     Parameters
     ----------
     folder
-        The session's.
+        Directory of the session.
     expected
-        SHA-256 of the journal as it was said at a stop, the end or an export, or its first digits.
+        SHA-256 of the journal, or its first digits, as a stop, the end or an export told it.
 
     Raises
     ------
     InputError
-        If it is no session, or one of a newer format.
+        If the directory holds no session, or one of a newer format.
     VbrailleError
-        If there is no journal to go by.
+        If there is no journal that can be used.
     """
     told = read_journal(folder, salvaged=True)
     faults: list[Finding] = []
@@ -89,7 +89,7 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
 
 
 def check(record: Record) -> Iterator[Finding]:
-    """Look at every file of a session whose first files are whole."""
+    """Check every file of a session whose first three files are whole."""
     told = record.told
     yield Finding("session.json, plan.json, protocol.toml: as they were when the session began")
     try:
@@ -128,7 +128,7 @@ def _check_journal(told: JournalContents) -> Iterator[Finding]:
 
 
 def _check_clock(told: JournalContents) -> Iterator[Finding]:
-    """Say where the wall clock was set back; durations do not go by it."""
+    """Say where the wall clock was set back; no duration is measured by it."""
     before: Event | None = None
     for event in told.events:
         if isinstance(event, Lost):
@@ -139,7 +139,7 @@ def _check_clock(told: JournalContents) -> Iterator[Finding]:
 
 
 def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
-    """Compare the journal's checksum with one that was kept elsewhere."""
+    """Tell the journal's checksum, and compare it with one that was kept elsewhere."""
     content = whole_lines(folder)
     yield Finding(f"record: {journal.sum_of(content)}")
     if expected is None:
@@ -157,7 +157,7 @@ def _check_sum(folder: Path, expected: str | None) -> Iterator[Finding]:
 
 
 def _check_torn(folder: Path, told: JournalContents) -> Iterator[Finding]:
-    """Look whether what was set aside begins with all that the journal tells of."""
+    """Check that `journal.torn` begins with everything that the journal says was set aside."""
     try:
         torn = (folder / journal.TORN).read_bytes()
     except FileNotFoundError:
@@ -169,7 +169,7 @@ def _check_torn(folder: Path, told: JournalContents) -> Iterator[Finding]:
     good = all(journal.sum_of_torn(torn[: known["bytes"]]) == known for known in sums)
     if not good:
         yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
-    elif torn:  # the last ones untold of, if a crash came before the journal could
+    elif torn:  # if a crash came at once, the journal may not tell of the last bytes
         yield Finding(f"{journal.TORN}: {len(torn)} bytes set aside by session resume")
 
 
@@ -177,14 +177,14 @@ def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
     told = record.told
     expected = {run.trace for run in progress.runs if run.trace}
     answered, known = _answered_lines(progress), _known_lines(progress)
-    # A crash may leave a trace that goes on where the journal has lost its end.
+    # After a crash, a trace may go on where the journal has lost its end.
     open_end = bool(told.torn) or not told.events or not isinstance(told.events[-1], Closed)
     for name in _trace_names(record.folder, progress.runs):
         trace = read_told_trace(record.folder, name, told)
         yield _describe(name, trace)
         if name not in expected and not told.bad:
             yield Finding(f"{name}: of a run that the journal does not tell of")
-        # One damage is one complaint: what is not whole is compared with nothing.
+        # A damage is told once: a file that is not whole is compared with no other.
         if trace.damage is None and not told.bad:
             yield from _check_tie(record.folder / name, trace, told)
             lines = set(np.unique(trace.ticks["line"]).tolist())
@@ -197,7 +197,7 @@ def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:
 
 
 def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Finding]:
-    """Look whether the journal has the lines that a trace was written after."""
+    """Check that the journal has all lines that it had when a trace was written."""
     if told.format == 1:
         return
     if (fault := missed_tie(trace.ties, told)) is not None:
@@ -211,7 +211,7 @@ def _check_tie(path: Path, trace: Trace, told: JournalContents) -> Iterator[Find
 
 
 def _trace_names(folder: Path, runs: list[Run]) -> list[str]:
-    """Names of all traces that there are, or should be."""
+    """Names of all traces that exist or should exist."""
     told = {run.trace for run in runs if run.trace}
     return sorted(told | {path.name for path in folder.glob("trace-*.gz")})
 
@@ -232,7 +232,7 @@ def _describe(name: str, trace: Trace) -> Finding:
 def _compare(
     name: str, lines: set[int], answered: set[int], known: set[int], open_end: bool
 ) -> Iterator[Finding]:
-    """What a trace and the journal tell of one another."""
+    """Compare the stimuli in a trace with those that the journal tells of."""
     for line in sorted(answered - lines):
         yield Finding(f"{name}: stimulus {line} was answered and is not in it", good=False)
     for line in sorted(lines - known):
@@ -241,7 +241,7 @@ def _compare(
 
 
 def _answered_lines(progress: Progress) -> dict[str, set[int]]:
-    """Lines of the showings that answers rest on, by trace."""
+    """Line numbers of the showings that were answered, by the name of the trace."""
     lines: dict[str, set[int]] = {}
     for told in progress.trials.values():
         if told.answer is None and told.first_answer is None:
@@ -253,7 +253,7 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
 
 
 def _seconds_between(earlier: Event, later: Event) -> float:
-    """From one event to another by the wall clock; below 0 if they are the other way about."""
+    """Seconds from one event to another by the wall clock; negative if it went back."""
     first, last = (datetime.fromisoformat(event.wall) for event in (earlier, later))
     return (last - first).total_seconds()
 

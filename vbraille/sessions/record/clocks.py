@@ -1,4 +1,4 @@
-"""Time between the runs of a session, by a clock that nobody sets."""
+"""Time between the runs of a session, by a clock that nobody can set."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from vbraille.sessions.record.journal import up_s
 if TYPE_CHECKING:
     from vbraille.sessions.record.events import Event, Run
 
-_MOVED_S = 1.0  # less than that is a clock that is kept right
+_MOVED_S = 1.0  # smaller differences are ordinary corrections of a clock
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A moment, by the clocks that there are.
+    """A moment, by the wall clock and by the clock of the machine.
 
     Parameters
     ----------
     wall
-        By the wall clock, which people and time servers set.
+        Time by the wall clock, which people and time servers set.
     up_s
-        Seconds since the machine was started; None where that was not written down.
+        Seconds since the machine was started; None if the journal does not have them.
     boot
-        Which start of the machine that is; empty if not known.
+        Identifier of that start of the machine; empty if it is not known.
     """
 
     wall: datetime
@@ -35,17 +35,17 @@ class Moment:
 
     @classmethod
     def now(cls) -> Self:
-        """Tell the moment that it is."""
+        """Take the present moment."""
         return cls(datetime.now(UTC), up_s(), boot())
 
     @classmethod
     def of(cls, event: Event, run: Run) -> Self:
-        """Moment of an event of a run."""
+        """Moment at which an event of a run happened."""
         return cls(datetime.fromisoformat(event.wall), event.up_s, run.boot)
 
 
 def boot() -> str:
-    """Which start of this machine it is; empty if the system does not tell."""
+    """Identifier of this machine's last start; empty if the system does not tell it."""
     try:
         return Path("/proc/sys/kernel/random/boot_id").read_text().strip()
     except OSError:
@@ -53,15 +53,15 @@ def boot() -> str:
 
 
 def gap(before: Moment, now: Moment) -> dict[str, Any]:
-    """What a run tells of the time since the last event.
+    """Fields of a run's event that tell how much time went by since the last event.
 
     Returns
     -------
     dict
-        ``gap_s`` in seconds, and by which clock that is: ``gap_by`` machine, or wall where the
-        machine was started anew meanwhile. ``clock_moved_s``, by how much the wall clock was set
-        meanwhile, back if below 0. A gap of which only the wall clock tells, and that ends
-        before it began, has no ``gap_s``.
+        ``gap_s`` is the time in seconds. ``gap_by`` is the clock that it is measured by: machine,
+        or wall if the machine was started anew meanwhile. ``clock_moved_s`` is how far the wall
+        clock was set meanwhile, negative if back. ``gap_s`` is missing if only the wall clock
+        could tell it and that clock went back.
     """
     wall_s = (now.wall - before.wall).total_seconds()
     if before.up_s is None or now.up_s is None or not now.boot or before.boot != now.boot:
@@ -76,7 +76,7 @@ def gap(before: Moment, now: Moment) -> dict[str, Any]:
 
 
 def say_moved(told: dict[str, Any]) -> str | None:
-    """Say that the clock was set meanwhile; None if it was not."""
+    """Sentence about a clock that was set since the last event; None if it was not."""
     moved_s = told.get("clock_moved_s")
     if moved_s is None:
         return None

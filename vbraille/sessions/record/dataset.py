@@ -1,4 +1,4 @@
-"""A dataset of sessions, in the Brain Imaging Data Structure: who is in it, and what is added."""
+"""A dataset in the Brain Imaging Data Structure, to which sessions are added one by one."""
 
 from __future__ import annotations
 
@@ -49,22 +49,22 @@ def write(
     *,
     without_times: bool = False,
 ) -> list[Path]:
-    """Add a session to a dataset, which is begun if there is none; the files written.
+    """Add a session to a dataset, which is begun if there is none, and return the files written.
 
     Parameters
     ----------
     record, traces, without_times
-        As of `vbraille.sessions.record.bids.files`.
+        These are described at `vbraille.sessions.record.bids.files`.
     folder
-        The dataset's.
+        Directory of the dataset.
 
     Raises
     ------
     InputError
-        If the session is there already, another participant's pseudonym is too much like this
-        one's, or a file cannot be made; nothing is written then.
+        If the dataset has the session already, another participant's pseudonym is too similar
+        to this one's, or a file cannot be made. Nothing is written then.
     VbrailleError
-        If the disk does not take them; all is as it was then.
+        If the disk does not take the files. The dataset then is as it was before.
     """
     people = _people(folder)
     pseudonym, label = record.plan.participant, label_of(record.plan.participant)
@@ -89,14 +89,14 @@ def write(
 
 
 def _people(folder: Path) -> dict[str, str]:
-    """Participants of a dataset: their pseudonyms by their labels."""
+    """Pseudonyms of the participants of a dataset, by their labels."""
     try:
         told = list(
             csv.DictReader(io.StringIO((folder / _PEOPLE).read_text("utf-8")), delimiter="\t")
         )
         known = {row["participant_id"].removeprefix("sub-"): row["pseudonym"] for row in told}
     except (FileNotFoundError, NotADirectoryError):
-        known = {}  # where it is no directory, writing it says so
+        known = {}  # a dataset that is no directory is refused when it is written
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
     except (ValueError, KeyError, AttributeError):
@@ -109,7 +109,7 @@ def _people(folder: Path) -> dict[str, str]:
 
 
 def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> None:
-    """See that nobody else in the dataset could be taken for this participant."""
+    """Check that nobody else in the dataset could be mistaken for this participant."""
     for other in people.values():
         if other != pseudonym and alike(other, pseudonym):
             raise InputError(
@@ -119,7 +119,7 @@ def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> No
 
 
 def _check_absent(folder: Path, record: Record) -> None:
-    """See that the session is not in the dataset, under any label."""
+    """Check that the dataset does not have the session under any label."""
     number = number_of(record)
     for path in folder.glob("sub-*/ses-*/beh/*_beh.json"):
         try:
@@ -135,7 +135,7 @@ def _check_absent(folder: Path, record: Record) -> None:
 
 
 def _next_session(participant: Path) -> str:
-    """Label of a participant's next session."""
+    """Label for the next session of a participant."""
     if (participant / "beh").exists():
         raise InputError(
             f"{participant} was written by an older vbraille, without sessions; "
@@ -147,11 +147,11 @@ def _next_session(participant: Path) -> str:
 
 
 def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
-    """Write new files, and who is in the dataset last: all of it, or nothing."""
+    """Write new files, and then the table of participants; undo everything if one fails."""
     written: list[Path] = []
     try:
         parents = {parent for path in new for parent in missing(path.parent)}
-        for parent in sorted(parents):  # each after the one that it is in
+        for parent in sorted(parents):  # a directory comes after the one that contains it
             parent.mkdir(exist_ok=True)
             written.append(parent)
         for path, content in new.items():
@@ -160,7 +160,7 @@ def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
         write_file(folder / _PEOPLE, people, replace=True, durable=True)
     except BaseException as fault:
         for path in reversed(written):
-            with suppress(OSError):  # where somebody else has put something meanwhile
+            with suppress(OSError):  # a directory that somebody else has used meanwhile stays
                 path.rmdir() if path.is_dir() else path.unlink()
         if isinstance(fault, OSError):
             raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
@@ -168,7 +168,7 @@ def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
 
 
 def _about(record: Record) -> dict[str, Any]:
-    """What the dataset is."""
+    """Content of the file that describes the dataset."""
     return {
         "Name": "vbraille legibility sessions",
         "BIDSVersion": _BIDS,

@@ -1,7 +1,7 @@
-"""The events of a session's journal, a class for each kind: this is the table of them.
+"""The kinds of events that a session's journal may have, with a class for each kind.
 
-`docs/session-format.md` has the same table. What a class does not have, no event of its kind has;
-who adds a kind, or a field, raises `vbraille.sessions.record.folder.FORMAT`.
+`docs/session-format.md` has the same as a table. An event has no other fields than its class.
+Whoever adds a kind or a field must raise `vbraille.sessions.record.folder.FORMAT`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import msgspec
 
 
 def _kind_of(name: str) -> str:
-    """Name of an event's kind in the journal, such as break_wanted for BreakWanted."""
+    """Name that the journal has for a class of events, such as break_wanted for BreakWanted."""
     return re.sub("(?<=[a-z])(?=[A-Z])", "_", name).lower()
 
 
@@ -32,19 +32,19 @@ class Event(
     Parameters
     ----------
     n
-        Its number, from 1. The journal gives it.
+        Number of the event, from 1. It is set when the event is added to the journal.
     t_s
         Seconds that the session had run for, without the time between runs.
     wall
-        When it was by the wall clock, UTC. The journal tells.
+        Time by the wall clock, UTC. It is set when the event is added to the journal.
     up_s
-        The same in seconds since the machine was started, asleep or not; not in format 1. The
-        journal tells.
+        Seconds since the machine was started, time asleep included; not in format 1. It is set
+        when the event is added to the journal.
     script_line
-        Line of an answers file that it came of; 0 if it came of none.
+        Number of the line in an answers file that caused the event; 0 if no such line did.
     """
 
-    # Whether it is on the disk before anything is said of it.
+    # Whether events of the kind are on the disk before the console says anything about them.
     durable: ClassVar[bool] = False
 
     n: int = 0
@@ -55,19 +55,19 @@ class Event(
 
     @property
     def kind(self) -> str:
-        """What happened, by the name that the journal has for it."""
+        """Name of the event's kind, as in the journal."""
         return str(self.__struct_config__.tag)
 
 
 class AnyTime(Event, frozen=True, kw_only=True):
-    """Something that happens between trials, or in one.
+    """Something that may happen in a trial or between trials.
 
     Parameters
     ----------
     trial
         Number of the trial that was open; 0 if none was.
     practice
-        Whether that is a trial of practice.
+        Whether that trial is practice.
     """
 
     trial: int = 0
@@ -75,7 +75,7 @@ class AnyTime(Event, frozen=True, kw_only=True):
 
 
 class InTrial(AnyTime, frozen=True, kw_only=True):
-    """Something that happens in a trial only."""
+    """Something that can happen in a trial only."""
 
     def __post_init__(self) -> None:
         if self.trial < 1:
@@ -88,9 +88,9 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     Parameters
     ----------
     attempt
-        How often the trial had been begun, this time too.
+        Number of the attempt at the trial, from 1.
     stimulus
-        0, or 1 for the second of two.
+        Which stimulus of the trial it is: 0, or 1 for the second of two.
     """
 
     attempt: int
@@ -98,14 +98,14 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
 
 
 class Session(Event, frozen=True, forbid_unknown_fields=False, kw_only=True):
-    """The session was put on the disk; it is the first event of all.
+    """The session was put on the disk; this is the first event of every journal.
 
     Parameters
     ----------
     format
         Format of the session's files.
     sha256
-        SHA-256 of each of the first three files, by its name.
+        SHA-256 of session.json, protocol.toml and plan.json, by the names of the files.
     """
 
     format: int
@@ -113,42 +113,43 @@ class Session(Event, frozen=True, forbid_unknown_fields=False, kw_only=True):
 
 
 class Run(Event, frozen=True, kw_only=True):
-    """The session is run, or resumed, or its engine is started again.
+    """A run began: the session was started or resumed, or its engine was started again.
 
     Parameters
     ----------
     why
-        Start, resume or fault.
+        Why the run began: start, resume, or fault if the engine had died.
     trace
-        File of the run's trace; empty on paper.
+        Name of the run's trace file; left out on paper.
     device
-        What the device says of itself.
+        Description that the device gives of itself.
     spec
-        Which device was asked for.
+        Spec of the device that was asked for.
     hand
-        The hand of a simulated device.
+        Hand that moves the simulated device.
     answers
-        Where the answers come from.
+        Source of the answers.
     clock
-        Machine, or manual where time goes as fast as it can.
+        Clock of the run: machine, or manual where the session runs as fast as the machine can.
     sound
-        What the participant's signals are made with.
+        Name of what makes the participant's signals.
     practice
-        "left out", if the answers are not typed.
+        "left out" if there is no practice because the answers are not typed.
     versions
-        Versions of the programs that have a part in it.
+        Versions of the programs that were used.
     boot
-        Which start of the machine it is; not in format 1.
+        Identifier of the machine's last start; not in format 1.
     gap_s
-        Of a resume, seconds since the last event; left out if nobody knows.
+        Seconds since the last event of the run before; left out if they are not known.
     gap_by
-        The clock that tells so: machine by `up_s`, or wall if the machine was started anew since.
+        Clock that `gap_s` is measured by: machine if `up_s` tells it, or wall if the machine was
+        started anew meanwhile.
     clock_moved_s
-        By how much the wall clock was set since the last event, if by more than a second.
+        Seconds by which the wall clock was set since the last event, if more than one.
     torn_bytes
-        Length of what was set aside from the journal's end.
+        Length of the torn line that was moved from the journal's end to `journal.torn`.
     torn_file
-        Length (`bytes`) and checksum (`crc`) of all that `journal.torn` has by then.
+        Length (`bytes`) and checksum (`crc`) of `journal.torn` when the run began.
     """
 
     durable: ClassVar[bool] = True
@@ -177,11 +178,11 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     line
-        Its number in the trace; left out on paper.
+        Number of the showing, which the trace has as `line`; left out on paper.
     tuning
-        What the experimenter has set, instead of the stimulus's own.
+        Contrast or texture that the experimenter has set instead of the stimulus's own.
     shown
-        The stimulus itself, as `plan.json` has it; from format 4 on.
+        The stimulus itself, in the form that `plan.json` has; from format 4 on.
     """
 
     line: int = 0
@@ -199,7 +200,7 @@ class Contact(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     tick, time_ns
-        The tick, as in the trace.
+        Number and time of the tick at which it came there, as in the trace.
     """
 
     tick: int
@@ -207,12 +208,12 @@ class Contact(WithStimulus, frozen=True, kw_only=True):
 
 
 class Read(WithStimulus, frozen=True, kw_only=True):
-    """The hand went to the end and back; on paper, a key said so.
+    """The stimulus was read: the hand went to its end and back, or on paper a key was pressed.
 
     Parameters
     ----------
     tick, time_ns
-        The tick, as in the trace; left out on paper.
+        Number and time of the tick at which it was read, as in the trace; left out on paper.
     """
 
     tick: int | None = None
@@ -229,13 +230,14 @@ class Answer(InTrial, frozen=True, kw_only=True):
     Parameters
     ----------
     attempt
-        The attempt that it was given to.
+        Number of the attempt at the trial that was answered.
     answer
-        Unicode braille, `?` for a place not read; or 1 or 2.
+        The answer: Unicode braille with `?` for a place not read; or 1 or 2, for the stimulus
+        chosen.
     corrects
-        Whether it comes instead of one that was taken back.
+        Whether the answer replaces one that was taken back.
     early
-        Whether it came before the trial was read to its end.
+        Whether the answer came before the trial was read to its end.
     """
 
     durable: ClassVar[bool] = True
@@ -247,30 +249,32 @@ class Answer(InTrial, frozen=True, kw_only=True):
 
 
 class Undo(InTrial, frozen=True):
-    """The last answer was taken back; it stays in the record."""
+    """The last answer was taken back; the record keeps it."""
 
     durable: ClassVar[bool] = True
 
 
 class Repeat(InTrial, frozen=True):
-    """The trial is shown again because the experimenter says so."""
+    """The experimenter asked for the trial to be shown again."""
 
     durable: ClassVar[bool] = True
 
 
 class Fault(InTrial, frozen=True, kw_only=True):
-    """What is shown began not to be felt.
+    """The stimulus could no longer be felt, because of the device or the engine.
 
     Parameters
     ----------
     what
-        Why not, for people.
+        What went wrong, in words for people.
     attempt
-        The attempt in which it was so.
+        Number of the attempt at the trial in which it went wrong.
     stimulus
-        0, or 1 for the second of two; left out if the engine died.
+        Which stimulus of the trial it is: 0, or 1 for the second of two; left out if the engine
+        died.
     tick, time_ns
-        The first such tick, as in the trace; left out if the engine died.
+        Number and time of the first tick that was not felt, as in the trace; left out if the
+        engine died.
     """
 
     durable: ClassVar[bool] = True
@@ -283,12 +287,12 @@ class Fault(InTrial, frozen=True, kw_only=True):
 
 
 class Well(WithStimulus, frozen=True, kw_only=True):
-    """What is shown is felt again, after a fault.
+    """The stimulus could be felt again after a fault.
 
     Parameters
     ----------
     tick, time_ns
-        The first such tick, as in the trace.
+        Number and time of the first tick that was felt again, as in the trace.
     """
 
     tick: int
@@ -296,52 +300,52 @@ class Well(WithStimulus, frozen=True, kw_only=True):
 
 
 class Device(Event, frozen=True, kw_only=True):
-    """The device had something to say.
+    """The device reported something.
 
     Parameters
     ----------
     what
-        What it said.
+        What the device reported, in words for people.
     """
 
     what: str
 
 
 class Pause(AnyTime, frozen=True):
-    """The array was rested."""
+    """The session was paused, and the array brought to rest."""
 
     durable: ClassVar[bool] = True
 
 
 class Go(AnyTime, frozen=True):
-    """The session went on after a pause or a break; an answer ends a pause too."""
+    """The session went on after a pause or a break. An answer ends a pause as well."""
 
 
 class BreakWanted(AnyTime, frozen=True):
-    """A break was asked for."""
+    """The experimenter asked for a break."""
 
 
 class Break(Event, frozen=True):
-    """A break was begun."""
+    """A break began."""
 
     durable: ClassVar[bool] = True
 
 
 class Begin(Event, frozen=True):
-    """Practice is over."""
+    """Practice was ended."""
 
     durable: ClassVar[bool] = True
 
 
 class Tuning(AnyTime, frozen=True, kw_only=True):
-    """The experimenter set contrast or texture, for all that follows.
+    """The experimenter set contrast or texture for the rest of the session.
 
     Parameters
     ----------
     tuning
-        All that is set by now.
+        All values that the experimenter has set so far.
     line
-        The new number in the trace, if a trial was open.
+        New number of the showing, which the trace has as `line`; left out if no trial was open.
     """
 
     durable: ClassVar[bool] = True
@@ -351,12 +355,12 @@ class Tuning(AnyTime, frozen=True, kw_only=True):
 
 
 class Note(AnyTime, frozen=True, kw_only=True):
-    """The experimenter wrote something down.
+    """The experimenter wrote a note.
 
     Parameters
     ----------
     text
-        The note.
+        Text of the note.
     """
 
     durable: ClassVar[bool] = True
@@ -365,7 +369,7 @@ class Note(AnyTime, frozen=True, kw_only=True):
 
 
 class Stop(Event, frozen=True):
-    """The session was ended for now."""
+    """The session was stopped, and can be resumed."""
 
     durable: ClassVar[bool] = True
 
@@ -376,7 +380,7 @@ class End(Event, frozen=True, kw_only=True):
     Parameters
     ----------
     why
-        What ended it.
+        Reason for the end, in words for people.
     """
 
     durable: ClassVar[bool] = True
@@ -390,15 +394,16 @@ class Closed(Event, frozen=True, kw_only=True):
     Parameters
     ----------
     lost
-        Ticks that were never recorded; left out if the engine died.
+        Number of ticks that were never recorded; left out if the engine died.
     counts
-        What went wrong with the device, and how often; left out if nothing did or the engine died.
+        How often each thing went wrong with the device, by name; left out if nothing did or the
+        engine died.
     trace
-        File of the run's trace.
+        Name of the run's trace file.
     trace_bytes
-        Its length.
+        Length of the trace file.
     trace_sha256
-        Its SHA-256; from format 2 on.
+        SHA-256 of the trace file; from format 2 on.
     """
 
     durable: ClassVar[bool] = True
@@ -411,7 +416,7 @@ class Closed(Event, frozen=True, kw_only=True):
 
 
 class Lost(Event, frozen=True):
-    """An event of a damaged journal that is not whole; no journal has it, a salvaged one tells."""
+    """Stand-in for a damaged event when a journal is salvaged; no journal has this kind."""
 
 
 Kind = (
@@ -424,13 +429,13 @@ _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")
 
 
 def read(line: bytes) -> Event:
-    """Event that a line of a journal tells of, as JSON without its checksum.
+    """Read an event from a line of a journal, given as JSON without its checksum.
 
     Raises
     ------
     ValueError
-        If it is of a kind that there is not, or has other fields than its kind. It says so in
-        words that go on a sentence which begins with the line.
+        If the kind is not known, or the fields are not those of the kind. The message goes on
+        a sentence that begins with the number of the line.
     """
     try:
         return _FROM_JSON.decode(line)
@@ -441,7 +446,7 @@ def read(line: bytes) -> Event:
 
 
 def _read_slowly(line: bytes) -> Event:
-    """Event of a line with a lone surrogate, such as a file's name may have; or of no JSON."""
+    """Read an event that has a lone surrogate, as file names may; fail if it is not JSON."""
     try:
         told = json.loads(line)
     except ValueError:
@@ -453,7 +458,7 @@ def _read_slowly(line: bytes) -> Event:
 
 
 def _fault(told: Any, why: str) -> str:
-    """Say what is wrong with something that is no event."""
+    """Say what is wrong with JSON that is not an event."""
     kind = told.get("event") if isinstance(told, dict) else None
     if kind is None or why.endswith("`$.event`"):
         return f"has an event of the kind {kind!r}, which this vbraille does not know"
@@ -466,9 +471,9 @@ def _fault(told: Any, why: str) -> str:
 
 
 def to_json(event: Event) -> dict[str, Any]:
-    """Event as it goes into the journal; `read` gives an equal one."""
+    """Event in the form that the journal has; `read` makes an equal event of it."""
     told = msgspec.to_builtins(event)
-    # The number and the kind come first and the times last, for people who read it.
+    # The number and the kind come first and the times last, for people who read the journal.
     first = {"n": told.pop("n", 0), "event": told.pop("event")}
     last = {name: told.pop(name) for name in ("t_s", "wall", "up_s") if name in told}
     return first | told | last

@@ -1,4 +1,4 @@
-"""A session as tables: one row a planned trial, made from the record alone."""
+"""A session as a table with one row for each planned trial, made from the record alone."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.traces import Trace
 
 _TIMES = ("duration_s", "returned", "contact_s", "response_s", "paused_s")
-# A plain number: an exception that a signal raises while numpy looks at a flag may get lost.
+# This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
+# a signal raises.
 _PAUSED = int(Flag.PAUSED)
 NEVER_CAME = "the hand never came to the first dot"
 
@@ -85,19 +86,19 @@ COLUMNS = {
 
 
 class Traces:
-    """The traces of a session, each read once, as far as it is whole.
+    """The traces of a session, each of which is read once, as far as it is whole.
 
     Parameters
     ----------
     record
         The session.
     salvaged
-        Whether what is whole after a damage is used too.
+        Whether ticks after a damage are used too.
 
     Attributes
     ----------
     faults : list[str]
-        What is wrong with those that were asked for.
+        What is wrong with the traces that were asked for.
     """
 
     def __init__(self, record: Record, *, salvaged: bool = False) -> None:
@@ -107,7 +108,7 @@ class Traces:
         self._traces: dict[str, Trace] = {}
 
     def read(self, name: str) -> Trace:
-        """A trace."""
+        """Read the trace of a name, or return it if it was read before."""
         if name not in self._traces:
             trace = read_told_trace(self._record.folder, name, self._record.told)
             self._traces[name] = trace
@@ -116,12 +117,12 @@ class Traces:
         return self._traces[name]
 
     def of(self, name: str, lines: list[int]) -> NDArray[np.void] | None:
-        """Ticks of some lines of a trace, in order; None if not all of them are known."""
+        """Ticks of a trace that have some line numbers; None if some of the ticks may be lost."""
         trace = self.read(name)
         if trace.damage is None:
             return _of(trace.ticks, lines)
-        # Line numbers grow along a trace, so that damage cuts the last one short, and in what
-        # comes after it the first one, from which some may be missing.
+        # Line numbers grow along a trace. So damage may take ticks from the last number before it
+        # and from the first number after it, and these two are not used.
         known = trace.ticks["line"]
         if known.size and known[-1] > max(lines):
             return _of(trace.ticks, lines)
@@ -134,26 +135,26 @@ class Traces:
 
 
 def _of(ticks: NDArray[np.void], lines: list[int]) -> NDArray[np.void]:
-    """Ticks of some lines, whose numbers grow along them."""
+    """Ticks that have some line numbers, out of ticks whose line numbers grow."""
     known = ticks["line"]
-    # By steps in Python: numpy would copy the whole column, for each trial.
+    # Bisection in Python is faster here: numpy would copy the whole column for each trial.
     first, stop = bisect_left(known, min(lines)), bisect_right(known, max(lines))
     part = ticks[first:stop]
-    if max(lines) - min(lines) < len(set(lines)):  # there are none between them
+    if max(lines) - min(lines) < len(set(lines)):  # no other line numbers lie between them
         return part
     return part[np.isin(part["line"], lines)]
 
 
 def rows(record: Record, traces: Traces | None = None) -> list[dict[str, Any]]:
-    """Rows of a session, by `COLUMNS` and then the protocol's fields.
+    """Rows of a session, with `COLUMNS` and then the answers to the protocol's questions.
 
     Parameters
     ----------
     record
         The session.
     traces
-        Its traces, for who wants to know what is wrong with them. What they do not tell
-        is left empty.
+        Traces of the session, if the caller wants to know what is wrong with them. Cells that
+        need a missing part of a trace are left empty.
     """
     return [row for row, _ in walk(record, traces)]
 
@@ -166,15 +167,16 @@ def walk(
     Parameters
     ----------
     record, traces
-        As of `rows`.
+        These are described at `rows`.
 
     Yields
     ------
     row : dict[str, Any]
-        Of `rows`.
+        Row of the trial, as `rows` gives it.
     trajectory : Trajectory, str or None
-        What the row's duration is of; why there is none; None for what has no trace
-        to be read: comparisons, what is on paper, what is not answered.
+        Trajectory that the row's duration is taken from, or the reason why there is none. None
+        for trials whose trace is not read: comparisons, trials on paper and trials without an
+        answer.
     """
     progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
@@ -192,7 +194,7 @@ def walk(
             row["duration_s"] = round(seen.duration.seconds, 6)
             row["returned"] = int(seen.duration.returned)
         if told.lost:
-            # A pause may be among them, or that the trial was shown again.
+            # One of the lost events may be a pause, or a new attempt at the trial.
             seen = f"events of the journal are lost: {spans(told.lost)}"
             row |= dict.fromkeys(_TIMES, "")
             row["faults"] = "; ".join([*told.faults, seen])
@@ -200,7 +202,7 @@ def walk(
 
 
 def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
-    """Row of a trial, without what its trace tells."""
+    """Row of a trial, without the cells that its trace tells."""
     t_s = told.t_s
     tuning = trial.stimuli[0].tuning
     protocol, geometries = record.protocol, [stimulus.geometry for stimulus in trial.stimuli]
@@ -258,7 +260,7 @@ def _string_set(record: Record, trial: Trial) -> str:
 
 
 def _noted(notes: list[PlacedNote], trial: int) -> dict[str, str]:
-    """Cells of a trial for the notes in it and around it."""
+    """Cells of a trial's row for the notes in the trial and around it."""
     between = [note for note in notes if not note.trial]
     return {
         "notes": texts(note for note in notes if note.trial == trial),
@@ -268,13 +270,13 @@ def _noted(notes: list[PlacedNote], trial: int) -> dict[str, str]:
 
 
 def _each(geometries: list[Geometry], name: str) -> str:
-    """A length of the stimuli of a trial, once if they agree."""
+    """A length of each stimulus of a trial as text; a single number if all agree."""
     lengths = dict.fromkeys(f"{getattr(geometry, name):g}" for geometry in geometries)
     return " ".join(lengths)
 
 
 def spans(numbers: Sequence[int]) -> str:
-    """Say numbers that grow, such as 3-5, 9."""
+    """Text for increasing numbers, such as 3-5, 9."""
     parts: list[list[int]] = []
     for number in numbers:
         if parts and parts[-1][-1] == number - 1:
@@ -291,7 +293,7 @@ def _chosen(values: list[str], answer: str | None) -> str:
 def _trajectory(
     record: Record, trial: Trial, told: TrialRecord, traces: Traces
 ) -> Trajectory | str:
-    """What the trace tells of the last attempt; why, if it tells nothing."""
+    """Trajectory of the last attempt at a trial, or the reason why there is none."""
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
     edges = edges_mm(line, protocol.mapping, stimulus.geometry)
@@ -311,7 +313,7 @@ def _trajectory(
     left_mm = left_places_mm(ticks, span_mm / 2)
 
     def moved() -> NDArray[np.bool_]:
-        # Few sessions need it, and numba takes its time to be imported.
+        # Few sessions need this, and numba takes long to import.
         from vbraille.sessions.planning.programs import render
 
         tuning = replace(stimulus.tuning, **told.tuning)
@@ -327,7 +329,7 @@ def _trajectory(
 
 
 def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "") -> str:
-    """Write rows of one kind as text."""
+    """Rows that have the same columns, as the text of a table with a head."""
     text = io.StringIO()
     writer = csv.writer(text, delimiter=delimiter, lineterminator="\n")
     writer.writerow(table[0])
@@ -337,5 +339,5 @@ def to_csv(table: list[dict[str, Any]], delimiter: str = ",", missing: str = "")
 
 
 def encode(text: str) -> bytes:
-    """UTF-8 of a text; what is no text, in a directory's name, is spelled."""
+    """UTF-8 of a text; surrogates, which a directory's name may have, are written as escapes."""
     return text.encode("utf-8", "backslashreplace")

@@ -1,4 +1,4 @@
-"""A session's directory: what is on the disk before trial 1, and what is added to it.
+"""A session's directory: the files written before the first trial, and those that grow.
 
 `docs/session-format.md` describes the files.
 """
@@ -53,13 +53,13 @@ class Record:
     folder
         The directory.
     head
-        Of `HEAD`: who, what, with what.
+        Content of session.json: who takes part, what is shown, and with which equipment.
     protocol, plan
-        What is done, and in which order.
+        What the session shows, and in which order.
     told
-        The journal, when it was read.
+        Content of the journal at the time when it was read.
     procedure
-        What says which trial comes next.
+        Rule that chooses the next trial.
     """
 
     folder: Path
@@ -71,24 +71,24 @@ class Record:
 
     @property
     def centred(self) -> bool:
-        """Whether its traces have places of the array's centre; else they are its left column's."""
+        """Whether traces have places of the array's centre, and not of its left column."""
         return self.told.format >= _CENTRED_FROM
 
 
 def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -> None:
-    """Put a new session on the disk: whole, or not at all.
+    """Put a new session on the disk, either whole or not at all.
 
     Raises
     ------
     InputError
-        If there is something already, or no directory can be made there.
+        If the path exists already, or no directory can be made there.
     VbrailleError
-        If the disk does not take it.
+        If the disk does not take the session.
     """
     files = {
         PROTOCOL: protocol.text.encode(),
         PLAN: plan.to_json().encode(),
-        # A lone surrogate, of a file's name, is spelled as JSON does.
+        # A lone surrogate, which a file's name may have, becomes an escape of JSON.
         HEAD: (json.dumps(head, ensure_ascii=False, indent=2) + "\n").encode(
             "utf-8", "backslashreplace"
         ),
@@ -100,14 +100,16 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
 
 
 def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
-    """Journal of a session, up to what is damaged or torn; salvaged, what is whole after it too.
+    """Read the journal of a session, up to a damage or a torn end.
+
+    If it is salvaged, the events after a damage are read as well.
 
     Raises
     ------
     InputError
-        If it is no session, or one of a newer format.
+        If the directory holds no session, or one of a newer format.
     VbrailleError
-        If it cannot be read, or nothing of it is whole.
+        If the journal cannot be read, or its first line is damaged.
     """
     path = folder / journal.NAME
     try:
@@ -135,12 +137,12 @@ def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
 
 
 def whole_lines(folder: Path) -> bytes:
-    """Journal of a session without a torn end.
+    """Bytes of the journal of a session, without a torn end.
 
     Raises
     ------
     VbrailleError
-        If it cannot be read.
+        If the journal cannot be read.
     """
     try:
         content = (folder / journal.NAME).read_bytes()
@@ -150,12 +152,12 @@ def whole_lines(folder: Path) -> bytes:
 
 
 def read_file(folder: Path, name: str, told: JournalContents) -> bytes:
-    """One of `FILES`, as it was when the session began.
+    """Read one of `FILES`, and check that it is as it was when the session began.
 
     Raises
     ------
     VbrailleError
-        If it is missing, or not what it was.
+        If the file is missing or was changed.
     """
     path = folder / name
     try:
@@ -171,14 +173,14 @@ def read_file(folder: Path, name: str, told: JournalContents) -> bytes:
 
 
 def load(folder: Path, *, salvaged: bool = False) -> Record:
-    """Read a session's directory; of a damaged journal, what `read_journal` gives.
+    """Read a session's directory; `read_journal` says what is read of a damaged journal.
 
     Raises
     ------
     InputError
-        If it is no session, or one of a newer format.
+        If the directory holds no session, or one of a newer format.
     VbrailleError
-        If a file other than the journal is missing or not what it was.
+        If the journal cannot be used, or another file is missing or was changed.
     """
     told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
@@ -194,10 +196,10 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
 
 
 def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
-    """Trace of a session, to its last whole chunk.
+    """Read a trace of a session, up to its last whole chunk.
 
-    What makes it another than the journal tells of is damage too: that it is missing,
-    or shorter than it was when it was closed.
+    A trace also counts as damaged if it is missing, or does not have the length that the journal
+    tells.
     """
     path = folder / name
     try:
@@ -215,7 +217,7 @@ def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:
 
 
 def missed_tie(ties: Iterable[Tie], told: JournalContents) -> str | None:
-    """Say what the journal has lost that a trace was written after; None if it has all."""
+    """Say which events the journal has lost since a trace was written; None if it has all."""
     for number, crc in ties:
         if number > len(told.events):
             return (
@@ -231,12 +233,12 @@ def missed_tie(ties: Iterable[Tie], told: JournalContents) -> str | None:
 
 
 def check_end(folder: Path, told: JournalContents) -> None:
-    """See that a journal has not lost what its traces were written after.
+    """Check that a journal has all events that it had when its traces were written.
 
     Raises
     ------
     VbrailleError
-        If it has: then nothing may be added to it.
+        If some are missing: nothing may be added to the journal then.
     """
     for path in sorted(folder.glob("trace-*.gz")) if told.format > 1 else ():
         tie = read_last_tie(path)
@@ -248,7 +250,7 @@ def check_end(folder: Path, told: JournalContents) -> None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of all that has a part in what the actuators do."""
+    """Versions of all programs that affect what the actuators do."""
     return {
         "vbraille": __version__,
         "python": sys.version.split()[0],
@@ -258,7 +260,7 @@ def versions() -> dict[str, str]:
 
 
 def _no_journal(folder: Path, error: OSError) -> VbrailleError:
-    """Say why there is no journal to be read."""
+    """Make the error that says why there is no journal to be read."""
     try:
         names = {path.name for path in folder.iterdir()}
     except FileNotFoundError:
@@ -273,7 +275,7 @@ def _no_journal(folder: Path, error: OSError) -> VbrailleError:
 
 
 def _is_member(path: Path, trace: Trace) -> bool:
-    """Whether the torn end of a trace is whole: then its length is what is wrong."""
+    """Whether the torn end of a trace is a whole chunk, which only states a wrong length."""
     try:
         gzip.decompress(path.read_bytes()[-trace.torn_bytes :])
     except (OSError, EOFError, zlib.error):
@@ -282,7 +284,7 @@ def _is_member(path: Path, trace: Trace) -> bool:
 
 
 def _clear(partial: Path) -> None:
-    """Remove what is left of a session that was killed being born, and nothing else."""
+    """Remove the files of a session whose creation was interrupted, and nothing else."""
     for name in (*FILES, journal.NAME):
         (partial / name).unlink(missing_ok=True)
     partial.rmdir()

@@ -1,8 +1,8 @@
-"""The journal of a session: one event a line, each with a checksum that holds the one before.
+"""The journal of a session: one event on each line, with a checksum that covers the one before.
 
-What was said to be in is on the disk. A line that a crash cut short is the
-journal's torn tail; anything else that does not match is damage. Neither is
-mended here. `vbraille.sessions.record.events` has the kinds of events.
+Events of durable kinds are on the disk before anything is said about them. A last line that a
+crash cut short is called torn; any other line that does not match its checksum is damage. Neither
+is mended here. `vbraille.sessions.record.events` has the kinds of events.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ LINE = re.compile(rb'(\{.+),"crc":"([0-9a-f]{8})"\}', re.DOTALL)
 
 
 class Tie(NamedTuple):
-    """A line of the journal, as what was written after it names it.
+    """Name of a line of the journal, which a trace keeps to show that the line was there before.
 
     Parameters
     ----------
     number
-        Number of its event, from 1; 0 before there was one that was sure to be on the disk.
+        Number of the line's event, from 1; 0 if no event was sure to be on the disk yet.
     crc
-        Its checksum.
+        Checksum of the line.
     """
 
     number: int
@@ -50,24 +50,24 @@ class Tie(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class JournalContents:
-    """What a journal holds.
+    """The events of a journal, and the state that its bytes are in.
 
     Parameters
     ----------
     events
-        The events of its lines, up to the first line that is not whole.
+        Events of the lines up to the first one that is damaged or torn. If the journal was
+        salvaged, events of all lines that are whole; see `vbraille.sessions.record.salvage`.
     good_bytes
-        Length of those lines.
+        Length of the lines up to the first one that is damaged or torn.
     crcs
-        Checksum of each of them.
+        Checksums of those lines.
     torn
-        A last line without an end, as a crash leaves it.
+        Last line without a line break, as a crash leaves it.
     damage
-        What is wrong with the first line that has an end and is not whole, or that has an event
-        which there is not; None if nothing is.
+        What is wrong with the first damaged line, which does not match its checksum or has an
+        event that is not known; None if no line is damaged.
     bad
-        Numbers of all such lines, if it was salvaged; its events are then those of all others,
-        `vbraille.sessions.record.salvage`.
+        Numbers of all damaged lines, if the journal was salvaged.
     """
 
     events: list[Event]
@@ -79,32 +79,32 @@ class JournalContents:
 
     @property
     def crc(self) -> int:
-        """Checksum of the last line that is whole."""
+        """Checksum of the last line before the first damaged or torn one; 0 if there is none."""
         return self.crcs[-1] if self.crcs else 0
 
     @property
     def session(self) -> Session:
-        """The first event of all, which every journal of a session has."""
+        """First event of the journal, which says what session it is."""
         first = self.events[0]
         assert isinstance(first, Session), "a journal that is no session's is refused"
         return first
 
     @property
     def format(self) -> int:
-        """Format that the session began in, which it is gone on with in."""
+        """Format that the session began in, and keeps when it is resumed."""
         return self.session.format
 
 
 def encode(event: Event, crc: int) -> tuple[bytes, int]:
-    """Line of an event after one with that checksum, and its own checksum."""
+    """Line for an event, and its checksum, given the checksum of the line before."""
     text = json.dumps(to_json(event), ensure_ascii=False, separators=(",", ":"))[:-1]
-    body = text.encode("utf-8", "backslashreplace")  # as JSON spells a lone surrogate too
+    body = text.encode("utf-8", "backslashreplace")  # JSON has the same escape for a lone surrogate
     crc = crc32(body, crc)
     return b'%s,"crc":"%08x"}\n' % (body, crc), crc
 
 
 def decode(journal: bytes) -> JournalContents:
-    """Read the events of a journal, as far as it is whole and all of them are known."""
+    """Read the events of a journal, up to the first line that is damaged or torn."""
     events: list[Event] = []
     crcs: list[int] = []
     good = crc = 0
@@ -124,25 +124,25 @@ def decode(journal: bytes) -> JournalContents:
     tail = journal[good:]
     found = LINE.match(tail)
     if found is not None and found.end() < len(tail) and crc32(found[1], crc) == int(found[2], 16):
-        # No crash leaves that: the line is whole, and its line break is something else.
+        # No crash leaves this: the line is whole, but another byte stands for its line break.
         damage = f"line {len(events) + 1} does not end where it should"
         return JournalContents(events, good, crcs, b"", damage)
     return JournalContents(events, good, crcs, tail, None)
 
 
 def sum_of(journal: bytes) -> str:
-    """Say how many lines a journal has, and their SHA-256, for people to keep."""
+    """Number of events and SHA-256 of a journal, as a text for people to keep."""
     lines = journal.count(b"\n")
     return f"{lines} events, SHA-256 {sha256(journal).hexdigest()}"
 
 
 def sum_of_torn(torn: bytes) -> dict[str, Any]:
-    """Length and checksum of what was set aside of a journal, as a run tells of it."""
+    """Length and checksum of `journal.torn`, in the form that a run's event has."""
     return {"bytes": len(torn), "crc": f"{crc32(torn):08x}"}
 
 
 class Journal:
-    """A session's journal, open to be added to, by nobody else meanwhile. A context manager.
+    """A session's journal, open for adding events, and locked meanwhile. It is a context manager.
 
     Parameters
     ----------
@@ -152,16 +152,16 @@ class Journal:
     Attributes
     ----------
     told : JournalContents
-        What was in it when it was opened.
+        Content of the journal when it was opened.
     durable : Tie
-        The last event of this run that is sure to be on the disk.
+        Last event of this run that is sure to be on the disk.
 
     Raises
     ------
     InputError
-        If it is open elsewhere, or may not be written.
+        If the journal is open elsewhere, or may not be written.
     VbrailleError
-        If it is damaged.
+        If the journal is damaged.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -188,12 +188,12 @@ class Journal:
         self._length = self.told.good_bytes + len(self.told.torn)
 
     def torn_file(self) -> dict[str, Any]:
-        """Length and checksum of all that was ever set aside; empty if nothing was.
+        """Length and checksum of `journal.torn`; empty if that file does not exist.
 
         Raises
         ------
         VbrailleError
-            If it cannot be read.
+            If the file cannot be read.
         """
         path = self._path.parent / TORN
         try:
@@ -202,12 +202,12 @@ class Journal:
             raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
 
     def set_torn_aside(self) -> int:
-        """Move a torn tail to a file of its own; its length.
+        """Move a torn last line to `journal.torn`, and return its length.
 
         Raises
         ------
         VbrailleError
-            If the disk does not take it: the tail is then where it was.
+            If the disk does not take the line, which then stays where it was.
         """
         torn = self.told.torn
         if not torn:
@@ -229,19 +229,19 @@ class Journal:
     def append(self, event: Event) -> Event:
         """Add an event, and return it with its number and its times.
 
-        It is on the disk when this returns, if its kind is durable.
+        If its kind is durable, the event is on the disk when this returns.
 
         Raises
         ------
         VbrailleError
-            If the disk does not take it: it is then not in.
+            If the disk does not take the event, which then is not in the journal.
         """
         numbered = _numbered(event, self._count + 1, self.told.format)
         line, crc = encode(numbered, self._crc)
         try:
             written = os.write(self._file, line)
             if written < len(line):
-                os.write(self._file, line[written:])  # says why not
+                os.write(self._file, line[written:])  # a second try tells the reason
             if event.durable:
                 os.fsync(self._file)
         except OSError as error:
@@ -258,16 +258,16 @@ class Journal:
         return numbered
 
     def close(self) -> None:
-        """Let others open it; further calls do nothing."""
+        """Close the journal, so that others can open it; further calls do nothing."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1
 
     def _take_back(self) -> None:
-        """Leave nothing of an event that is not in."""
+        """Remove the part of an event that was written before the disk failed."""
         try:
             os.ftruncate(self._file, self._length)
-        except OSError:  # it is a torn end now, and nothing may come after it
+        except OSError:  # the part is a torn line now, which nothing may follow
             self.close()
 
     def _lock(self) -> None:
@@ -286,7 +286,7 @@ class Journal:
 
 
 def first_lines(session: Session, *events: Event) -> bytes:
-    """Write a journal that begins with these events."""
+    """Bytes of a new journal that has these events."""
     lines, crc = [], 0
     for number, event in enumerate((session, *events), 1):
         line, crc = encode(_numbered(event, number, session.format), crc)
@@ -295,16 +295,16 @@ def first_lines(session: Session, *events: Event) -> bytes:
 
 
 def _numbered(event: Event, number: int, form: int) -> Event:
-    """Event with its number, and the time by the clocks that a format has."""
+    """Event with its number, and the present time by the clocks that a format uses."""
     machine_s = up_s() if form > 1 else None
     return msgspec.structs.replace(event, n=number, wall=_now(), up_s=machine_s)
 
 
 def up_s() -> float:
-    """Seconds since the machine was started, asleep or not: a clock that nobody sets."""
+    """Seconds since the machine was started, time asleep included; nobody can set this clock."""
     return round(time.clock_gettime(time.CLOCK_BOOTTIME), 6)
 
 
 def _now() -> str:
-    """Wall-clock time, UTC."""
+    """Present time by the wall clock, UTC."""
     return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

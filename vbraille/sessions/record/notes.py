@@ -1,4 +1,4 @@
-"""What the experimenter wrote down, each note with the trials that it stands between."""
+"""Notes of the experimenter, each with the trials before and after it."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ class PlacedNote:
     Parameters
     ----------
     text
-        As it was typed.
+        Text of the note, as it was typed.
     event
         Number of its event in the journal.
     t_s
-        When, in seconds that the session had run for.
+        Time of the note, in seconds that the session had run for.
     before
-        The trial that was shown last before it; 0 if none was.
+        Number of the trial that was shown last before the note; 0 if none was.
     trial
-        The trial that was open; 0 if none was.
+        Number of the trial that was open when the note was typed; 0 if none was.
     after
-        The trial that was shown next; 0 if none was.
+        Number of the trial that was shown next after the note; 0 if none was.
     practice
-        Whether it was typed in a trial of practice.
+        Whether the note was typed in a practice trial.
     """
 
     text: str
@@ -45,9 +45,9 @@ class PlacedNote:
 
 
 def read_notes(events: Iterable[Event]) -> list[PlacedNote]:
-    """Notes of a session, in their order."""
+    """Notes of a session, in order."""
     notes: list[PlacedNote] = []
-    before, waiting = 0, 0  # how many of the notes have their next trial still to come
+    before, waiting = 0, 0  # waiting: number of notes whose next trial is still to come
     for event in events:
         trial = event.trial if isinstance(event, AnyTime) and not event.practice else 0
         if isinstance(event, Note):
@@ -60,7 +60,7 @@ def read_notes(events: Iterable[Event]) -> list[PlacedNote]:
         elif isinstance(event, Presented) and trial:
             for n, note in enumerate(notes) if waiting else ():
                 if not note.after:
-                    # Of a trial that is shown again, the note is in it.
+                    # Between two attempts at one trial, a note counts as typed in that trial.
                     again = trial if note.before == trial else 0
                     notes[n] = replace(note, trial=again, after=trial)
             before, waiting = trial, 0
@@ -68,5 +68,5 @@ def read_notes(events: Iterable[Event]) -> list[PlacedNote]:
 
 
 def texts(notes: Iterable[PlacedNote]) -> str:
-    """Write notes in one cell of a table."""
+    """Text of notes for one cell of a table."""
     return "; ".join(note.text for note in notes)

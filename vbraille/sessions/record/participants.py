@@ -1,4 +1,4 @@
-"""Pseudonyms that may be one person's: P7, p7, P07 and P-07."""
+"""Pseudonyms that may mean one person, such as P7, p7, P07 and P-07."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
 
 def label_of(pseudonym: str) -> str:
-    """Pseudonym, or another name, without what BIDS does not take in a label."""
+    """Label that BIDS takes for a pseudonym or other name: its letters and digits alone."""
     return re.sub(r"[^A-Za-z0-9]", "", pseudonym)
 
 
 def alike(one: str, other: str) -> bool:
-    """Whether two pseudonyms differ in nothing but case, zeros, or what a label leaves out."""
+    """Whether two pseudonyms differ only in case, leading zeros, or signs that labels lack."""
     return _plain(one) == _plain(other) or label_of(one).lower() == label_of(other).lower()
 
 
 def participants_in(room: Path) -> dict[str, str]:
-    """Participants whose sessions are in a directory, each with the name of one."""
+    """Participants whose sessions are in a directory, each with the name of one session."""
     found: dict[str, str] = {}
     try:
         heads = sorted(room.glob(f"*/{HEAD}"))
@@ -34,18 +34,18 @@ def participants_in(room: Path) -> dict[str, str]:
             told = json.loads(head.read_text("utf-8"))
             found.setdefault(str(told["participant"]), head.parent.name)
         except (OSError, ValueError, KeyError, TypeError):
-            continue  # of no session that can be read; who uses it is told
+            continue  # this is no readable session; whoever uses it will be told
     return found
 
 
 def nearly_same(room: Path, participant: str) -> tuple[str, str] | None:
-    """Another participant of a directory whose pseudonym is nearly that of a new one.
+    """Another participant in a directory whose pseudonym is similar to a new one.
 
     Returns
     -------
     tuple[str, str] or None
-        The pseudonym, and the name of a session of theirs; None if there is none, or the
-        participant is known there.
+        Pseudonym of the other participant, and the name of one of their sessions. None if there
+        is no such participant, or the new pseudonym is already in the directory itself.
     """
     known = participants_in(room)
     if participant in known:

@@ -1,4 +1,4 @@
-"""How far a session is: what its events come to, trial by trial."""
+"""How far a session has come, trial by trial, according to its events."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ class Showing:
     Parameters
     ----------
     attempt
-        Which attempt of the trial it was, from 1.
+        Number of the attempt at the trial, from 1.
     stimulus
-        0, or 1 for the second of two to compare.
+        Index of the stimulus in the trial: 0, or 1 for the second of two to compare.
     line
-        Number of it in the trace.
+        Number of the showing in the trace.
     trace
-        File of the trace; None on paper.
+        Name of the trace file; None on paper.
     tuning
-        What the experimenter had set, instead of the stimulus's own.
+        Contrast or texture that the experimenter had set instead of the stimulus's own.
     shown
-        The stimulus as the journal has it; empty before format 4.
+        The stimulus as the journal describes it; empty before format 4.
     """
 
     attempt: int
@@ -50,12 +50,12 @@ class Showing:
     shown: dict[str, Any]
 
     def stimulus_of(self, trial: Trial) -> Stimulus:
-        """What was shown: as the journal has it, and before format 4 as the trial was planned.
+        """Stimulus that was shown, from the journal, or from the planned trial before format 4.
 
         Raises
         ------
         VbrailleError
-            If what the journal has is no stimulus.
+            If the journal's description is not that of a stimulus.
         """
         if not self.shown:
             return trial.stimuli[self.stimulus]
@@ -70,36 +70,36 @@ class Showing:
 
 @dataclass(slots=True)
 class TrialRecord:
-    """What is known of a trial.
+    """What is known about a trial.
 
     Parameters
     ----------
     trial
         The trial as it was planned.
     attempts
-        How often it was begun.
+        Number of times that the trial was begun.
     answer
-        The one that counts, None before there is one; `vbraille.braille.spelling` says
-        how it is written.
+        Answer that counts, None before there is one; `vbraille.braille.spelling` says how it is
+        written.
     first_answer
-        The one before an undo.
+        First answer, if it was taken back; else None.
     showings
-        All of them, in order.
+        All showings of the trial's stimuli, in order.
     faults
-        What went wrong with the device while it ran.
+        What went wrong with the device during the trial, a sentence for each fault.
     t_s
-        When, in seconds of the session, things last happened, by the kind of the event: presented,
-        cue, contact, read, answer, warning; corrected for an answer after an undo.
+        Seconds of the session at which events of each kind happened last, by the name of the kind,
+        such as cue or answer. An answer after an undo is under corrected.
     wall
-        The same, by the wall clock.
+        Times of the same events by the wall clock.
     paused_s
-        How long it was paused since the cue.
+        Seconds that the trial was paused after its start signal.
     early
-        Whether it was answered before the hand had been at its end.
+        Whether the answer came before the hand had been at the end of the string.
     source
-        Where the answer came from: typed, simulated:0.2, a file's name.
+        Source of the answer: typed, simulated:0.2, or a file's name.
     lost
-        Numbers of events that are not whole in a journal that was salvaged, and may be of it.
+        Numbers of the lost events of a salvaged journal that may belong to the trial.
     """
 
     trial: Trial
@@ -122,12 +122,12 @@ class TrialRecord:
 
     @property
     def tuning(self) -> dict[str, float]:
-        """What the experimenter had set in the end."""
+        """Contrast or texture that the experimenter had set at the last showing."""
         return self.showings[-1].tuning if self.showings else {}
 
     @property
     def shown(self) -> Trial:
-        """The trial with what was shown in its last attempt."""
+        """The trial with the stimuli that were shown in its last attempt."""
         stimuli = list(self.trial.stimuli)
         for showing in self.last_attempt:
             stimuli[showing.stimulus] = showing.stimulus_of(self.trial)
@@ -140,41 +140,41 @@ class Progress:
     Parameters
     ----------
     plan
-        What is to be done.
+        Plan of the session.
     events
-        The events of its journal.
+        Events of the session's journal.
     procedure
-        What says which trial comes next; without one, the order of the plan does.
+        Rule that chooses the next trial; None for the order of the plan.
 
     Attributes
     ----------
     history : list[Answered]
-        The trials that were answered, in their order, practice left out.
+        Trials that were answered, in order, practice left out.
     trials : dict[int, TrialRecord]
-        What is known of the trials, by their numbers: of all that are planned, or if the procedure
-        goes by the answers, of all that it has asked for.
+        What is known about each trial, by its number: about all that are planned, or about all
+        that were chosen so far if the procedure goes by the answers.
     practice : dict[int, TrialRecord]
-        The same of the practice trials.
+        What is known about each practice trial, by its number.
     begun : bool
         Whether practice is over.
     correcting : Trial or None
-        The trial whose answer was undone, and has not been given again.
+        Trial whose answer was taken back, and was not given anew so far.
     broken : int
-        Trials that were done when the last break was taken.
+        Number of trials that were answered before the last break.
     tuning : dict[str, float]
-        What the experimenter has set.
+        Contrast or texture that the experimenter has set.
     runs : list[events.Run]
-        Each time the session was run, or its engine started again.
+        Events with which the runs of the session began.
     line : int
         Largest line number used so far.
     script_lines : dict[str, int]
-        Lines used so far of each answers file, by its name.
+        Number of the last line used so far of each answers file, by the file's name.
     t_s : float
         Seconds that the session has run for.
     ended : bool
-        Whether it is over: all trials done, or its time.
+        Whether the session has ended for good.
     torn_bytes : int
-        Length of what was set aside of the journal, in all.
+        Length of all torn lines that were moved out of the journal.
     """
 
     def __init__(
@@ -214,35 +214,35 @@ class Progress:
 
     @property
     def last_answered(self) -> Trial | None:
-        """The trial answered last, which an undo is about; practice cannot be undone."""
+        """Trial answered last, whose answer an undo takes back; practice cannot be undone."""
         return self.history[-1].trial if self.history else None
 
     @property
     def done(self) -> int:
-        """Trials that have an answer, practice left out."""
+        """Number of trials that have an answer, practice left out."""
         return len(self.history)
 
     @property
     def planned(self) -> int | None:
-        """How many trials there are in all, practice left out; None if the answers say it."""
+        """Number of trials in all, practice left out; None if it depends on the answers."""
         trials = self.procedure.trials
         return None if trials is None else len(trials)
 
     def of_all(self, number: int) -> str:
-        """Say a number of trials, and of how many, if that is known."""
+        """Text for a number of trials, with the number of all trials if that is known."""
         return f"{number}" if self.planned is None else f"{number} of {self.planned}"
 
     def told(self, trial: Trial) -> TrialRecord:
-        """What is known of a trial."""
+        """What is known about a trial, practice or not."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
     def take(self, event: Event) -> None:
-        """Go on by an event.
+        """Change the state as an event says.
 
         Raises
         ------
         VbrailleError
-            If it is of a trial that there is not.
+            If the event belongs to a trial that does not exist.
         """
         self.t_s = max(self.t_s, event.t_s)
         if event.script_line:
@@ -262,10 +262,10 @@ class Progress:
             self._trial = record.trial.number
 
     def _ask(self) -> Trial | None:
-        """Ask which trial comes after those that were answered."""
+        """Ask the procedure which trial comes after those that were answered."""
         trial = self.procedure.next(self.history)
         if self.procedure.trials is None:
-            self.trials.pop(self.done + 1, None)  # what came before an answer was corrected
+            self.trials.pop(self.done + 1, None)  # the choice made before an answer was corrected
             if trial is not None:
                 self.trials[trial.number] = TrialRecord(trial)
         return trial
@@ -281,7 +281,7 @@ class Progress:
         return record
 
     def _mark_lost(self, trial: int) -> None:
-        """Mark the trials that events before one of this trial may be of."""
+        """Mark all trials that the events lost before an event of this trial may belong to."""
         first, last = sorted((self._trial or trial, trial))
         for number in range(first, last + 1) if self._lost else ():
             record = self.trials[number]
@@ -289,7 +289,7 @@ class Progress:
         self._lost = []
 
     def _take_between(self, event: Event) -> None:
-        """Take an event that is of no trial."""
+        """Change the state by an event outside of trials."""
         match event:
             case events.Run():
                 self.runs.append(event)
@@ -314,7 +314,7 @@ class Progress:
                     self.trials[self._trial].lost.append(event.n)
 
     def _take_in(self, event: Event, record: TrialRecord) -> None:
-        """Take an event that is of a trial."""
+        """Change the state by an event in a trial."""
         match event:
             case events.Presented():
                 self._take_presented(event, record)
@@ -358,10 +358,10 @@ class Progress:
             self.correcting = None
             self.history[-1] = answered
             if self._next is None or not self.told(self._next).attempts:
-                self._next = self._ask()  # what was shown already stays, whatever would be now
+                self._next = self._ask()  # a trial that was shown already stays
             return
         record.early = event.early
-        self._end_pause(record, event)  # what is not gone on with is over all the same
+        self._end_pause(record, event)  # an answer ends a pause
         if not event.practice:
             self.history.append(answered)
             self._next = self._ask()

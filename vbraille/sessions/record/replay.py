@@ -1,7 +1,7 @@
-"""What the actuators did, made again from the traces: bit for bit what was sent.
+"""Frames that were sent to the actuators, made again from the traces, bit for bit.
 
-A record of a tick tells where the array was, which picture was under it, and
-how far a change had faded in; so each frame follows from the one before.
+For each tick, a trace tells where the array was, which picture was under it, and how far a change
+had faded in. So each frame follows from the one before.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _RESTING = int(Flag.RESTING)
 
 
 class Replay:
-    """Frames of one trace, from its first tick on.
+    """Maker of the frames of one trace, from its first tick on.
 
     Parameters
     ----------
     picture_of
-        The picture of a line number.
+        Function that gives the picture of a line number.
     display
-        The hardware, which is at rest before the first tick.
+        Display that the frames are for; it is at rest before the first tick.
     """
 
     def __init__(self, picture_of: Callable[[int], Program], display: Display) -> None:
@@ -57,13 +57,14 @@ class Replay:
         Parameters
         ----------
         ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
-            Those after the ones before, as they were written; the pictures are for their places.
+            Ticks that follow those of the last call, as they were written. The pictures are for
+            the places that these ticks have.
 
         Returns
         -------
         float64[n, rows, columns]
-            Deflections, 0 … 1. Where ticks are missing from the trace, what a fade had come from
-            is not known, and its frames are NaN.
+            Deflections, 0 … 1. Frames are NaN if they are part of a fade whose beginning is
+            missing from the trace.
         """
         frames = np.zeros((ticks.size, *self._shape))
         ints = np.zeros((ticks.size, len(INTS)), np.int64)
@@ -98,16 +99,16 @@ class Replay:
 
 
 def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.float64]]]:
-    """What the actuators did in a session.
+    """Frames of all ticks of a session, stretch by stretch.
 
     Yields
     ------
     line : int
-        Number of what was shown, as the journal has it; 0 before the first of a run.
+        Number of the showing, as the journal has it; 0 before the first of a run.
     ticks : `vbraille.sessions.record.traces.TRACE`[n] or `LEFT_TRACE`[n]
-        Of a stretch of that line, as they were written.
+        Ticks of a stretch that has that number, as they were written.
     deflections : float64[n, rows, columns]
-        Their frames, 0 … 1.
+        Frames of these ticks, 0 … 1.
 
     Raises
     ------
@@ -128,7 +129,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
 
 
 class _Pictures:
-    """The pictures of a session, by line number."""
+    """The pictures that a session has shown, by their line numbers."""
 
     def __init__(self, record: Record, progress: Progress) -> None:
         self._protocol = record.protocol

@@ -1,8 +1,8 @@
-"""A damaged journal, line by line: each that verifies by its neighbour's checksum is kept.
+"""Salvage of a damaged journal: every line that can be verified is kept.
 
-A line's checksum holds the one before, which that line has at its end. So a damaged line is
-known by itself, and so is each one after it: by the checksum that is written in the line before,
-or by the one that the line before should have, if only its checksum was hit.
+A line's checksum is begun with the checksum of the line before. So each line can be verified
+with the line before it alone: by the checksum that is written there; or, if that checksum was
+damaged, by the one that should be there.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 def salvage(content: bytes) -> JournalContents:
-    """Read the events of a journal, as far as they are whole and known, damaged or not.
+    """Read all events of a journal that are whole and known, even after a damage.
 
-    In the place of each event that is not, there is a `Lost` with its number.
+    Each other event is replaced by a `Lost` that has its number.
     """
     told = decode(content)
     if told.damage is None:
@@ -32,7 +32,7 @@ def salvage(content: bytes) -> JournalContents:
     whole, found = _read_lines(lines)
     events: list[Event] = []
     if lines and found[0] is None and (first := _first(lines[0])):
-        # It is not sure itself: but who has the files that it has the checksums of, knows.
+        # No line before it verifies the first event, but the files whose checksums it has do.
         events.append(first)
     for event in found:
         if event is not None:
@@ -49,7 +49,7 @@ def salvage(content: bytes) -> JournalContents:
 
 
 def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[Event | None]]:
-    """Whether each line is whole; and its event, which is kept if only its checksum was hit."""
+    """Whether each line is whole; and its event, kept even if its checksum alone is damaged."""
     whole: list[bool] = []
     events: list[Event | None] = []
     written, reckoned = {0}, set[int]()  # checksums that the line before may have
@@ -68,13 +68,13 @@ def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[Event | None]]:
         whole.append(bool(by) and event is not None)
         events.append(event if by else None)
         if by and not by & written:
-            events[-2] = before  # its checksum alone was hit
+            events[-2] = before  # only the checksum of the line before is damaged
         written, reckoned, before = {stored}, set(sums.values()) - {stored}, event
     return whole, events
 
 
 def _read(line: bytes) -> Event | None:
-    """Event that a line tells of; None if there is no such event."""
+    """Event of a line; None if the line has no event that is known."""
     try:
         return read(line)
     except ValueError:
@@ -82,14 +82,14 @@ def _read(line: bytes) -> Event | None:
 
 
 def _first(line: bytes) -> Session | None:
-    """First event, if it can be read."""
+    """First event of a journal; None if it cannot be read."""
     try:
         return msgspec.structs.replace(msgspec.convert(json.loads(line), Session), n=1)
-    except ValueError:  # msgspec's is one too
+    except ValueError:  # msgspec's errors are ValueErrors too
         return None
 
 
 def _lost(events: list[Event], last: int, near: Event) -> list[Event]:
-    """Events that are lost, from after those that there are to the one with that number."""
+    """Stand-ins for the lost events that come after the given ones, up to a number."""
     first = events[-1].n + 1 if events else 1
     return [Lost(n=n, t_s=near.t_s, wall=near.wall) for n in range(first, last + 1)]

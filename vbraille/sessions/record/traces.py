@@ -1,12 +1,12 @@
-"""Traces: every tick of a run of the engine, appended as it happens.
+"""Traces: files with every tick of a run of the engine, written while it runs.
 
-A trace is a chain of gzip members, each with the ticks of some part of a
-second: records of `TRACE`, little endian, or in sessions of formats 1 and 2 of
-`LEFT_TRACE`, which have the place of the array's left column. A member's header has an extra field
-with its length and its checksum, so that a trace can be read to the last whole
-one after a crash, and no bit of it flips unseen; gzip itself reads it too. A
-second field names the last line of the journal that was on the disk by then, so
-that lines cannot be taken off the journal and others put there.
+A trace is a chain of gzip members, called chunks, each with the ticks of a second or less. The
+ticks are little-endian records of `TRACE`; in sessions of formats 1 and 2 they are records of
+`LEFT_TRACE`, which have the place of the array's left column. The header of a member has an extra
+field with the member's length and checksum. So a trace can be read up to the last whole member
+after a crash, and no flipped bit goes unseen; gzip can read the file as well. A second extra field
+names the last line of the journal that was on the disk at that time. So nobody can replace the
+journal's last lines unseen.
 """
 
 from __future__ import annotations
@@ -36,34 +36,35 @@ TRACE = np.dtype(
     [
         ("tick", "<i8"),  # number of the frame in its run, from 0
         ("time_ns", "<i8"),  # when the tick woke, by the host's monotonic clock
-        ("device_ns", "<i8"),  # of the sample, by the device's clock
+        ("device_ns", "<i8"),  # time of the sample, by the device's clock
         ("late", "<i8"),  # deadlines missed so far
-        ("line", "<i8"),  # number of what is under the hand; 0 before the first
+        ("line", "<i8"),  # number of the showing under the hand; 0 before the first
         ("part", "<i8"),  # which part of a picture that has several is under the array
-        ("flags", "<i8"),  # of `vbraille.engine.record.Flag`
-        ("x_mm", "<f8"),  # where the array is, a `vbraille.pose.Pose`; NaN before the first sample
+        ("flags", "<i8"),  # bits of `vbraille.engine.record.Flag`
+        ("x_mm", "<f8"),  # place of the array, a `vbraille.pose.Pose`; NaN before the first sample
         ("y_mm", "<f8"),
         ("theta_rad", "<f8"),
         ("vx_mm_s", "<f8"),  # velocity of the hand
         ("vy_mm_s", "<f8"),
         ("shown_s", "<f8"),  # the picture's own time since its start, if it moves by itself
-        ("share", "<f8"),  # how much of a change has faded in: 1 is all
+        ("share", "<f8"),  # how much of a change has faded in; 1 is all
     ]
 )
 LEFT_TRACE = np.dtype(
     [
         *((name, "<i8") for name in ("tick", "time_ns", "device_ns", "late", "line", "flags")),
-        ("x_mm", "<f8"),  # where the array's left column is; NaN before the first sample
-        ("speed_mm_s", "<f8"),  # to the right
+        ("x_mm", "<f8"),  # place of the array's left column; NaN before the first sample
+        ("speed_mm_s", "<f8"),  # velocity of the hand, to the right
         ("share", "<f8"),
     ]
 )
 CHUNK_TICKS = 1000
-_LEVEL = 1  # the fastest; higher ones gain little on counts
-# RFC 1952: no name, no time, level 1, Unix, extra fields. The first, of 8 bytes, has the length of
-# the member and the checksum of what comes after the field; it is called "vp" before records of
-# `TRACE`, and "vb" before those of `LEFT_TRACE`. Format 1 has no other. The second, "vj" of 8
-# bytes, has the tie to the journal: the number of a line, and its checksum.
+_LEVEL = 1  # level of gzip: the fastest, since higher ones hardly make counts shorter
+# A member begins as RFC 1952 says: no name, no time, level 1, Unix, extra fields. The first extra
+# field has 8 bytes: the length of the member, and the checksum of all that follows the field. It is
+# called "vp" if the records are of `TRACE`, and "vb" if they are of `LEFT_TRACE`. Format 1 has no
+# other field. The second field, "vj", has 8 bytes as well, which tie the member to the journal: the
+# number of a line, and its checksum.
 _START = bytes((0x1F, 0x8B, 8, 4, 0, 0, 0, 0, 4, 3))
 _TIE_FIELD = b"vj\x08\x00"
 _RECORDS = {b"vp\x08\x00": TRACE, b"vb\x08\x00": LEFT_TRACE}
@@ -73,31 +74,31 @@ _HEADS = _LOOSE | _TIED
 _HEAD_BYTES = len(_START) + 6
 _EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
-_SIZE = struct.Struct("<I")  # the last of a member: of what was deflated
+_SIZE = struct.Struct("<I")  # last field of a member: size of its content before it was deflated
 _MOST_THREADS = 4
-_WORTH_A_THREAD = 16  # members
+_WORTH_A_THREAD = 16  # number of members that are worth one more thread
 _AFTER_LENGTH = _HEAD_BYTES + _EXTRA.size
 _AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + _EXTRA.size
 
 
 class TraceWriter:
-    """Append ticks to a new trace.
+    """Writer that appends ticks to a new trace.
 
     Parameters
     ----------
     path
-        File of the trace, which must not exist yet.
+        Path of the trace, which must not exist yet.
     tie
-        Tells which line of the journal is on the disk; None in a session of format 1, whose
-        traces are not tied.
+        Function that tells which line of the journal is on the disk; None in a session of format
+        1, whose traces are not tied to the journal.
     left_mm
-        How far the array's left column is left of its centre, in a session of format 1 or 2,
-        whose traces have places of the left column; None in others.
+        Distance of the array's left column from its centre in a session of format 1 or 2, whose
+        traces have places of the left column; None in sessions of other formats.
 
     Raises
     ------
     VbrailleError
-        If the disk does not take it.
+        If the disk does not take the trace.
     """
 
     def __init__(
@@ -117,7 +118,7 @@ class TraceWriter:
             raise self._fault(error) from None
 
     def add(self, ticks: NDArray[np.void]) -> None:
-        """Take records of the engine's ring; what makes a chunk is written."""
+        """Take ticks from the engine, and write a chunk if there are enough of them."""
         if ticks.size:
             self._waiting.append(self._records(ticks))
             self._count += ticks.size
@@ -125,7 +126,7 @@ class TraceWriter:
             self.flush()
 
     def _records(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
-        """Records as the session's format has them."""
+        """Convert ticks of the engine to records of the session's format."""
         record = TRACE if self._left_mm is None else LEFT_TRACE
         made = np.empty(ticks.size, record)
         for name in record.names or ():
@@ -135,7 +136,7 @@ class TraceWriter:
         return made
 
     def flush(self) -> None:
-        """Write what is waiting."""
+        """Write the ticks that are waiting."""
         if self._count:
             self._write(np.concatenate(self._waiting).tobytes())
 
@@ -146,14 +147,14 @@ class TraceWriter:
         try:
             written = self._file.write(chunk)
             if written < len(chunk):
-                self._file.write(chunk[written:])  # says why not
+                self._file.write(chunk[written:])  # a second try tells the reason
         except OSError as error:
             raise self._fault(error) from None
         self._bytes += len(chunk)
         self._sum.update(chunk)
 
     def sync(self) -> None:
-        """Have all of it on the disk."""
+        """Write the ticks that are waiting, and make sure that the trace is on the disk."""
         self.flush()
         try:
             os.fsync(self._file.fileno())
@@ -161,7 +162,7 @@ class TraceWriter:
             raise self._fault(error) from None
 
     def close(self) -> None:
-        """Write what is waiting, tied to the journal as it is now; further calls do nothing."""
+        """Write waiting ticks and a last tie to the journal, and close; more calls do nothing."""
         if not self._file.closed:
             try:
                 self.flush()
@@ -171,7 +172,7 @@ class TraceWriter:
                 self._file.close()
 
     def closed(self) -> dict[str, Any]:
-        """What the journal tells of a trace that is closed: its name, its length, its SHA-256."""
+        """Fields of the journal's event for a closed trace: name, length and SHA-256."""
         told: dict[str, Any] = {"trace": self._path.name, "trace_bytes": self._bytes}
         return told if self._tie is None else {**told, "trace_sha256": self._sum.hexdigest()}
 
@@ -184,7 +185,7 @@ class TraceWriter:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """What is in a trace.
+    """Content of a trace.
 
     Parameters
     ----------
@@ -195,11 +196,11 @@ class Trace:
     damage
         What is wrong with a chunk that is not the last; None if nothing is.
     ties
-        The journal's lines that its whole chunks name, each once.
+        Lines of the journal that whole chunks name, each once.
     loose
-        Whether a whole chunk of it names none.
+        Whether a whole chunk names no line of the journal.
     later : `TRACE`[m] or `LEFT_TRACE`[m], …
-        Ticks of the whole chunks after the damage: one array after each place that is damaged.
+        Ticks of whole chunks after the damage, with one array after each damaged place.
     """
 
     ticks: NDArray[np.void]
@@ -211,7 +212,7 @@ class Trace:
 
 
 class _Member(NamedTuple):
-    """A whole gzip member: its length, what was deflated, the size of that in bytes, its tie."""
+    """A whole gzip member: kind of its records, length, deflated bytes, full size, and tie."""
 
     record: np.dtype
     length: int
@@ -221,12 +222,12 @@ class _Member(NamedTuple):
 
 
 def read_trace(path: Path) -> Trace:
-    """Read a trace, and what is whole of it after a damage too.
+    """Read a trace, including its whole chunks after a damage.
 
     Raises
     ------
     VbrailleError
-        If it cannot be read at all.
+        If the file cannot be read at all.
     """
     try:
         trace = path.read_bytes()
@@ -266,9 +267,9 @@ def read_trace(path: Path) -> Trace:
 
 
 def read_last_tie(path: Path) -> Tie | None:
-    """Line of the journal that the last chunk of a trace names; None if none does.
+    """Line of the journal that the last chunk of a trace names; None if it names none.
 
-    It looks at the heads of the chunks alone, which takes no time.
+    Only the headers of the chunks are read, which takes hardly any time.
     """
     last = None
     try:
@@ -289,19 +290,19 @@ def read_last_tie(path: Path) -> Tie | None:
 
 
 def posed(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.void]:
-    """Ticks of a trace of any format, with places of the array's centre.
+    """Convert ticks of a trace of any format to places of the array's centre.
 
     Parameters
     ----------
     ticks : `TRACE`[n] or `LEFT_TRACE`[n]
-        As they were written.
+        Ticks as they were written.
     left_mm
-        How far the array's left column is left of its centre.
+        Distance of the array's left column from its centre.
 
     Returns
     -------
     `TRACE`[n]
-        Where the hand was measured along x only, y and its velocity are 0.
+        Ticks with places of the centre; y and its velocity are 0 if only x was measured.
     """
     if ticks.dtype == TRACE:
         return ticks
@@ -315,15 +316,15 @@ def posed(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.void]:
 
 
 def left_places_mm(ticks: NDArray[np.void], left_mm: float) -> NDArray[np.float64]:
-    """Where the array's left column was, by a trace of any format; float64[n], a copy.
+    """Places of the array's left column by a trace of any format; float64[n], a copy.
 
-    These are to the bit the places that its frames were made of.
+    They are, to the bit, the places that the frames were made for.
     """
     return ticks["x_mm"] - (left_mm if ticks.dtype == TRACE else 0.0)
 
 
 def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
-    """One gzip member."""
+    """Make a gzip member of the bytes of a chunk."""
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
     body = squeeze.compress(chunk) + squeeze.flush() + _TRAILER.pack(zlib.crc32(chunk), len(chunk))
     if tie is not None:
@@ -334,12 +335,12 @@ def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
 
 
 def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
-    """The first gzip member; None if it is cut short.
+    """Read the gzip member that a trace begins with; None if it is cut short.
 
     Raises
     ------
     ValueError
-        If it is not what was written, or has other records than those before it.
+        If the member is damaged, or its records are not of the given kind.
     """
     start = bytes(trace[:_HEAD_BYTES])
     if not any(head.startswith(start) for head, kind in _HEADS.items() if record in (None, kind)):
@@ -360,7 +361,7 @@ def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
 
 
 def _next_start(trace: bytes, after: int) -> int:
-    """Where the next whole member begins; the trace's length if none does."""
+    """Offset at which the next whole member begins; the trace's length if there is none."""
     at = trace.find(_START, after)
     while at >= 0:
         with suppress(ValueError):
@@ -371,7 +372,7 @@ def _next_start(trace: bytes, after: int) -> int:
 
 
 def _inflate(members: list[_Member], record: np.dtype) -> NDArray[np.void]:
-    """Ticks of checked members, which have such records."""
+    """Ticks of members that were checked, as records of a kind."""
     stops = list(accumulate(member.size for member in members))
     ticks = np.empty((stops[-1] if stops else 0) // record.itemsize, record)
     room = ticks.view(np.uint8)
@@ -381,7 +382,7 @@ def _inflate(members: list[_Member], record: np.dtype) -> NDArray[np.void]:
             chunk = zlib.decompress(member.deflated, -zlib.MAX_WBITS, member.size)
             room[stop - member.size : stop] = np.frombuffer(chunk, np.uint8)
 
-    # zlib lets other threads run meanwhile; a short trace is not worth one.
+    # zlib lets other threads run while it works; a short trace is not worth a thread.
     threads = min(len(os.sched_getaffinity(0)), _MOST_THREADS, 1 + len(members) // _WORTH_A_THREAD)
     if threads == 1:
         fill(0)

@@ -1,4 +1,4 @@
-"""What the hand did in a trial, from its trace: Lévesque 2009, 3.4."""
+"""Way of the hand in a trial, and duration of its reading, by Lévesque 2009, 3.4."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class Duration:
     Parameters
     ----------
     start, end
-        First and last of the ticks that count.
+        Indices of the first and the last tick that count.
     seconds
-        Between the two.
+        Time between these two ticks.
     returned
         Whether the hand went back over the leftmost dot. If not, the end is the last tick at
         which an actuator was off its idle end.
@@ -41,22 +41,22 @@ class Duration:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
-    """The way of the array in the last attempt of a trial that the hand came to the string in.
+    """The way of the array in the last attempt at a trial, in which the hand came to the string.
 
     Parameters
     ----------
     left_mm : float64[n]
-        Where the array's left column was, NaN where that is not known; up to the answer.
+        Places of the array's left column up to the answer; NaN where one is not known.
     time_ns : int64[n]
-        When, by the host's clock.
+        Times of these places, by the host's clock.
     edges_mm
-        Left edges of the dot columns that are shown; one at least.
+        Left edges of the dot columns that are shown, at least one.
     dot_mm
         Width of a dot.
     span_mm
-        S, from the array's left column to its right one.
+        Distance S from the array's left column to its right one.
     duration
-        Which of the ticks count.
+        Duration of the reading, and the ticks that it is taken from.
     """
 
     left_mm: NDArray[np.float64]
@@ -68,7 +68,7 @@ class Trajectory:
 
 
 def edges_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> tuple[float, ...]:
-    """Left edges of the dot columns that are shown of a line of cells, from left to right."""
+    """Left edges of the dot columns that a display shows of a line of cells, left to right."""
     shown = mapping.shown_dots()
     return tuple(
         cell * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
@@ -79,7 +79,7 @@ def edges_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> tupl
 
 
 def first_edge_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> float | None:
-    """Left edge of the leftmost dot that is shown of a line of cells; None if none is."""
+    """Left edge of the leftmost dot that a display shows of some cells; None if it shows none."""
     return next(iter(edges_mm(masks, mapping, geometry)), None)
 
 
@@ -91,29 +91,30 @@ def duration(
     edge_mm: float,
     span_mm: float,
 ) -> Duration | None:
-    """Duration of a trial, by the rule of the thesis as it was made exact.
+    """Duration of a trial, by the rule of Lévesque 2009 in an exact form.
 
-    It starts with the first tick at which the rightmost actuator, S right of the
-    left column, is at the left edge of the leftmost dot or past it, and ends with the one at which
-    it has crossed that edge downwards for the last time.
+    It starts with the first tick at which the rightmost actuator, at a distance S from the left
+    column, is at the left edge of the leftmost dot or past it. It ends with the tick at which that
+    actuator has crossed the edge to the left for the last time.
 
     Parameters
     ----------
     left_mm : float64[n]
-        Where the array's left column was.
+        Places of the array's left column.
     time_ns : int64[n]
-        When.
+        Times of these places.
     moved
-        Gives bool[n], whether any actuator was off its idle end; asked only if it is needed.
+        Function that gives, as bool[n], whether any actuator was off its idle end; it is called
+        only if it is needed.
     edge_mm, span_mm
-        The edge, and S, from the left column to the right one.
+        Left edge of the leftmost dot, and the distance S.
 
     Returns
     -------
     Duration or None
-        None if the hand never came to the dot.
+        Duration of the reading; None if the hand never came to the dot.
     """
-    on = left_mm + span_mm >= edge_mm  # False where the place is not known
+    on = left_mm + span_mm >= edge_mm  # this is False where the place is not known
     if not on.any():
         return None
     start = int(np.argmax(on))

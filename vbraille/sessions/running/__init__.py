@@ -1,1 +1,1 @@
-"""A session being run: the console, the course of the trials, what is felt and heard."""
+"""Running of a session: the console, the course of the trials, stimuli and sounds."""

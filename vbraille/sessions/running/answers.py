@@ -1,4 +1,4 @@
-"""Where answers come from: an experimenter's lines, a file of them, or a simulated reader."""
+"""Sources of answers: lines typed by an experimenter, a file, or a simulated reader."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.simulated.observer import Parameter
     from vbraille.sessions.simulated.skin import Exploration
 
-PROGRAM = "program"  # what the record calls answers that a program has given
+PROGRAM = "program"  # name that the record has for answers given by a program
 MOST_NOISE = 100.0
 _WAIT_S = 1.0
-# What two stimuli are compared by, as the protocol and the observer call it.
+# Names of the parameters compared: the protocol's name, and the observer's.
 _COMPARED: dict[str, Parameter] = {"dot_width_mm": "dot width", "dot_gap_mm": "gap"}
 
 
@@ -40,11 +40,12 @@ class Answers(Protocol):
     Attributes
     ----------
     name : str
-        What the record calls them.
+        Name of the source in the record.
     typed : bool
-        Whether a person types them, who is waited for at breaks and may need practice.
+        Whether a person types the answers. The session waits for a person at breaks, and gives
+        practice.
     felt : bool
-        Whether they come from what is felt of a device.
+        Whether the answers come from what is felt of a device.
     """
 
     name: str
@@ -52,21 +53,21 @@ class Answers(Protocol):
     felt: bool
 
     def lines(self, wait_s: float) -> list[str] | None:
-        """Lines given since the last call, after waiting so long for one; None: no more come."""
+        """Lines given since the last call, waiting a while for one; None if no more will come."""
         ...
 
     def next(
         self, trial: Trial, attempt: int, felt: list[Exploration], /
     ) -> tuple[str, int] | None:
-        """Line given to a trial that has been read, and its number in its file, else 0.
+        """Answer to a trial that has been read: a line, and its number in a file, or 0.
 
-        None if there are no more.
+        None if there are no more lines.
         """
         ...
 
 
 class Typed:
-    """Lines of standard input, a terminal or not."""
+    """Source of answers that reads lines from standard input, which may be a terminal."""
 
     name = "typed"
     typed = True
@@ -88,7 +89,7 @@ class Typed:
             return []
         try:
             said = os.read(self._descriptor, 1 << 16)
-        except OSError:  # the terminal is gone
+        except OSError:  # the terminal was closed
             said = b""
         if not said:
             self._descriptor = None
@@ -98,7 +99,7 @@ class Typed:
         return [line.decode("utf-8", "replace") for line in lines]
 
     def line(self) -> str | None:
-        """Wait for the next line; None: no more come."""
+        """Wait for the next line; None if no more will come."""
         lines = self.lines(_WAIT_S)
         while lines == []:
             lines = self.lines(_WAIT_S)
@@ -110,26 +111,26 @@ class Typed:
     def next(
         self, _trial: Trial, _attempt: int, _felt: list[Exploration], /
     ) -> tuple[str, int] | None:
-        """Nothing: a person answers when it suits."""
+        """Return None: a person answers at any time, and is not asked."""
         return None
 
 
 class ScriptedAnswers:
-    """Lines of a file, the next one whenever a trial has been read.
+    """Source of answers that takes the next line of a file whenever a trial has been read.
 
-    Empty lines, and those that begin with #, are passed over.
+    Empty lines, and lines that begin with #, are left out.
 
     Parameters
     ----------
     path
-        The file, UTF-8.
+        Path of the file, which is UTF-8.
     after
-        Number of the last line that was used before.
+        Number of the last line that was used in earlier runs.
 
     Raises
     ------
     InputError
-        If it cannot be read.
+        If the file cannot be read.
     """
 
     typed = False
@@ -153,7 +154,7 @@ class ScriptedAnswers:
         self._given = 0
 
     def lines(self, wait_s: float) -> list[str]:
-        """Nothing, after a wait: lines are given to trials."""
+        """Wait, and return no lines: the lines of the file are given to trials."""
         time.sleep(wait_s)
         return []
 
@@ -168,26 +169,25 @@ class ScriptedAnswers:
 
 
 class Simulated:
-    """A simulated reader: it is given what was sent to the device, and nothing of the plan.
+    """A simulated reader, which is given the frames sent to the device, and nothing of the plan.
 
-    Like a person it has been told the protocol: where a string begins, how many
-    characters it has, which of them are asked for, what two stimuli are to be
-    compared by.
+    Like a person, it has been told the task: where a string begins, how many characters it has,
+    which of them are asked for, and by which length two stimuli are compared.
 
     Parameters
     ----------
     protocol
-        For that, and for the display's nominal distances.
+        Protocol of the session, which has the task and the display's nominal distances.
     plan
-        Of the session: its noise is drawn by protocol, participant and seed, together with
-        the trial's number and attempt.
+        Plan of the session. The noise is drawn by its protocol, participant and seed, and by the
+        number and the attempt of the trial.
     noise
-        Of the observer, `vbraille.sessions.simulated.observer`.
+        Noise of the reader, described at `vbraille.sessions.simulated.observer`.
 
     Raises
     ------
     InputError
-        If there is nothing to feel, or the noise is out of range.
+        If the protocol is for paper, or the noise is out of range.
     """
 
     typed = False
@@ -210,12 +210,12 @@ class Simulated:
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
 
     def lines(self, wait_s: float) -> list[str]:
-        """Nothing, after a wait: it answers when it has read."""
+        """Wait, and return no lines: the reader answers when it has read a trial."""
         time.sleep(wait_s)
         return []
 
     def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
-        """Answer to what was felt."""
+        """Answer to a trial, by what was felt of it."""
         drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
         random = np.random.default_rng(seed_of(drawn))
         if self._compared is not None:
@@ -228,17 +228,17 @@ class Simulated:
 
 
 def seed_of(text: str) -> int:
-    """Seed, 0 … 2⁶⁴ - 1, that a text comes to."""
+    """Seed, 0 … 2⁶⁴ - 1, made from a text by its SHA-256."""
     return int.from_bytes(sha256(text.encode()).digest()[:8], "big")
 
 
 def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> Answers:
-    """Source of a spec: ``typed``, ``simulated[:NOISE]``, or a file's name.
+    """Make the source of answers for a spec: ``typed``, ``simulated[:NOISE]``, or a file's name.
 
     Raises
     ------
     InputError
-        If it cannot be used.
+        If the spec, or the file that it names, cannot be used.
     """
     kind, _, noise = spec.partition(":")
     if kind == "typed" and not noise:

@@ -1,7 +1,7 @@
-"""The experimenter's console: one line an event, orders and answers a line each.
+"""The experimenter's console, at which each order, each answer and each event is one line.
 
-What is said of an answer is on the disk before. Nothing of a stimulus, nor
-whether an answer is right, is said before it, practice excepted.
+An answer is on the disk before the console confirms it. The console never says what a stimulus is
+before the answer, and says whether an answer is right in practice only.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ if TYPE_CHECKING:
 
 
 class Console:
-    """Run a session to its end, or until it is stopped.
+    """Console at which a session runs to its end, or until it is stopped.
 
     Parameters
     ----------
     course
-        What comes after what.
+        Course of the session, which chooses what comes next.
     answers
-        Where lines come from.
+        Source of the lines.
     say
-        Where to say things, one thing a call.
+        Function that is called with each sentence for the experimenter.
     real
-        Whether time is the machine's, which is then waited for.
+        Whether the session runs in real time, so that it has to wait.
 
     Raises
     ------
     VbrailleError
-        If the device, or the disk, fails for good.
+        If the device or the disk fails and does not recover.
     """
 
     def __init__(
@@ -53,10 +53,10 @@ class Console:
         self._answers = answers
         self._say = say
         self._wait_s = POLL_S if real else 0.0
-        self._early = ()  # the trial, its attempt, and the answer to it that was asked about
+        self._early = ()  # the trial, attempt and answer that were asked about
 
     def run(self) -> None:
-        """Go on from where the progress is."""
+        """Run the session from where it has come to."""
         course = self._course
         if self._progress.correcting is not None:
             self._say(f"undo: {course.name(self._progress.correcting)}; type its answer")
@@ -74,7 +74,7 @@ class Console:
                 self._leave()
                 return
             if lines:
-                course.look()  # what was felt up to them counts before they do
+                course.look()  # what was felt before these lines counts first
             for line in lines:
                 if course.phase is not Phase.OVER:
                     self.take(line)
@@ -83,7 +83,7 @@ class Console:
                 self._ask()
 
     def _suspend(self, suspension: Suspension) -> None:
-        """Stop the process, in a pause; it goes on by Enter, if there is somebody to press it."""
+        """Pause and stop the process. Afterwards Enter ends the pause, if somebody types."""
         paused = self._course.paused
         if not paused:
             self.pause()
@@ -92,12 +92,14 @@ class Console:
             self.go_on()
 
     def take(self, line: str, number: int = 0) -> None:
-        """Do what a line says: an order, an answer, or Enter.
+        """Do what a line says, which is an order, an answer, or empty for Enter.
 
         Parameters
         ----------
+        line
+            The line, without its line break.
         number
-            Of the line in its file, which the journal keeps; 0 if it is in none.
+            Number of the line in its file, which the journal keeps; 0 if it is in no file.
 
         Raises
         ------
@@ -116,10 +118,10 @@ class Console:
             order.handler(self, rest)
 
     def _ask(self) -> None:
-        """Ask whoever does not type, where somebody who types would be waited for."""
+        """Ask a source that does not type for a line, where a person would be waited for."""
         course, correcting = self._course, self._progress.correcting
         if course.display is None and not correcting and not course.read:
-            course.press()  # a file reads paper in no time
+            course.press()  # answers that are not typed take no time to read paper
         last = course.phase is Phase.LAST
         if not (correcting or course.paused or course.read or last):
             return
@@ -137,7 +139,7 @@ class Console:
             self._leave()
 
     def _leave(self) -> None:
-        """Nobody says any more what to do."""
+        """End or stop the session, since no more lines will come."""
         if self._course.phase is Phase.LAST and self._progress.correcting is None:
             self._course.end("all trials are done")
         else:
@@ -149,7 +151,7 @@ class Console:
         return say_cells(answer, self._course.protocol.keys)
 
     def _tell(self, trial: Trial, answer: str) -> None:
-        """In practice: what it was."""
+        """Say what a practice trial has shown."""
         if len(trial.stimuli) == 2:
             values = " and ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
             self._say(f"practice: they were {values}")
@@ -157,7 +159,7 @@ class Console:
             verdict = "right" if answer == trial.presented else "wrong"
             self._say(f"practice: {verdict}, it was {self._spoken(trial.presented)}")
 
-    # What the orders do
+    # The methods from here on do the orders.
 
     def answer(self, line: str) -> None:
         """Take an answer to the open trial, or to the one that was taken back."""
@@ -191,13 +193,13 @@ class Console:
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
         if trial.practice:
             self._tell(trial, answer)
-        # Where the next trial goes by the answers, a corrected one may be followed by one more.
+        # If the next trial depends on the answers, a corrected answer may lead to one more trial.
         if correcting is None or course.trial is None or course.phase is Phase.LAST:
             course.paused = False
             course.next()
 
     def _asks_whether(self, trial: Trial, answer: str) -> bool:
-        """Ask about an answer that comes before the trial was read, once; whoever is there to."""
+        """Ask once about an answer that was typed before the trial was read; True if it asks."""
         told = self._progress.told(trial)
         early = trial.practice, trial.number, told.attempts, answer
         if not self._answers.typed or early == self._early:
@@ -231,7 +233,7 @@ class Console:
         self._course.again()
 
     def note(self, text: str) -> None:
-        """Write something down."""
+        """Write a note into the record."""
         if not text:
             self._say("note: type what is to be noted after it")
             return
@@ -239,7 +241,7 @@ class Console:
         self._say("note: is in")
 
     def pause(self, _: str = "") -> None:
-        """Rest the array at once."""
+        """Bring the array to rest at once; in a pause, go on."""
         course = self._course
         if course.paused:
             self.go_on()
@@ -251,7 +253,7 @@ class Console:
         self._say("pause: the array is at rest; Enter goes on")
 
     def go_on(self, _: str = "") -> None:
-        """Go on after a pause or a break; on paper, take the time."""
+        """Go on after a pause or a break; on paper, take the key that times reading."""
         course = self._course
         if course.display is not None and course.display.confirm():
             return
@@ -284,11 +286,11 @@ class Console:
         self._course.next()
 
     def texture(self, text: str) -> None:
-        """Set the texture, where it is not what is studied."""
+        """Set the texture, if the plan has the same texture for all trials."""
         self._retune("texture", text)
 
     def contrast(self, text: str) -> None:
-        """Set the contrast, where it is not what is studied."""
+        """Set the contrast, if the plan has the same contrast for all trials."""
         self._retune("contrast", text)
 
     def _retune(self, name: str, text: str) -> None:
@@ -307,7 +309,7 @@ class Console:
         self._say(f"{name}: {text}")
 
     def stop(self, _: str = "") -> None:
-        """End for now."""
+        """Stop the session, so that it can be resumed later."""
         course = self._course
         course.withdraw()
         course.book.log(events.Stop)
@@ -316,7 +318,7 @@ class Console:
         course.phase = Phase.OVER
 
     def help(self, _: str = "") -> None:
-        """Say what there is to type."""
+        """Say what may be typed."""
         if self._course.protocol.task == "choice":
             self._say("an answer: 1 or 2, for the first or the second")
         else:
@@ -332,12 +334,12 @@ class Console:
 
 
 def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
-    """Answer to a trial, in its canonical form.
+    """Read an answer to a trial, and bring it into its canonical form.
 
     Raises
     ------
     ValueError
-        If the line is none.
+        If the line is not an answer to the trial.
     """
     if len(trial.stimuli) == 2:
         return parse_choice(line)

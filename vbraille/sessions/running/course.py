@@ -1,8 +1,8 @@
-"""The course of a session: what comes after what, and what of it is written down.
+"""The course of a session: which step follows which, and which events are written.
 
-Ready, the slider at the left, the start signal, the hand reads, an answer, the
-next trial; breaks, the warning and the limit where the protocol has them; a
-trial again if the device failed in it.
+A trial waits until the slider is at the left. Then the start signal sounds, the hand reads, an
+answer is given, and the next trial gets ready. There are breaks, a warning and a time limit if the
+protocol has them. A trial in which the device failed is shown again.
 """
 
 from __future__ import annotations
@@ -31,53 +31,54 @@ if TYPE_CHECKING:
     from vbraille.sessions.running.showing import Happened, OnDevice
 
 POLL_S = 0.02
-MOST_DEATHS = 3  # a host that dies so often is not started again
+MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
 
 class Phase(Enum):
-    """What is waited for."""
+    """Phase of a session, by what the session waits for."""
 
-    BREAK = auto()  # Enter
-    READY = auto()  # the slider at the left; on paper, Enter
-    OPEN = auto()  # the answer
-    LAST = auto()  # all trials are done: Enter, or an undo
-    OVER = auto()  # nothing
+    BREAK = auto()  # a break, which Enter ends
+    READY = auto()  # before a trial, until the slider is at the left; on paper, until Enter
+    OPEN = auto()  # a trial, until its answer
+    LAST = auto()  # all trials are done; Enter ends the session, an undo takes back an answer
+    OVER = auto()  # the session waits for nothing any more
 
 
 class Course:
-    """Go from trial to trial.
+    """Course of a session, which goes from trial to trial.
 
     Parameters
     ----------
     protocol, plan
-        What is done.
+        What the session shows, and in which order.
     journal
-        Where every event goes.
+        Journal that every event is added to.
     progress
-        What was done before.
+        State of the session, which every event updates.
     display
-        What shows the stimuli; None on paper.
+        Display of the stimuli; None on paper.
     waits
-        Whether somebody is waited for at breaks.
+        Whether breaks wait for a person.
     corrects
-        Whether the last answer of all may be taken back.
+        Whether the answer to the last trial may be taken back.
     say
-        Where to say things, one thing a call.
+        Function that is called with each sentence for the experimenter.
     play
-        Makes the participant's signals.
+        Function that plays a tone for the participant.
     real
-        Whether time is the machine's; else the display's own.
+        Whether the session runs by the clock of the machine; else by that of the display.
 
     Attributes
     ----------
     phase : Phase
-        What is waited for.
+        What the session waits for.
     paused : bool
-        Whether the array rests until told otherwise.
+        Whether the session is paused, so that the array rests.
     book : Logbook
-        Where all that happens is written down.
+        Logbook that writes the events of the session.
     read_said : bool
-        Whether somebody has been told that the trial is read; on paper, whether it is.
+        Whether the experimenter has been told that the trial is read; on paper, whether a key has
+        said so.
     """
 
     def __init__(
@@ -116,12 +117,12 @@ class Course:
 
     @property
     def trial(self) -> Trial | None:
-        """The trial that is open, or comes next."""
+        """Trial that is open or comes next; None after the last."""
         return self.progress.next_trial
 
     @property
     def open_trial(self) -> Trial | None:
-        """The trial that is open."""
+        """Trial that is open; None if none is."""
         return self.trial if self.phase is Phase.OPEN else None
 
     @property
@@ -144,30 +145,30 @@ class Course:
         return trial is not None and self._stimulus + 1 < len(trial.stimuli)
 
     def name(self, trial: Trial) -> str:
-        """What to call a trial."""
+        """Name of a trial in sentences for the experimenter."""
         if trial.practice:
             return f"practice {trial.number} of {len(self.plan.practice)}"
         return f"trial {self.progress.of_all(trial.number)}"
 
     def start(self, **started: Any) -> None:
-        """Begin a run with the engine started; `started` are more fields of the journal's `Run`."""
+        """Begin a run, once the engine is started; `started` are fields for the event `Run`."""
         display = self.display
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
             started |= {"trace": trace, "device": asdict(display.engine.display)}
-            while not display.now_ns:  # its clock is the session's
+            while not display.now_ns:  # the session runs by the device's clock, which has to start
                 display.poll()
                 self.sleep()
         self.book.begin()
         self.book.log(events.Run, **started, versions=versions())
 
     def sleep(self) -> None:
-        """Wait a little for the device to go on, if time does not go by polling."""
+        """Wait a little for the device, if the session runs in real time."""
         if self._real:
             time.sleep(POLL_S)
 
     def next(self, *, gap: bool = True) -> None:
-        """Get the next trial ready, have a break, or end."""
+        """Get the next trial ready, begin a break, or end the session."""
         trial = self.trial
         gap_s = self.protocol.trial.gap_s if gap else 0.0
         self._ready_ns = self._now_ns() + round(gap_s * 1e9)
@@ -187,7 +188,7 @@ class Course:
         self.phase = Phase.OVER
 
     def have_break(self) -> None:
-        """Have a break, before the trial that comes next."""
+        """Begin a break before the next trial."""
         self._break_wanted = False
         self.book.log(events.Break)
         if self._waits:
@@ -197,7 +198,7 @@ class Course:
             self._ready(self.trial)
 
     def want_break(self) -> None:
-        """Have a break as soon as no trial is open."""
+        """Have a break now, or after the open trial."""
         self._break_wanted = True
         if self.phase is Phase.READY:
             self.have_break()
@@ -205,7 +206,7 @@ class Course:
             self._say("break: after this trial")
 
     def begin(self) -> None:
-        """Show the trial that comes next."""
+        """Begin the next trial."""
         trial = self.trial
         assert trial is not None, "there is no trial to begin"
         self._attempt = self.progress.told(trial).attempts + 1
@@ -214,18 +215,18 @@ class Course:
         self._show(trial, 0)
 
     def again(self) -> None:
-        """Have the open trial shown again."""
+        """Show the open trial again, as a new attempt."""
         self.withdraw()
         self.next(gap=False)
 
     def withdraw(self) -> None:
-        """Take away what is shown; what was felt of it goes to the disk."""
+        """Take the stimulus away, and make sure that the trace of it is on the disk."""
         if self.display is not None:
             self.display.withdraw()
             self.display.sync()
 
     def press(self) -> None:
-        """On paper: take the key that says that reading begins, and then that it is over."""
+        """Take a key on paper: the first says that reading begins, the second that it is over."""
         trial = self.trial
         if trial is None:
             return
@@ -238,7 +239,7 @@ class Course:
             self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
 
     def retune(self, tuning: dict[str, float]) -> None:
-        """Show this trial and those to come with another contrast or texture."""
+        """Show the open trial and all later ones with another contrast or texture."""
         trial = self.open_trial
         if trial is None or self.display is None:
             self.book.log(events.Tuning, tuning=tuning)
@@ -247,7 +248,7 @@ class Course:
         self.display.retune(self._tuning(trial))
 
     def look(self) -> bool:
-        """See what the display has to tell; whether its engine still is the one before.
+        """Take what the display has to tell; False if its engine had to be started again.
 
         Raises
         ------
@@ -266,7 +267,7 @@ class Course:
         return True
 
     def poll(self) -> None:
-        """See what the display has to tell, and what is due.
+        """Take what the display has to tell, and do what is due.
 
         Raises
         ------
@@ -324,7 +325,7 @@ class Course:
         self._stimulus = stimulus
         shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
         if self.display is not None:
-            # The number that it will get: the journal knows of it before it is felt.
+            # The showing gets this number next: the journal has it before the stimulus is felt.
             shown["line"] = self.display.line + 1
         if self.progress.tuning:
             shown["tuning"] = self.progress.tuning
@@ -353,7 +354,7 @@ class Course:
                 self._repeat_faulty(trial, fields["what"])
 
     def _watch(self, trial: Trial) -> None:
-        """Look whether the second stimulus, or the warning, is due."""
+        """Give the warning, or show the second stimulus, if either is due."""
         warning_s = self.protocol.trial.warning_s
         told = self.progress.told(trial)
         waited_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
@@ -372,7 +373,7 @@ class Course:
             self._say("read: type the answer")
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
-        """Have the open trial shown again after a fault, if the protocol says so."""
+        """Show the open trial again after a fault, if the protocol says so."""
         repeats = self.protocol.repeat_faults
         how = "is repeated" if repeats else "goes on"
         self._say(f"fault: {what}; {self.name(trial)} {how}")
@@ -380,7 +381,7 @@ class Course:
             self.again()
 
     def _start_again(self, fault: HostDiedError) -> None:
-        """Start the engine again after it died; what was open cannot go on."""
+        """Start the engine again after it died; an open trial gets a new attempt."""
         self._deaths += 1
         trial = self.open_trial
         if trial is None:

@@ -1,4 +1,4 @@
-"""Events on their way into the journal: each gets its time and its trial here."""
+"""Writing of events into the journal, with the time and the trial of each."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
 
 
 class Logbook:
-    """Writes down what happens in a run, and lets the progress go on by it.
+    """Book in which the events of a run are written, and by which its progress is updated.
 
     Parameters
     ----------
     journal
-        Where every event goes.
+        Journal that every event is added to.
     progress
-        What was done before.
+        State of the session, which every event updates.
     now_ns
-        Tells the time by which the run goes.
+        Function that tells the time by the clock of the run.
 
     Attributes
     ----------
     script_line : int
-        Line of an answers file that is being done; the event that comes of it keeps its number.
+        Number of the line of an answers file that is being done; the next event keeps it.
     """
 
     def __init__(self, journal: Journal, progress: Progress, now_ns: Callable[[], int]) -> None:
@@ -40,24 +40,25 @@ class Logbook:
 
     @property
     def format(self) -> int:
-        """Format of the session, which says what is written down."""
+        """Format of the session, which decides what events contain."""
         return self._journal.told.format
 
     def begin(self) -> None:
-        """Begin a run, as long after the session's start as the runs before it were, in all."""
+        """Begin a run: its time goes on from the total length of the runs before it."""
         self._begun_ns, self._begun_s = self._now_ns(), self._progress.t_s
 
     def log(self, kind: type[Event], trial: Trial | None = None, **fields: Any) -> None:
-        """Write an event down; it is on the disk when this returns if its kind is durable.
+        """Write an event; if its kind is durable, it is on the disk when this returns.
 
         Parameters
         ----------
         kind
-            What happened.
+            Kind of the event.
         trial
-            The trial that it happened in; None if it is not of one.
+            Trial that the event happened in; None if it was in none.
         fields
-            The fields of its kind. With ``time_ns``, of a tick, it happened then, else now.
+            Fields of that kind. If ``time_ns`` is among them, the event happened at that time;
+            else it happens now.
         """
         at_ns = fields.get("time_ns", self._now_ns())
         fields["t_s"] = round(self._begun_s + (at_ns - self._begun_ns) / 1e9, 6)

@@ -1,4 +1,4 @@
-"""Orders: what an experimenter may type beside answers."""
+"""Orders that an experimenter may type beside answers."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ To = TypeVar("To")
 
 @dataclass(frozen=True, slots=True)
 class Order(Generic[To]):
-    """An order.
+    """An order that an experimenter may type.
 
     Parameters
     ----------
     word
-        The word that it is typed by.
+        Word that the order is typed as.
     handler
         Does it: it is given whom the order is to, and what stands after the word.
     help
-        What it does, for people.
+        What the order does, in words for people.
     takes
-        Whether something stands after the word.
+        Whether more text may follow the word.
     """
 
     word: str

@@ -1,4 +1,4 @@
-"""Answers that are ready before they are asked for: those of a program, and of a file, checked."""
+"""Answers that are given beforehand, by a program or in a file, and their check."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 class GivenAnswers:
-    """Lines of a program, the next one whenever a trial has been read.
+    """Source of answers that asks a program for a line whenever a trial has been read.
 
     Parameters
     ----------
     protocol
-        What the answers are to.
+        Protocol that the answers are checked against.
     given
-        The lines, one for each trial, or a function that gives the line for a trial. A function
-        may give None, and the lines may end: the session then stops, and can be resumed.
+        The lines, one for each trial, or a function that gives the line for a trial. If the
+        lines end, or the function gives None, the session stops and can be resumed.
     """
 
     name = PROGRAM
@@ -46,19 +46,19 @@ class GivenAnswers:
         self._answered: tuple[bool, int, int] | None = None
 
     def lines(self, wait_s: float) -> list[str]:
-        """Nothing, after a wait: lines are given to trials."""
+        """Wait, and return no lines: the lines of the program are given to trials."""
         time.sleep(wait_s)
         return []
 
     def next(
         self, trial: Trial, attempt: int, _felt: list[Exploration], /
     ) -> tuple[str, int] | None:
-        """Line of the program for a trial; None after its answer, with which the session ends.
+        """Line of the program for a trial; None if there is none, or the trial was answered.
 
         Raises
         ------
         InputError
-            If it is neither an answer to the trial nor an order.
+            If the line is neither an answer to the trial nor an order.
         """
         asked = trial.practice, trial.number, attempt
         line = None if asked == self._answered else self._give(trial)
@@ -72,9 +72,9 @@ class GivenAnswers:
 
 
 def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress) -> None:
-    """Raise InputError if a line of the file is no answer to its trial: nothing is begun then."""
+    """Raise InputError if a line of an answers file does not answer its trial."""
     planned = progress.procedure.trials
-    if planned is None:  # which trials come is not known yet
+    if planned is None:  # it is not known yet which trials will come
         return
     trials = iter(planned[progress.done :])
     correcting, answered = progress.correcting, progress.last_answered
@@ -95,8 +95,8 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
 
 
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
-    """Whether a line is an answer, and no order; ValueError if it is none to its trial."""
-    # Here and not above: numba takes long to load, and the host starts meanwhile.
+    """Whether a line is an answer and no order; ValueError if it does not suit its trial."""
+    # This import stands here because numba takes long to load; the host starts meanwhile.
     from vbraille.sessions.running.console import read_line
 
     found = find_order(line)

@@ -1,4 +1,4 @@
-"""Stimuli under the hand: on a device, whose every tick goes into a trace, or on paper."""
+"""Showing of stimuli on a device, every tick of which goes into a trace."""
 
 from __future__ import annotations
 
@@ -37,51 +37,52 @@ _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
     Placing.STOP: "place: move left to the stop, then press Enter",
 }
-# While the device is so, nothing that is shown is felt; and when it has just come to rest.
+# Flags of a device that cannot let a stimulus be felt, and of one that has just gone to rest.
 _AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
 _UNFELT = _AWAY | int(Flag.RESTED)
-# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+# These are plain numbers because numpy, when it reads an enumeration, can swallow an exception that
+# a signal raises.
 _PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
 _WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
-# A trial is marked by the first time; who hears of it need not hear of it more often.
+# A fault is told at most once in so many seconds of a trial, which the first one has marked.
 _TOLD_S = 1.0
-# A device that was at rest since the hand stood still is asked to take frames again first.
+# A device that rests because the hand stands still may take so long to accept frames again.
 _WAKING_S = 0.1
 
 
 class RunEngine(Engine, Protocol):
-    """An engine that is started and ended, as `vbraille.engine.host.Host` is."""
+    """An engine that can be started and closed, such as `vbraille.engine.host.Host`."""
 
     @property
     def lost(self) -> int:
-        """Ticks that were never polled."""
+        """Number of ticks that were never polled."""
         ...
 
     @property
     def counts(self) -> Named[str, int]:
-        """What went wrong with the device, by name; known after `close`."""
+        """How often each thing went wrong with the device, by name; known after `close`."""
         ...
 
     def start(self) -> None:
-        """Open the device and begin."""
+        """Open the device, and begin to drive it."""
         ...
 
     def close(self) -> None:
-        """Bring the array to rest, and end."""
+        """Bring the array to rest, and close the device."""
         ...
 
 
 class Happened(NamedTuple):
-    """Something that the experimenter or the journal should know of.
+    """Something that the experimenter or the journal should be told.
 
     Parameters
     ----------
     kind
-        ``Contact``: the array came to the first dot. ``Read``: the hand went to the end and
-        back. ``Fault``, ``Well``: what is shown is not felt, is felt again. ``Device``: the
-        device has something to say.
+        Kind of event: ``Contact`` if the array came to the first dot, ``Read`` if the hand went
+        to the end and back, ``Fault`` if the stimulus can no longer be felt, ``Well`` if it can be
+        felt again, and ``Device`` if the device reports something.
     fields
-        What is known of it here, by the fields of that kind.
+        Those fields of the kind that are known here.
     """
 
     kind: type[Event]
@@ -89,33 +90,33 @@ class Happened(NamedTuple):
 
 
 class OnDevice:
-    """Stimuli on a device.
+    """Display of stimuli on a device.
 
     Parameters
     ----------
     engine
-        Drives it.
+        Engine that drives the device.
     protocol
-        How cells are shown.
+        Protocol of the session, which says how cells are shown.
     folder
-        Where the trace goes.
+        Directory of the session, in which traces are written.
     keeps
-        Whether what is felt is kept, for a simulated reader.
+        Whether ticks are kept for a simulated reader.
     tie
-        Tells which line of the journal is on the disk, for the traces to be tied to; None in a
-        session of format 1.
+        Function that tells which line of the journal is on the disk, to which traces are tied;
+        None in a session of format 1.
     steering
-        What tells the simulated hand what to read; None if a person's hand reads.
+        Channel that tells the simulated hand what to read; None if a person's hand reads.
     centred
-        Whether the traces have places of the array's centre; else, in a session of format 1 or 2,
-        of its left column.
+        Whether traces have places of the array's centre. In a session of format 1 or 2 they have
+        places of its left column.
 
     Attributes
     ----------
     line : int
-        Number of what was shown last.
+        Number of the last showing.
     explorations : list[Exploration]
-        What was felt of the stimuli of the trial so far.
+        Frames and places of each stimulus of the trial so far.
     """
 
     by_key = False
@@ -147,26 +148,26 @@ class OnDevice:
         self._end: EndOfLine
         self._edge_mm: float | None = None
         self._touched = self._read = self._away = self._ready = False
-        self._trial_line = self._shown_line = 0  # the first of the trial, and of the stimulus
-        self._still = False  # whether the newest tick was at rest for want of motion
-        self._waking_ns = -(1 << 62)  # when the device last began to wake after that
-        self._told_ns: int | None = None  # when the last fault of the trial was
+        self._trial_line = self._shown_line = 0  # first line of the trial, of the stimulus
+        self._still = False  # whether the newest tick rested because the hand stood still
+        self._waking_ns = -(1 << 62)  # when the device last began to wake
+        self._told_ns: int | None = None  # time of the last fault of the trial
         self._felt: list[list[NDArray[np.void]]] = []
 
     def open(self, run: int, line: int) -> str:
-        """Begin the trace of an engine that was started; its name.
+        """Begin the trace of an engine that was started, and return the trace's name.
 
         Parameters
         ----------
         run
             Number of the run, from 1.
         line
-            Number of the last line shown in those before.
+            Number of the last showing in earlier runs.
         """
         self.close_trace()
         self.engine.paused = True
         self.line = line
-        # A run that was killed before the journal told of it has left its trace.
+        # A run that was killed before the journal had its event may have left a trace.
         while (self._folder / _trace_name(run)).exists():
             run += 1
         self._trace = TraceWriter(self._folder / _trace_name(run), self._tie, self._left_mm)
@@ -176,37 +177,39 @@ class OnDevice:
 
     @property
     def now_ns(self) -> int:
-        """When the newest tick known of was; 0 before the first."""
+        """Time of the newest tick that was polled; 0 before the first."""
         return 0 if self._newest is None else int(self._newest["time_ns"])
 
     @property
     def ready(self) -> bool:
-        """Whether the device is well, and its carriage has just been at the left stop."""
+        """Whether the device works, and its carriage has just been at the left stop."""
         return self._ready
 
     @property
     def read(self) -> bool:
-        """Whether the hand has gone to the end of what is shown and back."""
+        """Whether the hand has gone to the end of the stimulus and back."""
         return self._read
 
     @property
     def reached(self) -> bool:
-        """Whether the hand has been at the end of what is shown."""
+        """Whether the hand has been at the end of the stimulus."""
         return self._read or self._end.reached
 
     @property
     def explorations(self) -> list[Exploration]:
-        """What was felt of the trial's stimuli so far."""
+        """Frames and places of each stimulus of the trial so far."""
         together = (np.concatenate(parts) for parts in self._felt)
         return [Exploration(t["frame"], t["x_mm"], t["time_ns"] / 1e9) for t in together]
 
     def show(self, stimulus: Stimulus, tuning: Tuning, *, first: bool) -> None:
-        """Put a stimulus under the hand, with the next number as its line.
+        """Put a stimulus under the hand, as the showing with the next line number.
 
         Parameters
         ----------
+        stimulus, tuning
+            Stimulus, and the tuning that it is shown with.
         first
-            Of a trial, or the second that it is to be compared with.
+            Whether it is the first stimulus of a trial, and not the second of a comparison.
         """
         self._stimulus = stimulus
         self._shown_line = self.line + 1
@@ -226,7 +229,7 @@ class OnDevice:
         self.engine.paused = False
 
     def retune(self, tuning: Tuning) -> None:
-        """Show what is shown with another tuning, with the next number as its line."""
+        """Show the stimulus with another tuning, as the showing with the next line number."""
         stimulus = self._stimulus
         assert stimulus is not None, "nothing is shown"
         self.line += 1
@@ -239,27 +242,27 @@ class OnDevice:
         return stimulus.geometry.extent_mm(len(self._protocol.line(stimulus.masks)))
 
     def rest(self) -> None:
-        """Have the array rest, at once."""
+        """Bring the array to rest at once."""
         self.engine.paused = True
 
     def go(self) -> None:
-        """Let what was shown be felt again."""
+        """Let the stimulus be felt again after a rest."""
         self.engine.paused = False
 
     def withdraw(self) -> None:
-        """Take away what is shown: the trial is over."""
+        """Take the stimulus away, since the attempt at the trial is over."""
         self.rest()
         self._stimulus = None
 
     def confirm(self) -> bool:
-        """Take Enter: the carriage is at its left stop, if that is what the device waits for."""
+        """Take Enter as the sign that the carriage is at its left stop, if that is awaited."""
         if self._placing is not Placing.STOP:
             return False
         self.engine.set_zero()
         return True
 
     def poll(self) -> list[Happened]:
-        """Take the ticks since the last call into the trace; what happened in them.
+        """Add the ticks since the last call to the trace, and return what happened in them.
 
         Raises
         ------
@@ -274,7 +277,7 @@ class OnDevice:
         before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self._newest = ticks[-1]
-        # A carriage that a machine moves may be there for some ticks only.
+        # A carriage that a machine moves may be at the left for a few ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
         well = ticks["flags"] & _AWAY == 0
         self._ready = bool(well[-1] and (at_left & well).any())
@@ -292,31 +295,31 @@ class OnDevice:
         return happened
 
     def sync(self) -> None:
-        """Have the trace on the disk."""
+        """Make sure that the trace is on the disk."""
         if self._trace is not None:
             self._trace.sync()
 
     def close(self) -> None:
-        """Bring the array to rest, end the engine and the trace."""
+        """Bring the array to rest, and close the engine and the trace."""
         try:
             self.engine.close()
         finally:
             self.close_trace()
 
     def close_trace(self) -> dict[str, Any]:
-        """End the trace, if there is one; what the journal tells of it."""
+        """Close the trace, and return the journal's fields about it; empty if there is none."""
         if self._trace is None:
             return {}
         self._trace.close()
         return self._trace.closed()
 
     def _unfelt(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happened]:
-        """Whether any of these ticks was not felt as the plan has it, and when that was over.
+        """Faults that begin or end in these ticks.
 
-        The rule: a tick of the trial, pauses left out, at which the device was silent, did
-        not know its place, had gone to rest by itself or took no frames, or one before which
-        others were lost. That the array rests because the hand stands still is as it is
-        always read, and so are the moments that a device then takes to wake.
+        A tick of the trial, pauses left out, is faulty if the device was silent, did not know its
+        place, had gone to rest by itself or took no frames, or if ticks before it were lost. It is
+        no fault that the array rests while the hand stands still, nor that the device then takes
+        a moment to wake.
         """
         shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & _PAUSED == 0)
         ticks, lost = ticks[shown], lost[shown]
@@ -339,7 +342,7 @@ class OnDevice:
         return happened
 
     def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
-        """Which ticks are of a device that takes no frames yet, since the hand stood still."""
+        """Mark ticks at which the device still wakes after the hand stood still."""
         flags, times_ns = ticks["flags"], ticks["time_ns"]
         held = flags & _WHY_HELD == _HELD
         wakes = np.zeros(ticks.size, np.bool_)
@@ -352,7 +355,7 @@ class OnDevice:
         return wakes
 
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
-        """What the hand did with the stimulus in these ticks."""
+        """Touch of the first dot, and end of reading, if they are in these ticks."""
         ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             return []
@@ -376,7 +379,7 @@ def _trace_name(run: int) -> str:
 
 
 def _why(tick: np.void) -> str:
-    """Why a tick was not felt as the plan has it."""
+    """Say why the stimulus could not be felt at a tick."""
     flags = int(tick["flags"])
     if flags & Flag.SILENT:
         return "the device is silent"

@@ -1,4 +1,4 @@
-"""One sitting of a session: what goes on around its course, from the device to the record."""
+"""One run of a session with all that it needs around it, from the device to the record."""
 
 from __future__ import annotations
 
@@ -32,24 +32,25 @@ if TYPE_CHECKING:
 
 
 class Sitting:
-    """One run of a session, with what it needs: an engine, answers, signals.
+    """One run of a session, with the engine, the answers and the signals that it needs.
 
     Parameters
     ----------
     engine
-        Drives the device; None on paper. Whoever made it closes it after a fault.
+        Engine that drives the device; None on paper. Whoever made it closes it after a fault.
     answers
-        Where answers come from.
+        Source of the answers.
     steering
-        What tells the simulated hand what to read; None if a person's hand reads.
+        Channel that tells the simulated hand what to read; None if a person's hand reads.
     sound
-        Gives what makes the participant's signals, once the device is open.
+        Function that gives the sound device; it is called once the device is open.
     real
-        Whether time is the machine's; else the device's own.
+        Whether the session runs by the clock of the machine; else by that of the device.
     say, warn
-        Where to say what the experimenter should hear, and what should not stand among that.
+        Functions that are called with sentences for the experimenter, and with sentences that
+        should be kept apart from those.
     before_rest
-        Is called before the array is brought to rest.
+        Function that is called just before the array is brought to rest.
     """
 
     def __init__(
@@ -75,7 +76,7 @@ class Sitting:
         self._opened = False
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
-        """Wait until the engine runs, unless it does."""
+        """Start the engine and wait until it runs, unless it runs already."""
         if self._engine is None or self._opened:
             return
         if (note := compiling_note()) is not None:
@@ -85,14 +86,14 @@ class Sitting:
         check_room(self._engine.display, protocol, plan)
 
     def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
-        """Conduct the session until its end, or until it is stopped; how far it has come.
+        """Conduct the session until it ends or is stopped, and return how far it has come.
 
         Parameters
         ----------
         record
-            What is there of the session.
+            Content of the session's directory.
         why, spec, hand
-            What the journal tells of the run: start or resume, the device, and its hand.
+            Fields of the run's event: why it began, spec of the device, and simulated hand.
         """
         with Journal(record.folder) as book:
             check_end(record.folder, book.told)
@@ -138,7 +139,7 @@ class Sitting:
         return progress
 
     def _display(self, record: Record, book: Journal) -> OnDevice | None:
-        """What shows the stimuli; None on paper."""
+        """Make the display of the stimuli; None on paper."""
         if self._engine is None:
             return None
         return OnDevice(
@@ -146,14 +147,14 @@ class Sitting:
             record.protocol,
             record.folder,
             keeps=self._answers.felt,
-            # A session of format 1 is gone on with in that, whose traces are not tied.
+            # A session of format 1 keeps that format, whose traces are not tied to the journal.
             tie=None if book.told.format == 1 else lambda: book.durable,
             steering=self._steering,
             centred=record.centred,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:
-        """What a run tells of the time since the last one, and of what that left torn; said too."""
+        """Fields of a run's event about the time since the last run, and a torn line it left."""
         told: dict[str, Any] = {}
         if book.told.format > 1:
             told["boot"] = boot()
@@ -172,7 +173,7 @@ class Sitting:
 
 
 def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sound:
-    """What makes the participant's signals: "auto", "tones", "bell" or "none".
+    """Make the sound device for "auto", "tones", "bell" or "none".
 
     Raises
     ------
@@ -192,7 +193,7 @@ def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sou
 
 
 def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
-    """Raise InputError if a device's carriage does not take its whole array over every stimulus."""
+    """Raise InputError if the device's carriage is too short for a stimulus of the plan."""
     extent_mm = max(
         stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
         for stimulus in plan.stimuli()

@@ -1,4 +1,4 @@
-"""What the participant hears: the start signal and the warning."""
+"""Sounds that the participant hears: the start signal and the warning."""
 
 from __future__ import annotations
 
@@ -17,47 +17,47 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.conduct import Tone
 
 _RATE_HZ = 48_000
-_RAMP_S = 0.005  # so that a tone does not click
+_RAMP_S = 0.005  # a tone swells and fades for so long, so that it does not click
 _LOUDNESS = 0.5
 
 
 class Sound(Protocol):
-    """Something that makes a tone, and does not wait for its end."""
+    """Device that plays a tone without waiting for its end."""
 
     name: str
 
     def play(self, tone: Tone, /) -> None:
-        """Make a tone."""
+        """Begin to play a tone."""
         ...
 
 
 class Silence:
-    """No sound: nobody listens."""
+    """Sound device that plays nothing, where nobody listens."""
 
     name = "none"
 
     def play(self, _tone: Tone, /) -> None:
-        """Do nothing."""
+        """Ignore a tone."""
 
 
 class Bell:
-    """The terminal's bell; where no terminal is, nothing is heard."""
+    """Sound device that rings the terminal's bell; without a terminal nothing is heard."""
 
     name = "bell"
 
     def play(self, _tone: Tone, /) -> None:
-        """Ring."""
+        """Ring the bell once for any tone."""
         if sys.stderr.isatty():
             os.write(sys.stderr.fileno(), b"\a")
 
 
 class Tones:
-    """The machine's audio output, through PortAudio.
+    """Sound device that uses the machine's audio output, through PortAudio.
 
     Raises
     ------
     OSError
-        If there is no PortAudio, or no output.
+        If PortAudio or an audio output is missing.
     """
 
     name = "tones"
@@ -73,7 +73,7 @@ class Tones:
         self._play = sounddevice.play
 
     def play(self, tone: Tone, /) -> None:
-        """Begin the tone."""
+        """Begin to play a tone."""
         self._play(wave(tone), _RATE_HZ)
 
 
@@ -88,7 +88,7 @@ def wave(tone: Tone) -> NDArray[np.float32]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Let nothing reach stderr: ALSA tells there of every card that it does not find."""
+    """Keep stderr silent meanwhile, where ALSA reports every card that it does not find."""
     kept = os.dup(2)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:

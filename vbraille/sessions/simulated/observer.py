@@ -1,47 +1,47 @@
 """A simulated reader of legibility sessions: a noisy observer of frames and places.
 
-It knows what a hand on the carriage knows - what each contactor did, where the
-carriage was, and when - and how braille of this device is laid out. Of page,
-plan, tuning and profile it knows nothing. It is for pilots, power analyses and
-tests, and is no claim about anybody's skin: the model is ours.
+The reader knows what a hand on the carriage knows: what each contactor did, where the carriage
+was, and when. It also knows how braille is laid out on this device. It does not know the page,
+the plan, the tuning or the profile. It is for pilots, power analyses and tests. The model is our
+own, and claims nothing about anybody's skin.
 
-**What is felt.** Contactors at pitch p, along x. w is the swing of a row away
-from its idle end; rows that show the same dots are averaged. Between
-neighbours i and i + 1 the skin is strained (Lévesque 2009, fig. 3.10)
+**What is felt.** The contactors stand at pitch p along x. w is the swing of a row's contactors
+away from their idle end; rows that show the same dots are averaged. Between neighbours
+i and i + 1 the skin is strained (Lévesque 2009, fig. 3.10) by
 
     s(u) = [w_{i+1} - w_i] / p,    u = x - S/2 + (i + 1/2) p,                (1)
 
-a function of the place u alone, whichever pair feels it and whenever; x is the
-place of the array's centre, and S its width. The
-reconstruction filters (200 Hz, Lévesque 2009, 6.2) smooth it: at speed v by a
-Gaussian that is 3 dB down at 200 Hz / v, on top of one of 0.02 mm, finer than
-any texture that the program makes:
+which depends on the place u alone, whichever pair feels it, and whenever. x is the place of the
+array's centre, and S is the array's width. The strain is smoothed twice. One Gaussian of 0.02 mm
+is finer than any texture that the program makes. The other stands for the reconstruction filters
+(200 Hz, Lévesque 2009, 6.2), and is 3 dB down at 200 Hz / v for a speed v:
 
     σ² = (0.02 mm)² + [v √(ln 2) / (2π · 200 Hz)]².                          (2)
 
-v is the median speed of the hand while any pair is over the dot, standing
-still left out. Evidence of a dot of nominal width W, centred at c, is the rms
-rate of change of the smoothed strain on the way over it,
+v is the median speed of the hand while any pair is over the dot; times at which the hand stands
+still are left out. The evidence of a dot of nominal width W, centred at c, is the rms rate of
+change of the smoothed strain on the way over the dot,
 
     E = √ mean (ds/du)²,    |u - c| ≤ W / 2,                                 (3)
 
-per mm and not per s, since a surface feels much the same at any speed; so what
-swings fast, be it finer or with more contrast, is felt more. It is told in
-units of E₀: (3) for w = [1 + cos(2πu/W)] / 2, unsmoothed, which is of W and p
-alone. A dot was reached if something came over nine tenths of its way, no two
-places of which are further apart than W / 2.
+taken per mm and not per s, since a surface feels much the same at any speed. So a finer texture,
+or one with more contrast, is felt more. Evidence is given in units of E₀, which is (3) for the
+wave w = [1 + cos(2πu/W)] / 2 without smoothing, and depends on W and p alone. A dot counts as
+reached if nine tenths of its width were felt. The line between two neighbouring places that were
+felt counts as felt too, unless they are more than W / 2 apart.
 
-**Best of the passes.** Of all that came over a place (5 µm of it), whichever
-pass and pair, only the moment that moved the skin most counts. What a fade or
-a rest weakens is so outdone by any later pass, and none of it is averaged in.
+**Best of the passes.** A place is 5 µm long. At each place, only the moment that moved the skin
+most counts, whichever the pass and the pair. So a pass that a fade or a rest has weakened is
+replaced by any better pass, and is not averaged with it.
 
-**The answer.** Each E / E₀ gets Gaussian noise of standard deviation `noise`.
-A dot is one that exceeds half of the mean of those above half of the strongest.
+**The answer.** Gaussian noise of standard deviation `noise` is added to each E / E₀. The values
+above half of the largest are averaged, and a dot is read wherever the value exceeds half of that
+mean.
 
-**Comparing.** A dot reaches from the first place to the last where contactors
-swing against the one that swings least; places told apart by less than a tenth
-of W are one dot. Widths, or the gap from one dot to the next, get noise in
-units of the nominal length, and the nearer to nominal is chosen.
+**Comparing.** A dot reaches from the first to the last place at which contactors swing more than
+the one that swings least. Places less than a tenth of W apart belong to one dot. Noise in units
+of the nominal length is added to the width, or to the gap from one dot to the next, and the
+stimulus that is nearer to the nominal length is chosen.
 """
 
 from __future__ import annotations
@@ -71,26 +71,26 @@ if TYPE_CHECKING:
 Parameter = Literal["dot width", "gap"]
 
 PLACE_MM = 0.005
-LEAST_FELT = 1e-3  # in units of E₀; nothing above it is nothing felt
-LEAST_SWING = 1e-4  # of the largest; rest itself is exactly 0
-APART = 0.1  # of the nominal dot width
-TIE = 0.04  # of the nominal length: as near as each other, where no noise decides
+LEAST_FELT = 1e-3  # least evidence, in units of E₀, that counts as felt
+LEAST_SWING = 1e-4  # least swing, as a share of the largest; at rest it is exactly 0
+APART = 0.1  # gap that parts two dots, in units of the nominal dot width
+TIE = 0.04  # difference that counts as equal without noise, in units of the nominal length
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Touch:
-    """What was felt of each dot.
+    """Evidence of each dot of a line, as it was felt.
 
     Parameters
     ----------
     evidence : float64[places, 8]
-        E / E₀ by cell and dot; NaN where the hand was not, and
-        of dots that the mapping does not show.
+        E / E₀ by cell and dot; NaN where the hand was not, and for dots that the mapping does not
+        show.
 
     Raises
     ------
     ValueError
-        If it has another shape or is negative.
+        If the array has another shape, or a value is negative.
     """
 
     evidence: NDArray[np.float64]
@@ -108,15 +108,15 @@ class Touch:
 
 
 class Observer:
-    """A reader made of the model above; nothing of it changes once made.
+    """A simulated reader by the model of this module; it never changes once it is made.
 
     Parameters
     ----------
     array, style
-        What braille is shown with, and how, with its nominal distances.
+        Array that braille is shown with, and the style with its nominal distances.
     noise
-        Standard deviation of what is added to each evidence in units of E₀, or
-        to a length in units of the nominal one; 0 or more.
+        Standard deviation of the noise, 0 or more: in units of E₀ for evidence, and in units of
+        the nominal length for lengths.
 
     Raises
     ------
@@ -147,7 +147,7 @@ class Observer:
         self.noise = noise
         self._half_mm = array.span_mm / 2
         self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
-        # Rows that show the same dots are one channel: its number by dot.
+        # Rows that show the same dots are one channel; each dot has the number of its channel.
         tables = mapping.left, mapping.right
         rows = {}
         for dot, (side, dot_row) in PLACES.items():
@@ -157,7 +157,7 @@ class Observer:
         if not rows:
             raise ValueError(f"mapping {mapping.name} shows no dot; it must show one or more")
         self._channels = {dot: kinds.index(kind) for dot, kind in rows.items()}
-        # Frames times these are strains and swings, by pair or column and then by channel.
+        # A frame times these weights gives strains of pairs, or swings of columns, in each channel.
         signs = 1 - 2 * mapping.idle()
         weights = np.zeros((array.rows, len(kinds)))
         for channel, kind in enumerate(kinds):
@@ -167,14 +167,14 @@ class Observer:
         self._swings = _per_frame(weights, np.eye(array.columns))
 
     def felt(self, exploration: Exploration, places: int) -> Touch:
-        """What an exploration gives of the dots of the first cells of a line.
+        """Evidence that an exploration gives of the dots of the first cells of a line.
 
         Parameters
         ----------
         exploration
-            Frames, positions and times.
+            Frames, places and times.
         places
-            How many cells there are; the left edge of the first is at x = 0.
+            Number of cells; the left edge of the first is at x = 0.
 
         Raises
         ------
@@ -192,7 +192,7 @@ class Observer:
         rates = Rates(wave, pitch_mm / self._steps, geometry.dot_width_mm / 2)
         speeds = near.speeds_mm_s()
         moving = speeds > STILL_MM_S
-        reach_mm = self._half_mm - pitch_mm / 2  # of the outermost pair, from the centre
+        reach_mm = self._half_mm - pitch_mm / 2  # distance of the outermost pair from the centre
         for place in range(places):
             for side in (0, 1):
                 left_mm = place * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
@@ -207,7 +207,7 @@ class Observer:
         return Touch(evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm))
 
     def answer(self, touch: Touch, random: np.random.Generator) -> list[int | None]:
-        """Dot masks of what was felt; None where the hand was not, or if nothing was felt."""
+        """Dot masks of the cells felt; None for a cell without the hand, or if nothing was felt."""
         noisy = touch.evidence + self.noise * random.standard_normal(touch.evidence.shape)
         if touch.nothing:
             return [None] * len(noisy)
@@ -226,7 +226,7 @@ class Observer:
         return self.answer(self.felt(exploration, places), random)
 
     def lengths_mm(self, exploration: Exploration) -> tuple[float, float]:
-        """Width of the first dot of a line, and gap to the next; NaN where there is none."""
+        """Width of the first dot of a line, and gap to the next dot; NaN where one is missing."""
         near = self._near(exploration, self.geometry.travel_mm)
         if not near.x_mm.size:
             return math.nan, math.nan
@@ -255,21 +255,21 @@ class Observer:
         parameter: Parameter,
         random: np.random.Generator,
     ) -> int:
-        """Which of two is nearer to the nominal distances: 1 or 2.
+        """Choose which of two stimuli is nearer to the nominal length: 1 or 2.
 
         Parameters
         ----------
         first, second
-            Explorations of a dot, or of two side by side.
+            Explorations of a dot, or of two dots side by side.
         parameter
-            "dot width" or "gap".
+            Length that is compared, "dot width" or "gap".
         random
-            Draws the noise.
+            Generator that draws the noise.
 
         Returns
         -------
         int
-            1 too if they are as near as each other, or neither was felt.
+            The number chosen; 1 if both are equally near, or neither was felt.
 
         Raises
         ------
@@ -292,7 +292,7 @@ class Observer:
         return 2 if off_mm[1] < off_mm[0] - tie_mm else 1
 
     def _near(self, exploration: Exploration, right_mm: float) -> Exploration:
-        """The ticks at which the array is over a line, or a dot beside it.
+        """Ticks at which the array is over a line, or at most a dot's width beside it.
 
         Raises
         ------
@@ -309,13 +309,13 @@ class Observer:
         return exploration.within(-beside_mm, right_mm + beside_mm)
 
     def _felt(self, exploration: Exploration, weights: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Strains or swings, float32[n, pairs or columns, channels]."""
+        """Strains of pairs or swings of columns; float32[n, pairs or columns, channels]."""
         frames = exploration.frames.reshape(len(exploration.frames), -1)
         felt = np.asarray(frames, np.float32) @ weights.reshape(len(frames[0]), -1)
         return felt.reshape(len(frames), *weights.shape[1:])
 
 
 def _per_frame(rows: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Weights of a frame's actuators; float32[rows · columns, pairs or columns, channels]."""
+    """Weights of all actuators of a frame; float32[rows · columns, pairs or columns, channels]."""
     weights = np.einsum("rk,cp->rcpk", rows, columns)
     return weights.reshape(-1, *weights.shape[2:]).astype(np.float32)

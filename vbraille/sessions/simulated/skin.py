@@ -1,4 +1,4 @@
-"""What reaches the skin in an exploration: waves along the line, and how fast they change.
+"""Waves that reach the skin along a line in an exploration, and how fast they change.
 
 The equations are those of `vbraille.sessions.simulated.observer`.
 """
@@ -17,29 +17,29 @@ if TYPE_CHECKING:
 CUTOFF_HZ = 200.0
 FINEST_MM = 0.02
 STILL_MM_S = 1.0
-SPEED_SPAN_S = 0.02  # over which a speed is taken: counts of 45 µm make it no coarser than 2 mm/s
+SPEED_SPAN_S = 0.02  # time for measuring a speed; counts of 45 µm make it 2 mm/s exact
 MOST_MM_S = 1000.0
-_REACHED = 0.9  # of a way that was felt
-_TAILS = 4  # standard deviations of a kernel
+_REACHED = 0.9  # share of a way that must have been felt
+_TAILS = 4  # reach of a kernel in standard deviations
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exploration:
-    """What a hand was given, tick by tick.
+    """Frames that a hand was given, with places and times, tick by tick.
 
     Parameters
     ----------
     frames : float[n, rows, columns]
-        Deflections sent, 0 … 1.
+        Deflections that were sent, 0 … 1.
     x_mm : float64[n]
-        Where the array's centre was; NaN where that was not known.
+        Places of the array's centre; NaN where one is not known.
     time_s : float64[n]
-        When, from anywhere.
+        Times of the ticks, counted from any moment.
 
     Raises
     ------
     ValueError
-        If they differ in length, or time goes back.
+        If the three differ in length, or time goes back.
     """
 
     frames: NDArray[np.floating]
@@ -57,14 +57,14 @@ class Exploration:
             raise ValueError("time goes back or is not a number; it must increase")
 
     def within(self, low_mm: float, high_mm: float) -> Exploration:
-        """The ticks with the array's centre between two places; those without a place are none."""
+        """Ticks whose place is known, with the array's centre between two places."""
         near = (self.x_mm >= low_mm) & (self.x_mm <= high_mm)
         if near.all():
             return self
         return Exploration(self.frames[near], self.x_mm[near], self.time_s[near])
 
     def speeds_mm_s(self) -> NDArray[np.float64]:
-        """Speed at each tick, either way; float64[n]."""
+        """Speed at each tick, never negative; float64[n]."""
         before = np.maximum(self.time_s - SPEED_SPAN_S / 2, self.time_s[0])
         after = np.minimum(self.time_s + SPEED_SPAN_S / 2, self.time_s[-1])
         way = np.interp(after, self.time_s, self.x_mm) - np.interp(before, self.time_s, self.x_mm)
@@ -72,13 +72,13 @@ class Exploration:
 
 
 def smoothing_mm(speed_mm_s: float) -> float:
-    """σ of eq. 2 at a speed, in mm."""
+    """Width σ of the smoothing by equation 2 at a speed, in mm."""
     per_mm_s = math.sqrt(math.log(2)) / (2 * math.pi * CUTOFF_HZ)
     return math.hypot(FINEST_MM, min(speed_mm_s, MOST_MM_S) * per_mm_s)
 
 
 def reference_per_mm2(width_mm: float, pitch_mm: float) -> float:
-    """E₀: eq. 3 of the wave [1 + cos(2πu/W)] / 2, not smoothed."""
+    """Unit of evidence E₀: equation 3 for the wave [1 + cos(2πu/W)] / 2, not smoothed."""
     u_mm = (np.arange(1000) + 0.5) / 1000 * width_mm - width_mm / 2
 
     def slope(at_mm: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -91,14 +91,14 @@ def reference_per_mm2(width_mm: float, pitch_mm: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wave:
-    """What was felt along the line, at the places where something came over.
+    """Strains or swings felt along a line, at the places that sensors came over.
 
     Parameters
     ----------
     u_mm : float64[m]
-        Places, increasing.
+        Places along the line, increasing.
     felt : float64[m, channels]
-        The strongest that came over each.
+        Strongest values that were felt at each place.
     """
 
     u_mm: NDArray[np.float64]
@@ -108,21 +108,20 @@ class Wave:
     def best(
         cls, x_mm: NDArray[np.float64], felt: NDArray[np.floating], pitch_mm: float, steps: int
     ) -> Wave:
-        """The best of all that came over each place.
+        """Keep the strongest values that were felt at each place.
 
-        A place is a pitch / steps long. Of the ticks at one place of the
-        carriage, the one with most energy is kept, whole, and then the same is
-        done for sensors at one place of the line. So each value is one that
-        was felt, at exactly the place where it was.
+        A place is a pitch / steps long. Of all ticks with the carriage at one place, the one with
+        most energy is kept, with all its sensors. Then of all sensors at one place of the line,
+        the one with most energy is kept. So each value was really felt, exactly where it says.
 
         Parameters
         ----------
         x_mm : float64[n]
-            Where the first sensor was, n > 0.
+            Places of the first sensor, n > 0.
         felt : float[n, sensors, channels]
-            What sensors a pitch apart felt.
+            Values felt by sensors that stand a pitch apart.
         pitch_mm, steps
-            Between sensors, and places on that way.
+            Distance between two sensors, and number of places on it.
         """
         sensors = felt.shape[1]
         energy = np.einsum("nsc,nsc->n", felt, felt)
@@ -147,20 +146,20 @@ class Wave:
 
 
 class Rates:
-    """How fast a wave changes, smoothed.
+    """Rates at which a smoothed wave changes along a line.
 
-    Smoothing is by weights of each value: the way that it stands for, times a
-    Gaussian of the distance. Their sum is divided out, so that uneven places
-    do not look like waves.
+    The smoothed wave is a weighted mean. The weight of a value is the length of the line that it
+    stands for, times a Gaussian of its distance. The sum is divided by that of the weights, so that
+    uneven places do not look like waves.
 
     Parameters
     ----------
     wave
-        What was felt, somewhere at least.
+        The wave, which must have at least one place.
     step_mm
-        Between the points at which the rate is taken.
+        Distance between the points at which the rate is taken.
     gap_mm
-        What is further from one value to the next was not felt.
+        Longest distance between two values between which the line counts as felt.
     """
 
     __slots__ = ("_gap_mm", "_start_mm", "_step_mm", "_u_mm", "_weights")
@@ -171,7 +170,7 @@ class Rates:
         self._start_mm = float(u_mm[0])
         halves = np.minimum(np.diff(u_mm), gap_mm) / 2
         way = np.append(halves, gap_mm / 2) + np.append(gap_mm / 2, halves)
-        # Each value is shared between the two points next to it, so that its place stays exact.
+        # Each value is shared between the two nearest points, so that its place stays exact.
         place, part = np.divmod((u_mm - self._start_mm) / step_mm, 1)
         place = place.astype(np.intp)
         size = int(place[-1]) + 2
@@ -184,7 +183,7 @@ class Rates:
         )
 
     def rms(self, left_mm: float, right_mm: float, sigma_mm: float) -> NDArray[np.float64]:
-        """Rms rate on a way (eq. 3); float64[channels], NaN where the hand was not."""
+        """Rms rate between two places by equation 3; float64[channels], NaN if not felt there."""
         first = math.ceil((left_mm - self._start_mm) / self._step_mm)
         count = math.floor((right_mm - self._start_mm) / self._step_mm) - first + 1
         middle_mm = self._start_mm + (first + np.arange(count - 1) + 0.5) * self._step_mm
@@ -209,7 +208,7 @@ class Rates:
 
     @staticmethod
     def _cut(row: NDArray[np.float64], first: int, count: int) -> NDArray[np.float64]:
-        """Part of a row, which reaches into it, with 0 where there is none of it."""
+        """Part of a row from an index on, with 0 where it reaches beyond the row."""
         cut = np.zeros(count)
         low, high = max(first, 0), min(first + count, row.size)
         cut[low - first : high - first] = row[low:high]
