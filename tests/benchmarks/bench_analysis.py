@@ -145,7 +145,7 @@ def _sit(session: Session, random: np.random.Generator) -> None:
     with Journal(session.folder) as journal:
         trace = TraceWriter(session.folder / "trace-001.gz", tie=lambda: journal.durable)
 
-        def log(kind: type[events.Event], trial: Trial | None = None, **fields: Any) -> None:
+        def log(kind: type[events.JournalEvent], trial: Trial | None = None, **fields: Any) -> None:
             of = {} if trial is None else {"trial": trial.number}
             journal.append(kind(**of, **fields, t_s=ticks / TICKS_A_S))
 

@@ -13,8 +13,8 @@ from vbraille.sessions.record.events import (
     Closed,
     Device,
     End,
-    Event,
     Fault,
+    JournalEvent,
     Lost,
     Note,
     Run,
@@ -46,7 +46,7 @@ class BidsRun:
     Parameters
     ----------
     event
-        Event that the run began with.
+        JournalEvent that the run began with.
     events
         Events of the run, after that one.
     notes
@@ -54,7 +54,7 @@ class BidsRun:
     """
 
     event: Run
-    events: list[Event]
+    events: list[JournalEvent]
     notes: dict[int, PlacedNote]
 
     def table(self, first_ns: int | None, *, without_times: bool) -> str:
@@ -88,7 +88,7 @@ class BidsRun:
                 return event.t_s - (time_ns - first_ns) / 1e9
         return self.event.t_s
 
-    def _row(self, event: Event, begun_s: float, without_times: bool) -> dict[str, Any]:
+    def _row(self, event: JournalEvent, begun_s: float, without_times: bool) -> dict[str, Any]:
         note = self.notes.get(event.n)
         text = _text_of(event)
         return {
@@ -103,7 +103,7 @@ class BidsRun:
         }
 
 
-def _text_of(event: Event) -> str:
+def _text_of(event: JournalEvent) -> str:
     """Text that an event carries; empty for kinds without one."""
     match event:
         case Answer():

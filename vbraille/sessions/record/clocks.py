@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from vbraille.sessions.record.journal import up_s
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.events import Event, Run
+    from vbraille.sessions.record.events import JournalEvent, Run
 
 _MOVED_S = 1.0  # smaller differences are ordinary corrections of a clock
 
@@ -39,7 +39,7 @@ class Moment:
         return cls(datetime.now(UTC), up_s(), boot())
 
     @classmethod
-    def of(cls, event: Event, run: Run) -> Self:
+    def of(cls, event: JournalEvent, run: Run) -> Self:
         """Moment at which an event of a run happened."""
         return cls(datetime.fromisoformat(event.wall), event.up_s, run.boot)
 

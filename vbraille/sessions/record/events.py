@@ -18,7 +18,7 @@ def _kind_of(name: str) -> str:
     return re.sub("(?<=[a-z])(?=[A-Z])", "_", name).lower()
 
 
-class Event(
+class JournalEvent(
     msgspec.Struct,
     frozen=True,
     kw_only=True,
@@ -59,7 +59,7 @@ class Event(
         return str(self.__struct_config__.tag)
 
 
-class AnyTime(Event, frozen=True, kw_only=True):
+class AnyTime(JournalEvent, frozen=True, kw_only=True):
     """Something that may happen in a trial or between trials.
 
     Parameters
@@ -97,7 +97,7 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     stimulus: int
 
 
-class Session(Event, frozen=True, forbid_unknown_fields=False, kw_only=True):
+class Session(JournalEvent, frozen=True, forbid_unknown_fields=False, kw_only=True):
     """The session was put on the disk; this is the first event of every journal.
 
     Parameters
@@ -112,7 +112,7 @@ class Session(Event, frozen=True, forbid_unknown_fields=False, kw_only=True):
     sha256: dict[str, str]
 
 
-class Run(Event, frozen=True, kw_only=True):
+class Run(JournalEvent, frozen=True, kw_only=True):
     """A run began: the session was started or resumed, or its engine was started again.
 
     Parameters
@@ -299,7 +299,7 @@ class Well(WithStimulus, frozen=True, kw_only=True):
     time_ns: int
 
 
-class Device(Event, frozen=True, kw_only=True):
+class Device(JournalEvent, frozen=True, kw_only=True):
     """The device reported something.
 
     Parameters
@@ -325,13 +325,13 @@ class BreakWanted(AnyTime, frozen=True):
     """The experimenter asked for a break."""
 
 
-class Break(Event, frozen=True):
+class Break(JournalEvent, frozen=True):
     """A break began."""
 
     durable: ClassVar[bool] = True
 
 
-class Begin(Event, frozen=True):
+class Begin(JournalEvent, frozen=True):
     """Practice was ended."""
 
     durable: ClassVar[bool] = True
@@ -368,13 +368,13 @@ class Note(AnyTime, frozen=True, kw_only=True):
     text: str
 
 
-class Stop(Event, frozen=True):
+class Stop(JournalEvent, frozen=True):
     """The session was stopped, and can be resumed."""
 
     durable: ClassVar[bool] = True
 
 
-class End(Event, frozen=True, kw_only=True):
+class End(JournalEvent, frozen=True, kw_only=True):
     """The session was ended for good.
 
     Parameters
@@ -388,7 +388,7 @@ class End(Event, frozen=True, kw_only=True):
     why: str
 
 
-class Closed(Event, frozen=True, kw_only=True):
+class Closed(JournalEvent, frozen=True, kw_only=True):
     """The engine was closed, or it died.
 
     Parameters
@@ -415,20 +415,20 @@ class Closed(Event, frozen=True, kw_only=True):
     trace_sha256: str = ""
 
 
-class Lost(Event, frozen=True):
+class Lost(JournalEvent, frozen=True):
     """Stand-in for a damaged event when a journal is salvaged; no journal has this kind."""
 
 
-Kind = (
+AnyEvent = (
     Session | Run | Presented | Cue | Contact | Read | Warning | Answer | Undo | Repeat
     | Fault | Well | Device | Pause | Go | BreakWanted | Break | Begin | Tuning | Note
     | Stop | End | Closed
 )  # fmt: skip
-_FROM_JSON = msgspec.json.Decoder(Kind)
+_FROM_JSON = msgspec.json.Decoder(AnyEvent)
 _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")
 
 
-def read(line: bytes) -> Event:
+def read(line: bytes) -> JournalEvent:
     """Read an event from a line of a journal, given as JSON without its checksum.
 
     Raises
@@ -445,14 +445,14 @@ def read(line: bytes) -> Event:
         return _read_slowly(line)
 
 
-def _read_slowly(line: bytes) -> Event:
+def _read_slowly(line: bytes) -> JournalEvent:
     """Read an event that has a lone surrogate, as file names may; fail if it is not JSON."""
     try:
         told = json.loads(line)
     except ValueError:
         raise ValueError("is not JSON") from None
     try:
-        return msgspec.convert(told, Kind)
+        return msgspec.convert(told, AnyEvent)
     except msgspec.ValidationError as error:
         raise ValueError(_fault(told, str(error))) from None
 
@@ -470,7 +470,7 @@ def _fault(told: Any, why: str) -> str:
     return f"{has} {'without' if missing else 'with an unknown field,'} {found[2]!r}"
 
 
-def to_json(event: Event) -> dict[str, Any]:
+def to_json(event: JournalEvent) -> dict[str, Any]:
     """Event in the form that the journal has; `read` makes an equal event of it."""
     told = msgspec.to_builtins(event)
     # The number and the kind come first and the times last, for people who read the journal.

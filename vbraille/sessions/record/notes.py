@@ -10,7 +10,7 @@ from vbraille.sessions.record.events import AnyTime, Note, Presented
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class PlacedNote:
     practice: bool = False
 
 
-def read_notes(events: Iterable[Event]) -> list[PlacedNote]:
+def read_notes(events: Iterable[JournalEvent]) -> list[PlacedNote]:
     """Notes of a session, in order."""
     notes: list[PlacedNote] = []
     before, waiting = 0, 0  # waiting: number of notes whose next trial is still to come

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.procedure import Procedure
     from vbraille.sessions.planning.stimuli import Stimulus, Trial
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
 
 
 @dataclass(slots=True)
@@ -178,7 +178,7 @@ class Progress:
     """
 
     def __init__(
-        self, plan: Plan, events: Iterable[Event] = (), procedure: Procedure | None = None
+        self, plan: Plan, events: Iterable[JournalEvent] = (), procedure: Procedure | None = None
     ) -> None:
         self.plan = plan
         self.procedure = FixedOrder(plan.trials) if procedure is None else procedure
@@ -236,7 +236,7 @@ class Progress:
         """What is known about a trial, practice or not."""
         return (self.practice if trial.practice else self.trials)[trial.number]
 
-    def take(self, event: Event) -> None:
+    def take(self, event: JournalEvent) -> None:
         """Change the state as an event says.
 
         Raises
@@ -288,7 +288,7 @@ class Progress:
             record.lost = sorted({*record.lost, *self._lost})
         self._lost = []
 
-    def _take_between(self, event: Event) -> None:
+    def _take_between(self, event: JournalEvent) -> None:
         """Change the state by an event outside of trials."""
         match event:
             case events.Run():
@@ -313,7 +313,7 @@ class Progress:
                 if self._trial:
                     self.trials[self._trial].lost.append(event.n)
 
-    def _take_in(self, event: Event, record: TrialRecord) -> None:
+    def _take_in(self, event: JournalEvent, record: TrialRecord) -> None:
         """Change the state by an event in a trial."""
         match event:
             case events.Presented():
@@ -366,7 +366,7 @@ class Progress:
             self.history.append(answered)
             self._next = self._ask()
 
-    def _end_pause(self, record: TrialRecord, event: Event) -> None:
+    def _end_pause(self, record: TrialRecord, event: JournalEvent) -> None:
         if self._paused_s is not None:
             record.paused_s += event.t_s - self._paused_s
         self._paused_s = None

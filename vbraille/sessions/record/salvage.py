@@ -17,7 +17,7 @@ from vbraille.sessions.record.events import Lost, Session, read
 from vbraille.sessions.record.journal import LINE, JournalContents, decode
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
 
 
 def salvage(content: bytes) -> JournalContents:
@@ -30,7 +30,7 @@ def salvage(content: bytes) -> JournalContents:
         return told
     *lines, torn = content.split(b"\n")
     whole, found = _read_lines(lines)
-    events: list[Event] = []
+    events: list[JournalEvent] = []
     if lines and found[0] is None and (first := _first(lines[0])):
         # No line before it verifies the first event, but the files whose checksums it has do.
         events.append(first)
@@ -48,12 +48,12 @@ def salvage(content: bytes) -> JournalContents:
     return JournalContents(events, told.good_bytes, told.crcs, torn, told.damage, tuple(bad))
 
 
-def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[Event | None]]:
+def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[JournalEvent | None]]:
     """Whether each line is whole; and its event, kept even if its checksum alone is damaged."""
     whole: list[bool] = []
-    events: list[Event | None] = []
+    events: list[JournalEvent | None] = []
     written, reckoned = {0}, set[int]()  # checksums that the line before may have
-    before: Event | None = None
+    before: JournalEvent | None = None
     for line in lines:
         found = LINE.fullmatch(line)
         if found is None:
@@ -73,7 +73,7 @@ def _read_lines(lines: list[bytes]) -> tuple[list[bool], list[Event | None]]:
     return whole, events
 
 
-def _read(line: bytes) -> Event | None:
+def _read(line: bytes) -> JournalEvent | None:
     """Event of a line; None if the line has no event that is known."""
     try:
         return read(line)
@@ -89,7 +89,7 @@ def _first(line: bytes) -> Session | None:
         return None
 
 
-def _lost(events: list[Event], last: int, near: Event) -> list[Event]:
+def _lost(events: list[JournalEvent], last: int, near: JournalEvent) -> list[JournalEvent]:
     """Stand-ins for the lost events that come after the given ones, up to a number."""
     first = events[-1].n + 1 if events else 1
     return [Lost(n=n, t_s=near.t_s, wall=near.wall) for n in range(first, last + 1)]

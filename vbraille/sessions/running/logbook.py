@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
 
@@ -47,7 +47,7 @@ class Logbook:
         """Begin a run: its time goes on from the total length of the runs before it."""
         self._begun_ns, self._begun_s = self._now_ns(), self._progress.t_s
 
-    def log(self, kind: type[Event], trial: Trial | None = None, **fields: Any) -> None:
+    def log(self, kind: type[JournalEvent], trial: Trial | None = None, **fields: Any) -> None:
         """Write an event; if its kind is durable, it is on the disk when this returns.
 
         Parameters

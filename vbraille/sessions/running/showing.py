@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
@@ -85,7 +85,7 @@ class Happened(NamedTuple):
         Those fields of the kind that are known here.
     """
 
-    kind: type[Event]
+    kind: type[JournalEvent]
     fields: dict[str, Any]
 
 
