@@ -79,7 +79,7 @@ class SimulatedDevice(Device):
         self.frames = 0
         self._begun_ns = now_ns()
         self._t_s: NDArray[np.float64] = np.zeros(1)
-        # Times of the motion, x as in `Motion`, y and θ; each float64[n].
+        # Places at these times: x as in `Motion`, y and θ; each float64[n].
         self._way = tuple(np.full(1, place) for place in (-info.span_mm, 0.0, 0.0))
 
     @property
