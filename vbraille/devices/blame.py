@@ -47,7 +47,7 @@ def naming(driver: EntryPoint) -> Iterator[None]:
 def _blame(driver: EntryPoint, error: Exception | SystemExit) -> NoReturn:
     where = _place(driver, error)
     if where is None and isinstance(error, OSError):
-        raise error  # perhaps our own output is closed
+        raise error  # perhaps an error of our own output
     what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
     if where is None:
         where = f"{driver.value}; no line of its own was at work"
