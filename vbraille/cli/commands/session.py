@@ -203,7 +203,7 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
     Raises
     ------
     InputError
-        If the participant is, or nobody is there who could be asked.
+        If the participant is one of those, or nobody is there who could be asked.
     """
     found = nearly_same(room, participant)
     if found is None:
