@@ -22,12 +22,12 @@ class DeviceError(VbrailleError):
 
 
 def check_range(what: str, value: float | None, low: float, high: float, unit: str = "") -> None:
-    """See that a number, which may be left out, is in a range.
+    """Check that a number is in a range; None passes.
 
     Raises
     ------
     ValueError
-        If it is not, or is no number; it names the value and the range.
+        If it is not in the range, or is no number; the message names the value and the range.
 
     >>> check_range("gap", 61.0, 0, 60, " s")
     Traceback (most recent call last):

@@ -28,14 +28,14 @@ def whole_file(path: Path, *, replace: bool = False) -> Iterator[Path]:
     Parameters
     ----------
     path
-        The file to make.
+        File to make.
     replace
-        Whether it may take the place of a file that is there, which is the old one till then.
+        Whether an existing file may be replaced; it stays as it is until then.
 
     Raises
     ------
     FileExistsError
-        If there is a file that may not be replaced.
+        If a file exists that may not be replaced.
     OSError
         If the file cannot have its name for another reason.
     """
@@ -57,18 +57,18 @@ def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bo
     Parameters
     ----------
     path, content
-        The file, and what is to be in it.
+        Path of the file, and its content.
     replace
-        Whether it may take the place of a file that is there.
+        Whether an existing file may be replaced.
     durable
         Whether it must be on the disk when this returns, and not in the system's memory alone.
 
     Raises
     ------
     InputError
-        If it is there and may not be replaced, or cannot be made.
+        If the file exists and may not be replaced, or cannot be made.
     VbrailleError
-        If the disk does not take it.
+        If the disk cannot take the file.
     """
     if not path.name:
         raise InputError(f"{path} is a directory; give the name of a file with {setting('out')}")
@@ -100,25 +100,25 @@ def write_folder(
     Parameters
     ----------
     folder
-        Not there yet, or empty.
+        Directory that does not exist yet, or is empty.
     files
-        What is to be in each file, by their paths in the directory.
+        Content of each file, by its path in the directory.
     durable
         Whether all must be on the disk when this returns, and not in the system's memory alone.
     clear
-        Removes what was left under the other name by a process that was killed.
+        Function that removes what a killed process left under the other name.
 
     Raises
     ------
     InputError
-        If there is something already, or no directory can be made there.
+        If something exists at the path, or no directory can be made there.
     VbrailleError
-        If the disk does not take it.
+        If the disk cannot take the directory.
     """
     folder = folder.absolute()
     check_free(folder)
     partial = _partial(folder)
-    made: list[Path] = []  # each in the one before
+    made: list[Path] = []  # each is in the one before
     try:
         for parent in missing(folder.parent):
             parent.mkdir()
@@ -150,12 +150,12 @@ def write_folder(
 
 
 def check_free(folder: Path) -> None:
-    """See that a new directory can have this name.
+    """Check that a new directory can have this name.
 
     Raises
     ------
     InputError
-        If there is something already, or it cannot be seen.
+        If something exists at the path, or it cannot be seen whether it does.
     """
     try:
         taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
@@ -166,12 +166,12 @@ def check_free(folder: Path) -> None:
 
 
 def missing(folder: Path) -> list[Path]:
-    """Directories that are not there yet, each in the one before."""
+    """Directories that do not exist yet, each in the one before."""
     return [path for path in (*reversed(folder.parents), folder) if not path.exists()]
 
 
 def _partial(path: Path) -> Path:
-    """What is being written is called so until it is whole."""
+    """Path that a file or directory has until it is written whole."""
     return path.with_name(f".{path.name}.partial")
 
 

@@ -151,12 +151,12 @@ def read(descriptor, out, start):
     out : uint8[bytes]
         Memory for the bytes, contiguous.
     start : int64
-        Where in ``out`` to begin.
+        Index in ``out`` at which to begin.
 
     Returns
     -------
     int64
-        How many bytes were read, 0 at the end of the file; -errno if that fails, -EINVAL if
+        Number of bytes read, 0 at the end of the file; -errno if reading fails, -EINVAL if
         ``start`` is outside ``out``.
     """
     if start < 0 or start > out.size:

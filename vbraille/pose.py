@@ -25,13 +25,13 @@ class Pose(NamedTuple):
     Parameters
     ----------
     time_ns
-        When it was there, in ns of the device's clock.
+        Time of the pose, in ns of the device's clock.
     x_mm, y_mm
         The array's centre on the canvas. At the left stop of a slider the whole array stands
         before the line: x = -(columns - 1) / 2 · pitch. A slider measures no y: it says 0, and
         the picture is shown where it has its dots.
     theta_rad
-        How far the array is turned, in radians; 0 where that is not measured.
+        Angle by which the array is turned, in radians; 0 where that is not measured.
     """
 
     time_ns: int

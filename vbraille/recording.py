@@ -46,7 +46,7 @@ class Recorder:
     display
         The actuators and the carriage.
     width
-        How many cells a line has.
+        Number of cells in a line.
     """
 
     def __init__(self, file: NewFile, display: Display, width: int) -> None:
@@ -234,7 +234,7 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
     Parameters
     ----------
     path
-        The file to make.
+        Path of the file to make.
     replace
         Whether it may take the place of a file that is there.
 

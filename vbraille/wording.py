@@ -48,23 +48,23 @@ def spelled(message: str) -> str:
 
 
 def nearest(name: str, names: Iterable[str], most: int = 1) -> str:
-    """What comes nearest to a name that is not there, the nearest first.
+    """Sentence part that names what comes nearest to an unknown name, the nearest first.
 
     Parameters
     ----------
     name
-        What somebody wrote.
+        Name that somebody wrote.
     names
-        All that there are, at least one.
+        All names that there are, at least one.
     most
-        How many of them are said.
+        Largest number of names that are said.
 
     >>> nearest("lenght", ["length", "repeats"])
     'the nearest is length'
     >>> nearest("lenght", ["length", "repeats", "strength"], 2)
     'the nearest are length, strength'
     """
-    import difflib  # like re
+    import difflib  # takes long to load, like re
 
     close = difflib.get_close_matches(name, names, most, cutoff=0.0)
     return f"the nearest {'is' if len(close) == 1 else 'are'} {', '.join(close)}"
@@ -80,7 +80,7 @@ def count(number: int, noun: str) -> str:
 
 
 def duration(seconds: float) -> str:
-    """About how long, in seconds, minutes or hours.
+    """Words for about how long something takes, in seconds, minutes or hours.
 
     >>> duration(9.4), duration(754), duration(12_600)
     ('9 s', '13 min', '3.5 h')

@@ -57,7 +57,7 @@ def analyse(
     sites
         Whether each folder that something stands in has participants of its own.
     factors
-        Columns by which trials are compared; by the condition if not given.
+        Columns by which trials are compared; the column ``condition`` if not given.
     correction
         How the p-values of t-tests are corrected for their number: "none", "bonferroni", "holm"
         or "fdr".
@@ -77,7 +77,7 @@ def analyse(
     VbrailleError
         If a session has lost what it began with.
     """
-    # Here, so that a program that only offers this function need not wait for statistics.
+    # Imported here, so that a program that only offers this function need not wait for statistics.
     from vbraille.analysis.chapters import analyse_study, options_of
     from vbraille.analysis.input.study import load_study
 
@@ -94,14 +94,15 @@ def analyse_scores(
     Parameters
     ----------
     path
-        CSV file with the columns ``participant``, ``score``, and one or more of what was varied.
+        CSV file with the columns ``participant``, ``score``, and one or more columns of what was
+        varied.
     correction, seed
-        As of `analyse`.
+        What they are in `analyse`.
 
     Raises
     ------
     InputError
-        If it is no such table.
+        If the file is no such table.
     ValueError
         If there is no such correction.
     """

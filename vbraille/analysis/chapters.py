@@ -35,12 +35,12 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable
 
 SEED = 20090618
-_MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that there is
+_MAIN = ("means_", "legibility", "choices_")  # beginnings of names, the first that is found first
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What may be chosen.
+    """What may be chosen in an analysis.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ class Options:
     marks
         Errors above these counts are marked in confusion matrices.
     seed
-        Seed of what is drawn: resamples of comparisons, and shares that information is worked
-        out of.
+        Seed of what is drawn at random: resamples of comparisons, and the shares that
+        information is worked out of.
 
     Raises
     ------
@@ -70,7 +70,7 @@ class Options:
             raise ValueError(f"correction is {self.correction!r}; it must be one of {METHODS}")
 
     def told(self) -> list[tuple[str, str]]:
-        """What was chosen, for the report's head."""
+        """What was chosen, as pairs of a word and a sentence, for the report's head."""
         return [
             ("Correction of t-tests", METHODS[self.correction]),
             ("Compared by", ", ".join(self.factors)),
@@ -79,7 +79,7 @@ class Options:
 
 
 def options_of(correction: str, **chosen: Any) -> Options:
-    """Options with what is chosen; those that are None are as they are without a choice."""
+    """Options with what is chosen; what is chosen as None keeps its default."""
     given = {name: value for name, value in chosen.items() if value is not None}
     return Options(correction=correction, **given)
 
@@ -113,7 +113,7 @@ def compare_scores(scores: Scores, about: Sequence[tuple[str, str]], options: Op
     Parameters
     ----------
     about
-        Where it comes from.
+        Where the table comes from, as pairs of a word and a sentence.
     """
     left_out: list[LeftOut] = []
     chapter = _compared([scores], options, left_out)
@@ -129,7 +129,7 @@ def _told(
     warnings: Sequence[str],
     chapters: Sequence[Chapter],
 ) -> Results:
-    """Results with what was found in them, and the figure that shows it."""
+    """Results with the sentences of what was found, and the figure that stands beside them."""
     told = findings(table for chapter in chapters for table in chapter.tables)
     names = [figure.name for chapter in chapters for figure in chapter.figures]
     main = next(

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.schemas import ResultTable, Row
 
-SURE = 0.05  # p below which a difference is called one
-_TOLD = ("legibility of strings", "duration (s)", "score")  # of the measures; the tables have all
-_MOST = 6  # sentences about pairs of levels, or conditions in one; the tables have all
+SURE = 0.05  # p below which two things are called different
+_TOLD = ("legibility of strings", "duration (s)", "score")  # measures told; the tables have all
+_MOST = 6  # sentences about pairs of levels, or conditions in one sentence; the tables have all
 _NO_INTERVAL = "no interval"
 
 
 def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
-    """Sentences, in the order of the report; what the tables do not have is not told.
+    """Sentences about the tables, in the order of the report.
 
     Parameters
     ----------
@@ -43,10 +43,10 @@ def findings(tables: Iterable[ResultTable]) -> tuple[str, ...]:
 def interval_words(
     row: Row, kind: Kind, unit: str = "", ends: Sequence[str] = ("low", "high")
 ) -> str:
-    """Words for a row's 95 % interval; why it has none, as its note says."""
+    """Words for a row's 95 % interval; if it has none, the reason that its note gives."""
     low, high = (row.get(end) for end in ends)
     if low is None or high is None:
-        # A note may tell of the interval of something else too: "no interval of d_z: …".
+        # A note may be about the interval of something else too: "no interval of d_z: …".
         own = tuple(ends) == ("low", "high")
         reasons = [
             part
@@ -246,7 +246,7 @@ def _whose(row: Row) -> str:
 
 
 def _plain(measure: str) -> str:
-    """Measure without its unit, to begin a sentence."""
+    """Name of a measure without its unit, to begin a sentence with."""
     name = measure.removesuffix(" (s)")
     return name[:1].upper() + name[1:]
 

@@ -25,13 +25,13 @@ class ReportFigure:
     name
         Name of its files: "legibility".
     title
-        What it shows, in a line.
+        What the figure shows, in a line.
     text
         What is to be seen in it, in sentences, for somebody who does not see it.
     table
-        Name of the table that has its numbers.
+        Name of the table that has the figure's numbers.
     chart
-        What is drawn.
+        Chart that is drawn.
     """
 
     name: str
@@ -48,11 +48,11 @@ class Chapter:
     Parameters
     ----------
     title
-        Its heading.
+        Heading of the chapter.
     text
-        What it is about: a sentence or two.
+        What the chapter is about: a sentence or two.
     tables, figures
-        What it shows, in order: figures stand after the tables.
+        What the chapter shows, in order: figures stand after the tables.
     """
 
     title: str
@@ -63,7 +63,7 @@ class Chapter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Results:
-    """All that is reported.
+    """All that an analysis reports.
 
     Parameters
     ----------
@@ -78,16 +78,16 @@ class Results:
     findings
         What was found, in sentences.
     main
-        Name of the figure that is shown beside these; empty for none.
+        Name of the figure that is shown beside the findings; empty for none.
     trials
-        The trials as they were analysed, with all columns that were given; None without any.
+        Trials that were analysed, with all columns that were given; None if there were none.
     faults
-        What of the sessions is damaged, a clause each.
+        What is damaged in the sessions, in clauses.
 
     Raises
     ------
     ValueError
-        If there is no such figure.
+        If the main figure is not among the figures.
     """
 
     title: str
@@ -109,7 +109,7 @@ class Results:
         return {table.name: table.frame for table in self.result_tables()}
 
     def table(self, name: str) -> pd.DataFrame:
-        """One table as a data frame: its columns are those that docs/analysis.md tells of.
+        """One table as a data frame: docs/analysis.md describes its columns.
 
         Raises
         ------
@@ -121,11 +121,11 @@ class Results:
         return self.tables[name]
 
     def main_figure(self) -> ReportFigure | None:
-        """The figure that stands first; None if none does."""
+        """Figure that stands first in the report; None if none does."""
         return next((figure for figure in self.figures() if figure.name == self.main), None)
 
     def result_tables(self) -> Iterator[ResultTable]:
-        """All tables with what is told of them, in the order of the report."""
+        """All tables with titles, columns and notes, in the order of the report."""
         for chapter in self.chapters:
             yield from chapter.tables
 

@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 Value = str | int | float | None
 Row = dict[str, Any]  # a row's values, by the columns' names
 NOTE = "note"
-OTHER = "."  # heads the column of rare answers, as in the source
-_DIGITS = 12  # more than a measurement has, fewer than rounding in binary spoils
+OTHER = "."  # heading of the column of rare answers, as in the source
+_DIGITS = 12  # more digits than a measurement has, fewer than rounding in binary spoils
 
 
 class Kind(Enum):
-    """What a column holds, and how the report prints it; its CSV and JSON have it in full."""
+    """What a column holds, and how the report prints it; CSV and JSON have its full precision."""
 
     TEXT = "text"
     COUNT = "count"
-    VALUE = "value"  # a number as short as it is: of a parameter that was varied
+    VALUE = "value"  # a number as short as it can be: the value of a parameter
     PERCENT = "percent"
     SECONDS = "seconds"
     NUMBER = "number"
@@ -46,7 +46,7 @@ class Kind(Enum):
     P = "p"
 
 
-# Strings of Python: pandas may keep them in Arrow instead, which refuses undecodable file names.
+# Python strings: pandas may keep text in Arrow instead, which refuses undecodable file names.
 _DTYPES = {Kind.TEXT: pd.StringDtype("python", na_value=np.nan), Kind.COUNT: pd.Int64Dtype()}
 _FACTORS = {Kind.PERCENT: 100}
 _DECIMALS = {
@@ -60,18 +60,18 @@ _DECIMALS = {
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column.
+    """A column of a table.
 
     Parameters
     ----------
     name
-        What CSV and JSON call it, with the unit: "duration_s".
+        Name of the column in CSV and JSON, with the unit: "duration_s".
     heading
-        What the report calls it, with the unit that is printed: "legibility (%)".
+        Heading of the column in the report, with the unit that is printed: "legibility (%)".
     meaning
-        What it holds, for the document.
+        What the column holds, for the document.
     kind
-        How its values are kept and printed.
+        How the column's values are kept and printed.
     """
 
     name: str
@@ -81,17 +81,17 @@ class Column:
 
     @property
     def dtype(self) -> Any:
-        """Type of the column in a data frame; numbers other than counts are float64."""
+        """Type of the column in a data frame; numbers that are no counts are float64."""
         return _DTYPES.get(self.kind, np.float64)
 
 
-# Where a value may be missing: why it is.
+# Column of a table where a value may be missing: it says why.
 NOTE_COLUMN = Column(NOTE, "note", "why a value is missing, or what to know of the row")
 
 
 @dataclass(frozen=True, slots=True)
 class Schema:
-    """What a table has in every analysis: name, title and columns are known before any trial.
+    """What is known of a table before any trial: name, title, columns.
 
     Parameters
     ----------
@@ -100,11 +100,11 @@ class Schema:
     title
         What the table shows, in a line.
     about
-        How its numbers were found, in sentences.
+        How the table's numbers were found, in sentences.
     columns
         Columns in their order.
     grows
-        What the columns after these are, where that depends on the trials; else empty.
+        What further columns there are, where that depends on the trials; otherwise empty.
     """
 
     name: str
@@ -125,21 +125,21 @@ class Schema:
         more: Sequence[Column] = (),
         marks: Sequence[int] = (),
     ) -> ResultTable:
-        """Make a table.
+        """Make a table of these columns.
 
         Parameters
         ----------
         rows
-            Values by the columns' names; a name left out is a missing value.
+            Values by the names of columns; a name that is left out is a missing value.
         notes, marks
-            As of `ResultTable`.
+            What they are in `ResultTable`.
         more
-            Columns after those of the schema.
+            Further columns after those of the schema.
 
         Raises
         ------
         ValueError
-            If there is a column of another name, or `ResultTable` refuses the rows.
+            If a row names an unknown column, or `ResultTable` refuses the rows.
         """
         schema = replace(self, columns=(*self.columns, *more))
         given = pd.DataFrame(rows)
@@ -156,7 +156,7 @@ class Schema:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ResultTable:
-    """Rows of one kind.
+    """A table of results: a schema, and rows that follow it.
 
     Parameters
     ----------
@@ -165,17 +165,17 @@ class ResultTable:
     frame
         The rows, each column of its `Column.dtype`; numbers are finite or missing.
     notes
-        What cannot be said, with the reason; for a table without rows at least one.
+        What cannot be said, with the reason; a table without rows has at least one note.
     marks
-        Counts in ascending order, for a confusion matrix: errors above each are marked in the
-        report. All columns of counts are answers then, but for the first column, what was
-        presented.
+        Counts in ascending order, for a confusion matrix: errors above each of them are marked
+        in the report. In such a table all columns of counts are answers, except the first: that
+        is what was presented.
 
     Raises
     ------
     ValueError
-        If a number is not finite or a value is missing without a word, or the table has neither
-        rows nor notes.
+        If a number is not finite, if a value is missing without a note, or if the table has
+        neither rows nor notes.
     """
 
     schema: Schema
@@ -203,7 +203,7 @@ class ResultTable:
 
     @property
     def name(self) -> str:
-        """Name of the table, as of its `Schema`."""
+        """Name of the table; see `Schema`."""
         return self.schema.name
 
     @property
@@ -230,7 +230,7 @@ class ResultTable:
         return self.frame.astype(object).where(self.frame.notna(), None)
 
     def is_right(self, row: Sequence[Value], at: int) -> bool:
-        """Whether a column of a confusion matrix has a row's right answers."""
+        """Whether a column of a confusion matrix counts a row's right answers."""
         return bool(self.marks) and at > 0 and self.columns[at].heading == row[0]
 
     def mark(self, row: Sequence[Value], at: int) -> int | None:
@@ -251,11 +251,11 @@ class ResultTable:
         ]
 
     def gathered(self) -> ResultTable:
-        """Confusion matrix as it is shown: rare answers that were never presented in one column.
+        """Confusion matrix as it is shown: rare answers that were never presented share a column.
 
-        That is the last, `OTHER`, as in Lévesque 2009, table 4.1. An answer is rare if none of its
-        counts is above the first of the marks. Where an answer for itself would be no more
-        than that column it stays; a table without marks does.
+        That column, `OTHER`, is the last, as in Lévesque 2009, table 4.1. An answer is rare if none
+        of its counts is above the first of the marks. A single rare answer keeps its own column,
+        and a table without marks keeps all.
         """
         if not self.marks:
             return self
@@ -286,14 +286,14 @@ class ResultTable:
 
 
 def to_csv(frame: pd.DataFrame) -> str:
-    """Text of a table as CSV: full precision, a missing value empty."""
+    """Text of a table as CSV: numbers in full precision, a missing value empty."""
     return frame.to_csv(index=False, lineterminator="\n")
 
 
 def to_print(value: Value, kind: Kind) -> str:
-    """Text of a value in the report; numbers are rounded half up, which nothing else is.
+    """Text of a value in the report. Numbers are rounded half up here, and only here.
 
-    Half to even would print 86.25 % as 86.2, where Lévesque 2009, table 3.1, has 86.3.
+    Rounding half to even would print 86.25 % as 86.2, where Lévesque 2009, table 3.1, has 86.3.
 
     >>> to_print(0.8625, Kind.PERCENT), to_print(2.0, Kind.VALUE), to_print(None, Kind.COUNT)
     ('86.3', '2', 'not known')
@@ -310,14 +310,14 @@ def to_print(value: Value, kind: Kind) -> str:
 
 
 def round_half_up(value: float, decimals: int) -> str:
-    """Text of a number rounded half away from 0: of the decimal that was meant, not the binary."""
+    """Text of a number rounded half away from 0, as if the decimal that is meant were exact."""
     exact = Decimal(f"{value:.{_DIGITS}g}")
     rounded = exact.quantize(Decimal(1).scaleb(-decimals), ROUND_HALF_UP, Context(MAX_PREC))
     return f"{abs(rounded) if rounded == 0 else rounded}".replace("-", "−")
 
 
 def _refuse_nan(table: str, rows: Sequence[Row]) -> None:
-    """Raise ValueError for a number that could not be found: a missing value is None."""
+    """Raise ValueError for NaN, since a missing value is None."""
     for row in rows:
         if any(isinstance(value, float) and math.isnan(value) for value in row.values()):
             raise ValueError(f"table {table}: {row} has a number that is not finite")

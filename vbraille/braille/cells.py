@@ -23,7 +23,7 @@ _BRF_MASKS[_BRF_CODES] = np.arange(64, dtype=np.uint8)
 # Files in the wild use 0x60-0x7E for 0x40-0x5E, letters in lower case among them.
 _BRF_MASKS[0x60:0x7F] = _BRF_MASKS[0x40:0x5F]
 
-_PATTERNS = 0x100  # of Unicode, from `UNICODE_BLANK` on
+_PATTERNS = 0x100  # patterns in Unicode, from `UNICODE_BLANK` on
 _DOTS = ["-".join(map(str, dots_of(mask))) or "0" for mask in range(256)]
 
 

@@ -31,7 +31,7 @@ _LONGEST_QUOTE = 20
 
 
 def to_braille(masks: Iterable[int]) -> str:
-    """Unicode braille of some cells."""
+    """Unicode braille of cells."""
     return "".join(chr(UNICODE_BLANK + mask) for mask in masks)
 
 
@@ -109,15 +109,15 @@ def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
 
 
 def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: int) -> str:
-    """Answer as it is kept: a Unicode braille character a place, ``?`` for one not read.
+    """Answer as it is kept: Unicode braille for each place, ``?`` for a place not read.
 
     Parameters
     ----------
     text
-        As typed: spelled as for `spell`, with letters in either case and ``?``
-        for a place. A lone ``?`` is all places not read.
+        Text as typed: spelled as for `spell`, with letters in either case and ``?`` for a place
+        not read. A lone ``?`` means that no place was read.
     places
-        Cells asked for.
+        Number of cells asked for.
     keys
         Dot mask of each key of the protocol.
     shown_dots
@@ -160,7 +160,7 @@ def parse_choice(text: str) -> str:
     Raises
     ------
     ValueError
-        If it is something else.
+        If the text is something else.
     """
     word = text.strip().lower()
     if word in ("1", "f", "first"):
@@ -172,14 +172,14 @@ def parse_choice(text: str) -> str:
 
 
 def say_cells(answer: str, keys: dict[str, int]) -> str:
-    """Words for speech: one a place, with a space between.
+    """Words for speech: one for each place, with a space between.
 
     Parameters
     ----------
     answer
-        Unicode braille, ``?`` for a place not read.
+        Answer in Unicode braille, with ``?`` for a place not read.
     keys
-        Dot mask of each key of the protocol. A cell that has one is said by it.
+        Dot mask of each key of the protocol. A cell that has a key is said by it.
     """
     return " ".join(_say(place, keys) for place in answer)
 
@@ -199,14 +199,14 @@ def _say(place: str, keys: dict[str, int]) -> str:
 
 
 def _either_case(keys: dict[str, int]) -> dict[str, int]:
-    """What answers may be typed with: letters and keys in either case, as they win."""
+    """Spellings in which answers may be typed: letters and keys in either case; keys win."""
     cells = LETTERS | {letter.upper(): mask for letter, mask in LETTERS.items()}
     cells |= {key.upper(): mask for key, mask in keys.items() if len(key.upper()) == 1}
     return cells | keys
 
 
 def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
-    """Each cell as it is spelled, and its dot mask."""
+    """Spelling and dot mask of each cell."""
     cells: list[tuple[str, int]] = []
     for word in text.split():
         if _DOT_NUMBERS.fullmatch(word):
@@ -244,7 +244,7 @@ def _count(number: int) -> str:
 
 
 def _quote(text: str) -> str:
-    """What was typed, as it can be said in a sentence."""
+    """Typed text, as it can be said in a sentence."""
     return _shorten(text.strip())
 
 

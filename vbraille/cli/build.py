@@ -39,13 +39,13 @@ class Page:
     Parameters
     ----------
     layout
-        Its lines.
+        Lines of the text.
     model
-        What they are laid out for.
+        Display and style that the lines are laid out for.
     first, last
-        Lines asked for.
+        Numbers of the first and last line that were asked for.
     unknown
-        Counts what the table does not know; None where there is no table.
+        Counter of characters that the table does not know; None where there is no table.
     """
 
     layout: Layout
@@ -56,30 +56,30 @@ class Page:
 
     @property
     def source(self) -> Source:
-        """The text."""
+        """Source of the text."""
         return self.layout.book.source
 
     def lines(self) -> Iterator[Line]:
-        """Lines asked for; says on stderr what the text's encoding and script need saying."""
+        """Lines asked for; stderr is told of the text's encoding and script if need be."""
         for line in self.layout.lines(self.first, self.last):
             self.say_note()
             self._count(line)
             yield line
 
     def see(self, number: int) -> None:
-        """Count what the table does not know on a line that was laid out."""
+        """Count the characters on a line that the table does not know; it must be laid out."""
         line = self.layout.line(number)
         if line is not None:
             self._count(line)
 
     def progress(self, line: Line) -> float:
-        """How much of the lines asked for is done with this one, about, 0 to 1."""
+        """Estimated share of the lines asked for that is done with this one, 0 to 1."""
         if self.last is None:
             return self.layout.progress(line)
         return (line.number - self.first + 1) / (self.last - self.first + 1)
 
     def share_before(self, line: Line) -> float:
-        """How much of the lines asked for stands before one of them, about, 0 to 1."""
+        """Estimated share of the lines asked for that stands before one of them, 0 to 1."""
         if self.last is not None:
             return (line.number - self.first) / (self.last - self.first + 1)
         first = self.layout.line(self.first)
@@ -105,16 +105,16 @@ class Page:
 def build_lengths(
     arguments: argparse.Namespace, model: Model, travel_mm: float | None = None
 ) -> Model:
-    """A display and its style with the distances of the options.
+    """Display and style with the distances of the options.
 
     Parameters
     ----------
     arguments
-        What the command was given.
+        Parsed options of the command.
     model
-        The display and the style that the options change.
+        Display and style that the options change.
     travel_mm
-        How far the carriage goes where the options do not say.
+        Travel of the carriage where the options do not give one.
 
     Raises
     ------
@@ -137,12 +137,12 @@ def build_lengths(
 
 
 def build_table(arguments: argparse.Namespace) -> BrailleTable:
-    """Table of the text.
+    """Table for the text.
 
     Raises
     ------
     InputError
-        If there is none such.
+        If there is no such table.
     """
     undefined = Undefined(arguments.undefined)
     if arguments.table is None:
@@ -154,7 +154,7 @@ def build_table(arguments: argparse.Namespace) -> BrailleTable:
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
-    """The text and its table, before anything is laid out; a BRF file has none.
+    """Text and table, before anything is laid out; a BRF file has no table.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -215,7 +215,7 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
 
 
 def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
-    """Page of the text, and say on stderr how wide it is.
+    """Page of the text; stderr is told how wide it is.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -229,7 +229,7 @@ def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page
 
 
 def _eight_dots(table: BrailleTable) -> str:
-    """What to say of a table of eight dots where only six can be written."""
+    """Sentence on a table of eight dots where only six can be written."""
     info = table.info
     other = None if info is None else six_dot_table(info.language)
     instead = f"give --table {other}, which has six, or" if other else "give"
@@ -240,12 +240,12 @@ def _eight_dots(table: BrailleTable) -> str:
 
 
 def build_show(arguments: argparse.Namespace, model: Model) -> Model:
-    """A display and its style with the mapping and the tuning of the options.
+    """Display and style with the mapping and the tuning of the options.
 
     Raises
     ------
     InputError
-        If an option is out of range or not the display's.
+        If an option is out of range or not for this display.
     """
     style = model.style
     if style.mapping.rows == 1:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; its exit code.
+    """Run a command, and give its exit code.
 
     0 is done, 1 a fault at run time or a signal, 2 something that cannot be used.
     Afterwards signals are ignored: the program is at its end.
@@ -87,7 +87,7 @@ class _Closed(RawIOBase):
 
 
 def _run(argv: Sequence[str] | None) -> tuple[str, int]:
-    """Run a command; what to say of its failure, and its exit code."""
+    """Run a command; give a sentence on its failure, and its exit code."""
     try:
         code = _call(argv)
         sys.stdout.flush()

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Options = Callable[[argparse.ArgumentParser], None]
 
-# Of each command: what it does, how its options are made, and an example.
+# For each command: what it does, how its options are made, and an example.
 COMMANDS: dict[str, tuple[str, Options, str]] = {
     "read": (
         "Read a text on a device, line after line.",
@@ -135,7 +135,7 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**settings, formatter_class=_Help, allow_abbrev=False)
 
     def format_help(self) -> str:
-        """Help as argparse has it, and after that of reading the keys."""
+        """Help as argparse has it, followed for reading by help on the keys."""
         return super().format_help() + (_keys() if self.prog == "vbraille read" else "")
 
     def error(self, message: str) -> NoReturn:
@@ -200,7 +200,7 @@ def _add_log(command: argparse.ArgumentParser) -> None:
 
 
 def _keys() -> str:
-    """What the keys do at a terminal, a line each."""
+    """Lines on what the keys do at a terminal, one for each key."""
     from vbraille.reading.commands import COMMANDS as KEYS
 
     width = max(len(command.spoken_keys) for command in KEYS)

@@ -29,7 +29,7 @@ class Stopped(BaseException):
 
 
 class _Ear:
-    """What hears the process's signals; there is one, as there is one set of them.
+    """Listens to the process's signals; there is one such object, as there is one set of signals.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class _Ear:
 
     @contextmanager
     def deferred(self) -> Iterator[None]:
-        """Only `heed` stops here: what calls back from C must not meet an exception there."""
+        """Let only `heed` stop here: code that is called back from C must not meet an exception."""
         self._deferred = True
         try:
             yield

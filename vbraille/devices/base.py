@@ -29,19 +29,19 @@ _largest = np.maximum.reduce
 
 @dataclass(frozen=True, slots=True)
 class Particulars:
-    """What a device may say of itself that reading does not ask for, but a builder does.
+    """What a device may say of itself that only its builder asks for, and reading does not.
 
     Parameters
     ----------
     firmware
-        The version of its firmware.
+        Version of the device's firmware.
     encoder
-        What its encoder knows of its place, in words.
+        What the encoder knows of its place, in words.
     largest_slew_per_s
-        Fastest that an actuator may be moved, in full swings a second; 0 is no limit.
+        Fastest that an actuator may be moved, in full swings a second; 0 for no limit.
     disabled, inverted
-        Actuators that are broken, not fitted or without a swing, and those whose rest is the
-        highest level: row and column of each, from 0.
+        Row and column, from 0, of each actuator that is broken, not fitted or without a swing,
+        and of each whose rest is the highest level.
     """
 
     firmware: str
@@ -58,28 +58,29 @@ class Device(ABC):
     keeps a bad frame from the actuators and brings them to rest before the
     device is let go. The rest is for devices that can do more, or fail.
 
-    A device that can be lost and found (unplugged, silent) goes on by itself:
-    meanwhile `read` gives None, frames are dropped, and `take_events` tells what is.
+    A device that can be lost and found (unplugged, silent) goes on by itself: as long as it is
+    away `read` gives None, frames are dropped, and `take_events` tells what has happened.
 
     Attributes
     ----------
     rested : int
-        How often the actuators went to rest otherwise than by a frame of 0, so
-        that the next frames must fade in.
+        How often the actuators went to rest otherwise than by a frame of 0, after which the next
+        frames must fade in.
     placing : Placing
-        What it waits for before it can tell places; `read` gives None till then.
+        What the device waits for before it can tell places; `read` gives None until then.
     taking : bool
-        Whether frames reach the actuators; False while these rest by themselves, and fade in then.
+        Whether frames reach the actuators. It is False while they rest by themselves; after that
+        frames fade in.
     acknowledges : bool
-        Whether the device says which frames it has.
+        Whether the device tells which frames it has received.
     acknowledged_ns : int or None
-        How long after the last frame was written the device said that it has it;
-        None as long as it did not.
+        How long after the last frame was written the device told that it had received it; None as
+        long as it did not.
     watchdog_trips : int or None
-        How often the device's watchdog brought the actuators to rest, as the device says;
-        None if it does not say.
+        How often the device's watchdog brought the actuators to rest, by the device's own count;
+        None if it does not tell.
     particulars : Particulars or None
-        What else it says of itself.
+        What else the device says of itself.
     """
 
     rested = 0
@@ -98,7 +99,7 @@ class Device(ABC):
 
     @abstractmethod
     def read(self) -> Pose | None:
-        """Newest sample since the last call, or None; never waits.
+        """Newest sample since the last call, or None; this never waits.
 
         Raises
         ------
@@ -108,43 +109,43 @@ class Device(ABC):
 
     @abstractmethod
     def _send(self, frame: NDArray[np.float64]) -> None:
-        """Send a checked frame; never waits. The array is the caller's: copy what is kept."""
+        """Send a checked frame; this never waits. The array is the caller's: copy what is kept."""
 
     @abstractmethod
     def _release(self) -> None:
-        """Let the device go; called once, after rest was sent."""
+        """Let the device go; this is called once, after rest was sent."""
 
     def set_zero(self) -> None:
-        """Take it that the carriage is at the left stop now: the reader says so."""
+        """Take the carriage's place for the left stop: the reader says that it is there."""
 
     def take_events(self) -> Sequence[Event]:
-        """What there is to tell since the last call, by the kinds of `vbraille.devices.events`."""
+        """Events since the last call, of the kinds of `vbraille.devices.events`."""
         return ()
 
     def lend(self) -> Lent | None:
         """What the engine needs to do steady ticks by itself; None if it must call the device.
 
-        Until `take_back` nothing else of the device is called.
+        Until `take_back` no other method of the device is called.
         """
         return None
 
     def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
-        """Go on with what was lent.
+        """Take back what was lent, and go on with it.
 
         Parameters
         ----------
         lent
-            The same.
+            What `lend` gave.
         received
-            Bytes of ``lent.received`` that have come and were not taken.
+            Number of bytes of ``lent.received`` that have come and were not taken.
         unsent
-            Frames that found no room on the line.
+            Number of frames that found no room on the line.
         torn
-            What is left of the last one, of which a part went out.
+            Rest of the last frame, of which a part went out; empty if all of it did.
         """
 
     def counts(self) -> Mapping[str, int]:
-        """What went wrong so far, by name: frames not sent, samples missed, corrupt messages."""
+        """Counts of what went wrong, by name: frames not sent, samples missed, corrupt messages."""
         return {}
 
     def write(self, frame: NDArray[np.float64]) -> None:
@@ -198,7 +199,7 @@ class Device(ABC):
 
 
 def _in_range(frame: NDArray[np.float64]) -> bool:
-    """Whether all of a frame is in [0, 1]."""
+    """Whether all deflections of a frame are in [0, 1]."""
     # The bits of such a double are a number from 0 to those of 1.0; a sign, an infinity and a NaN
     # make it larger. So one look is enough, in a third of the time.
     usual = frame.dtype is _DOUBLE and frame.flags.c_contiguous

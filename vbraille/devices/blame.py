@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from importlib.metadata import EntryPoint
 
-# Set to anything, it lets a traceback through for whoever mends the driver.
+# If this is set to anything, tracebacks are let through for whoever mends the driver.
 TRACEBACK = "VBRAILLE_TRACEBACK"
 _OURS = str(Path(__file__).parents[1])
 _PYTHON = sysconfig.get_path("stdlib")
@@ -25,14 +25,14 @@ _PACKAGES = sysconfig.get_path("purelib")
 
 @contextmanager
 def naming(driver: EntryPoint) -> Iterator[None]:
-    """Have whatever a driver raises come as a `DeviceError` with its name, file and line.
+    """Turn whatever a driver raises into a `DeviceError` with the driver's name, file and line.
 
-    What vbraille's own drivers raise, and what is a sentence already, passes.
+    What vbraille's own drivers raise passes unchanged, and so does an error that is a sentence.
 
     Raises
     ------
     DeviceError
-        For any other exception of the driver, which it names.
+        For any other exception of the driver; the error names the driver.
     """
     try:
         yield
@@ -47,7 +47,7 @@ def naming(driver: EntryPoint) -> Iterator[None]:
 def _blame(driver: EntryPoint, error: Exception | SystemExit) -> NoReturn:
     where = _place(driver, error)
     if where is None and isinstance(error, OSError):
-        raise error  # our own output, perhaps
+        raise error  # perhaps an error of our own output
     what = f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
     if where is None:
         where = f"{driver.value}; no line of its own was at work"
@@ -58,7 +58,7 @@ def _blame(driver: EntryPoint, error: Exception | SystemExit) -> NoReturn:
 
 
 def _place(driver: EntryPoint, error: BaseException) -> str | None:
-    """File and line of the driver's that were at work last; None if there are none."""
+    """File and line of the driver where it was at work last; None if it was not at work."""
     if isinstance(error, SyntaxError) and error.filename:
         return f"{error.filename}, line {error.lineno}"
     lines = [(line.filename, line.lineno) for line in extract_tb(error.__traceback__)]
@@ -74,13 +74,13 @@ def _place(driver: EntryPoint, error: BaseException) -> str | None:
 
 
 def _is_python(name: str) -> bool:
-    """Whether a file is of Python's own."""
+    """Whether a file belongs to Python itself."""
     library = name.startswith(_PYTHON) and not name.startswith(_PACKAGES)
     return library or name.startswith("<frozen")
 
 
 def _home(driver: EntryPoint) -> str | None:
-    """Folder of a driver that is a package, or file of one that is a module."""
+    """Folder of a driver that is a package; file of a driver that is a module."""
     module = sys.modules.get(driver.module.partition(".")[0])
     name = getattr(module, "__file__", None)
     if name is None:

@@ -29,14 +29,14 @@ class Event:
     Parameters
     ----------
     times
-        How often, where it is told once for all the times in a second.
+        How often it happened, where one event stands for all that came within a second.
     """
 
     times: int = field(default=1, kw_only=True)
 
     @property
     def kind(self) -> Hashable:
-        """What is told once a second at most; events of one kind stand for one another."""
+        """Key of events that stand for one another: one of each kind is told in a second."""
         return type(self)
 
 
@@ -52,7 +52,7 @@ class Silent(Event):
     Parameters
     ----------
     silent_ms
-        How long it has been silent, in ms.
+        Time for which the device has been silent, in ms.
     """
 
     silent_ms: float
@@ -60,17 +60,17 @@ class Silent(Event):
 
 @dataclass(frozen=True, slots=True)
 class Back(Event):
-    """A device that was away is read on again."""
+    """A device that was away can be read on again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One property in which a device is otherwise than before.
+    """One property in which a device differs from what it was.
 
     Parameters
     ----------
     what
-        Field of `Display`, or of INFO.
+        Name of a field of `Display`, or of INFO.
     was, now
         What the field was before, and what it is now.
     """
@@ -82,20 +82,20 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Stranger(Event):
-    """What came back cannot be read on in the place of the device that reading began on.
+    """A device has come back that cannot take the place of the one that reading began on.
 
     Parameters
     ----------
     was
         Name of the device that reading began on.
     name
-        Name of what came back; empty if it does not say.
+        Name of the device that came back; empty if it does not say.
     differences
-        The fields of `Display` in which it is otherwise.
+        Fields of `Display` in which the two differ.
     version
-        The version of the protocol that it speaks, if it is another one.
+        Version of the protocol that the device speaks, if it is another one.
     fault
-        What cannot be in what it says of itself, with field and value; empty if that is not it.
+        What in the device's description cannot be true, with field and value; empty if nothing.
     """
 
     was: str
@@ -107,16 +107,17 @@ class Stranger(Event):
 
 @dataclass(frozen=True, slots=True)
 class Changed(Event):
-    """A device that came back is otherwise than it was, and can be read on.
+    """A device that came back differs from what it was, but can be read on.
 
     Parameters
     ----------
     what
-        The fields of INFO in which it is otherwise.
+        Fields of INFO in which it differs.
     gain, inverted, enabled
-        How many of its actuators have another gain, rest level, and fitness for use.
+        Numbers of actuators that have another gain, another rest level, and another fitness for
+        use.
     placing
-        What the reader has to do before its place is known again.
+        What the reader has to do before the place is known again.
     """
 
     what: tuple[Difference, ...] = ()
@@ -128,12 +129,12 @@ class Changed(Event):
 
 @dataclass(frozen=True, slots=True)
 class WatchdogTripped(Event):
-    """No frame reached the device in time, so it went to rest, or is about to.
+    """The device went to rest, or is about to, because no frame reached it in time.
 
     Parameters
     ----------
     trips
-        Trips of its watchdog that the device has told of until now.
+        Number of trips of its watchdog that the device has reported so far.
     """
 
     trips: int
@@ -141,14 +142,14 @@ class WatchdogTripped(Event):
 
 @dataclass(frozen=True, slots=True)
 class Notice(Event):
-    """What a device says in words of its own, and goes on.
+    """The device says something in words of its own, and goes on.
 
     Parameters
     ----------
     code
-        The number that the device's maker has given it.
+        Number that the device's maker has given to the notice.
     text
-        The device's words, which may be none.
+        The device's words, which may be empty.
     """
 
     code: int
@@ -162,18 +163,18 @@ class Notice(Event):
 
 @dataclass(frozen=True, slots=True)
 class Fault(Event):
-    """Why a device cannot go on; `Device.read` raises it in a `DeviceError` as well.
+    """The device cannot go on; `Device.read` raises this in a `DeviceError` as well.
 
     Parameters
     ----------
     name
-        The device's.
+        Name of the device.
     code
-        The device's number for it; None if it does not say what is wrong.
+        Number that the device gives to the fault; None if it does not say what is wrong.
     text
-        The device's words, which may be none.
+        The device's words, which may be empty.
     stuck
-        Whether it does not go to rest when it must.
+        Whether the device does not go to rest though it must.
     """
 
     name: str
@@ -189,9 +190,9 @@ class Button(Event):
     Parameters
     ----------
     number
-        Which button it is, counted from 1.
+        Number of the button, counted from 1.
     pressed
-        Whether it is down now.
+        Whether the button is down now.
     """
 
     number: int
@@ -199,7 +200,7 @@ class Button(Event):
 
     @property
     def kind(self) -> Hashable:
-        """Each press of each button is one of its own."""
+        """No event stands for another: each press of each button is told."""
         return None
 
 
@@ -210,9 +211,9 @@ class Knob(Event):
     Parameters
     ----------
     number
-        Which knob it is, counted from 1.
+        Number of the knob, counted from 1.
     value
-        Where it stands, 0 to 1.
+        Position of the knob, 0 to 1.
     """
 
     number: int
@@ -220,36 +221,36 @@ class Knob(Event):
 
     @property
     def kind(self) -> Hashable:
-        """Turns of one knob are of one kind."""
+        """Turns of the same knob stand for one another."""
         return type(self), self.number
 
 
 @dataclass(frozen=True, slots=True)
 class Placed(Event):
-    """What a device waits for before it knows its place has changed.
+    """What the device waits for, before it knows its place, has changed.
 
     Parameters
     ----------
     placing
-        What it is now.
+        What the device waits for now.
     """
 
     placing: Placing
 
     @property
     def kind(self) -> Hashable:
-        """Each change is one of its own."""
+        """No event stands for another: each change is told."""
         return None
 
 
 @dataclass(frozen=True, slots=True)
 class NotInTime(Event):
-    """The system refuses the engine what it needs for ticks in time.
+    """The system refuses to give the engine what it needs to do ticks in time.
 
     Parameters
     ----------
     refused
-        "priority", "memory", or both.
+        What is refused: "priority", "memory", or both.
     """
 
     refused: tuple[str, ...]
@@ -262,7 +263,7 @@ class Exposed(Event):
     Parameters
     ----------
     limit_s
-        How long that is, in seconds.
+        Longest time that a picture may move by itself, in seconds.
     """
 
     limit_s: float
@@ -289,23 +290,23 @@ _KINDS: Final = {
 
 
 def is_known(event: object) -> bool:
-    """Whether something is an event of one of these kinds, which every part of a program knows."""
+    """Whether something is an event of a kind defined here, which every part of a program knows."""
     return type(event) in _KINDS.values()
 
 
 def to_json(event: Event) -> dict[str, Any]:
-    """Event as it goes through JSON; `from_json` gives an equal one."""
+    """Values of an event that JSON can hold; `from_json` makes an equal event of them."""
     return {"event": type(event).__name__, **asdict(event)}
 
 
 def from_json(told: Mapping[str, Any]) -> Event:
-    """The event that `to_json` made this of."""
+    """Event of which `to_json` made these values."""
     values = {name: _value(name, value) for name, value in told.items() if name != "event"}
     return _KINDS[told["event"]](**values)
 
 
 def shortened(event: Event, most: int) -> Event:
-    """Event whose texts have so many characters at most."""
+    """Event whose texts are cut to a number of characters."""
 
     def cut(value: object) -> object:
         if isinstance(value, str):

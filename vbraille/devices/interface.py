@@ -9,7 +9,7 @@ from functools import cached_property
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.events import Placing, is_known
 
-# What a member is given, where it is given anything.
+# Arguments that a member is given, if it is given any.
 _ARGUMENTS = {"write": 1, "_send": 1}
 _METHODS = (
     "read",
@@ -34,11 +34,11 @@ _VALUES: dict[str, tuple[type, ...]] = {
 
 
 def misfits(device: Device) -> Iterator[str]:
-    """What members of a device are something else than `Device` says, a sentence each.
+    """Members of a device that differ in kind from those of `Device`, a sentence for each.
 
-    A property in the place of a method would be called, and a method in the place of a
-    property would always be true; neither shows before somebody reads on the device.
-    Nothing of the device is called.
+    A property in place of a method would be called, and a method in place of a property would
+    always count as true; neither shows before somebody reads on the device. Nothing of the device
+    is called here.
     """
     for name in _METHODS:
         method = _plain(inspect.getattr_static(device, name))
@@ -56,7 +56,7 @@ def misfits(device: Device) -> Iterator[str]:
 
 
 def wrong_values(device: Device) -> Iterator[str]:
-    """What an opened device gives that is something else than `Device` says, a sentence each."""
+    """Values of an opened device that differ in kind from what `Device` says, a sentence each."""
     for name, kinds in _VALUES.items():
         value = getattr(device, name)
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
@@ -79,17 +79,17 @@ def _plain(member: object) -> object:
 
 
 def _given(device: Device, name: str) -> int:
-    """How many arguments a member gets, the device itself among them if it is of its class."""
+    """Number of arguments that a member gets, including the device if the class has the member."""
     static = isinstance(inspect.getattr_static(device, name), staticmethod)
     return _ARGUMENTS.get(name, 0) + (name not in vars(device) and not static)
 
 
 def _takes(method: Callable[..., object], given: int) -> bool:
-    """Whether a method can be called with so many arguments."""
+    """Whether a method can be called with a number of arguments."""
     try:
         inspect.signature(method).bind(*[None] * given)
     except TypeError:
         return False
-    except ValueError:  # compiled, and without a signature
+    except ValueError:  # it is compiled, and has no signature
         return True
     return True

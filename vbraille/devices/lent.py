@@ -10,20 +10,20 @@ if TYPE_CHECKING:
 
 
 class Actuators(NamedTuple):
-    """What FRAMEs are made with, and the last of them.
+    """How FRAMEs are made, and the last of them.
 
     Parameters
     ----------
     last, wanted : float64[rows, columns]
-        Deflections of the FRAME that went out last, and of the one that was made last.
+        Deflections of the FRAME that went out last, and of the FRAME that was made last.
     swing : float64[rows, columns]
-        Levels of a full swing, before it is inverted.
+        Number of levels in a full swing, before it is inverted.
     rest : int64[rows, columns]
         Level at rest: 0, or the highest.
     body : uint8[bytes]
-        A FRAME's type, sequence and levels, and room for its CRC.
+        Type, sequence and levels of a FRAME, and room for its CRC.
     packed : uint8[bytes]
-        The levels, in it.
+        View of the levels in ``body``.
     """
 
     last: NDArray[np.float64]
@@ -40,14 +40,14 @@ class Lent(NamedTuple):
     Parameters
     ----------
     descriptor
-        The descriptor of the device's open line, which does not block.
+        Descriptor of the device's open line, which does not block.
     begun
-        Bytes that `received` begins with: a part of a message.
+        Number of bytes at the beginning of `received`: a part of a message.
     received, work, out : uint8[bytes]
-        What has come; room to work in, and for a message that goes out.
+        Bytes that have come, room to work in, and room for a message that goes out.
     talk, actuators
-        The numbers of the conversation, `vbraille.devices.serial.steady.CONVERSATION`[1], and
-        what its FRAMEs are made with.
+        Numbers of the conversation, `vbraille.devices.serial.steady.CONVERSATION`[1], and how its
+        FRAMEs are made.
     """
 
     descriptor: int

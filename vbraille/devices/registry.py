@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 GROUP = "vbraille.devices"
-# By how much a device's pitch may differ from the page's.
+# Difference that is allowed between a device's pitch and the page's, as a share.
 PITCH_TOLERANCE = 0.01
-# Counts and micrometres are rounded on their way here.
+# Allowance for the rounding of counts and micrometres on their way here.
 TRAVEL_TOLERANCE_MM = 0.01
 
 _log = logging.getLogger(__name__)
@@ -41,16 +41,17 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
     spec
         ``sim`` or ``KIND:ADDRESS``.
     wanted
-        The actuators and the travel that the page was laid out for; None if any will do.
+        Actuators and travel that the page was laid out for; None if any will do.
     fits
-        Whether the actuators must be those; else they are a wish, and only the rate must be had.
+        Whether the device must have those actuators; otherwise they are a wish, and only the
+        rate is required.
 
     Raises
     ------
     InputError
         If there is no such kind, or the device has other actuators or is too slow.
     DeviceError
-        If it cannot be opened.
+        If the device cannot be opened.
     """
     driver = _driver(spec)
     with naming(driver):
@@ -70,14 +71,15 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
 
 @contextmanager
 def opened_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Iterator[Device]:
-    """Open the device of a spec, and close it in the end.
+    """Open the device of a spec; on leaving, close it.
 
-    Whatever somebody else's driver raises in between names the driver, its file and its line.
+    An exception of somebody else's driver in between names the driver, its file and its line.
 
     Raises
     ------
     InputError, DeviceError
-        As `open_device` does, and `DeviceError` for every exception of another's driver.
+        In the cases of `open_device`; `DeviceError` also for any exception of somebody else's
+        driver.
     """
     with naming(_driver(spec)), open_device(spec, wanted, fits=fits) as device:
         yield device
@@ -94,7 +96,7 @@ def _driver(spec: str) -> EntryPoint:
 
 
 def _check_device(driver: EntryPoint, device: object) -> None:
-    """Raise DeviceError if a driver gives what cannot be read on; what it opened is let go."""
+    """Raise DeviceError if a driver gives something that cannot be read on, and let that go."""
     if not isinstance(device, Device):
         raise DeviceError(
             f"the driver {driver.name} ({driver.value}) gives {device!r} where it must give a "

@@ -27,7 +27,7 @@ from vbraille.devices.events import (
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-# Names and units of a display's fields.
+# Names and units of the fields of a display.
 _FIELDS: Final = {
     "rows": ("rows of actuators", ""),
     "columns": ("columns of actuators", ""),
@@ -48,8 +48,8 @@ _ALLOW: Final = (
     "to allow it, put '@audio - rtprio 95' and '@audio - memlock unlimited' into "
     "/etc/security/limits.d/audio.conf, join the group audio, and log in again"
 )
-# Those that a reader hears of otherwise: by what they do, by what he is asked to do, and by the
-# error that ends the reading.
+# Events that a reader hears of in another way: by what they do, by what he is asked to do, or by
+# the error that ends the reading.
 _UNSAID: Final = (Button, Knob, Placed, Fault)
 
 
@@ -59,7 +59,7 @@ def told(events: Iterable[Event]) -> list[str]:
 
 
 def say(event: Event) -> str:
-    """An event as a sentence, with how often it happened if it stands for several."""
+    """Sentence for an event, with the number of times if it stands for several."""
     more = f" ({event.times} times in the last second)" if event.times > 1 else ""
     return _say(event) + more
 

@@ -13,7 +13,7 @@ HOME_MM = 1.0
 
 
 class EndOfLine:
-    """What watches a hand read a line, and knows when it has read all of it.
+    """Watches a hand read a line, and knows when it has read all of it.
 
     The hand has reached the line's end when the array's centre passes the last
     dot, and is done when the array is then back at the left stop, to a

@@ -132,7 +132,7 @@ class BatchEngine:
         poses[:, POSED] = 1.0
         poses[:, POSE_X : POSE_THETA + 1] = self.device.poses_at(due_ns).T
         self._clock.sleep_until_ns(int(due_ns[-1]))
-        self.device.read()  # which tells whoever steers the hand that it has come to its end
+        self.device.read()  # this tells whoever steers the hand that it has come to its end
         ticks = np.zeros(due_ns.size, self._dtype)
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
         device = self.device

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 _RATE_S = 3.0
 _ROUND_TRIPS = 500
-# More is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
+# A longer round trip is felt: a hand at 70 mm/s goes a tenth of a dot in 4 ms.
 _MOST_ROUND_TRIP_MS = 4.0
-_MOST_LATE = 0.01  # of all ticks
-_MOST_FAULTS = 50  # of a kind: 1 % of some 5000 ticks
+_MOST_LATE = 0.01  # as a share of all ticks
+_MOST_FAULTS = 50  # of each kind: 1 % of some 5000 ticks
 _MARK_S = 60.0
 # What the clocks of simple controllers may be off by; more is heard in a speed.
 _MOST_CLOCK = 0.02
@@ -66,7 +66,7 @@ class _Check:
         self._device = device
         self._clock = clock
         self._say = say
-        self._shown = False  # its place was chosen here, and says nothing
+        self._shown = False  # whether its place was chosen here, and says nothing
 
     def run(self) -> int:
         device = self._device
@@ -96,7 +96,7 @@ class _Check:
             self._say(sentence)
 
     def _but(self) -> str:
-        """What goes with a verdict that is good."""
+        """Remarks that go with a verdict that is good."""
         untold = []
         if not self._device.acknowledges:
             untold.append("what it has taken")
@@ -112,7 +112,7 @@ class _Check:
         return ["every one of its actuators is disabled"] if all_off else []
 
     def _wait_for_place(self) -> None:
-        """Have a place, whichever: frames are not taken without one."""
+        """Wait for any place: frames are not taken without one."""
         device, clock = self._device, self._clock
         begun_ns, minutes = clock.now_ns(), 0
         while device.read() is None:
@@ -185,7 +185,7 @@ class _Check:
         return [f"a round trip takes {median:.1f} ms; have the port's latency set to 1 ms"]
 
     def _watchdog(self) -> list[str]:
-        """Leave the device without frames, some times, and see how long it takes to say so."""
+        """Leave the device without frames several times, and see how long it takes to say so."""
         if self._device.watchdog_trips is None:
             self._say("watchdog: not tested, since this device does not tell of one")
             return []

@@ -59,7 +59,8 @@ class Rate:
 def swing_each(device: Device, clock: Clock) -> Iterator[tuple[int, int]]:
     """Swing one actuator after the other, out and back without a jump.
 
-    The row and column of each, from 0, are yielded before it swings, so that they can be said.
+    The row and column of each actuator, from 0, are yielded before it swings, so that they can be
+    said.
     Actuators that the device reports as disabled are left out.
 
     Raises
@@ -104,7 +105,7 @@ def warm_up(display: Display) -> None:
 
 
 def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
-    """Drive the device at its rate for so long.
+    """Drive the device at its rate for a number of seconds.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def hold_rate(device: Device, clock: Clock, seconds: float) -> Rate:
     """
     rate_hz = device.display.rate_hz
     engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 4))
-    # All swell and sink, once a second.
+    # All actuators swell and sink, once a second.
     engine.loop.show(vibration(device.display, 1.0, exposure_s=math.inf))
     engine.loop.restart_clock()
     polled = []
@@ -151,7 +152,7 @@ def _clock_s(ticks: NDArray[np.void]) -> float:
 
 
 def round_trips_ms(device: Device, clock: Clock, count: int) -> NDArray[np.float64]:
-    """Time from a frame until the device has said that it has it, in ms, one by one.
+    """Times from a frame until the device has said that it has that frame, in ms.
 
     Returns
     -------

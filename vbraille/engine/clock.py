@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import Protocol
 
-# Python takes so long to come back from a sleep, and is woken so much earlier.
+# Python needs so long to come back from a sleep, and is woken so much earlier.
 _RETURN_NS = 6_000
 
 
@@ -52,11 +52,11 @@ class ManualClock:
         self._now_ns = 0
 
     def now_ns(self) -> int:
-        """How far the clock was turned so far."""
+        """Time by which the clock was turned so far."""
         return self._now_ns
 
     def busy_ns(self) -> int:
-        """How far the clock was turned so far."""
+        """Time by which the clock was turned so far."""
         return self._now_ns
 
     def sleep_until_ns(self, deadline_ns: int) -> None:

@@ -52,9 +52,9 @@ class Engine(Protocol):
         Parameters
         ----------
         picture
-            What to show.
+            Picture that is shown.
         line
-            The line's number in the records, from 1.
+            Number of the line in the records, from 1.
         """
         ...
 

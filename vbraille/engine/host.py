@@ -236,7 +236,7 @@ class Host:
         Raises
         ------
         ValueError
-            If it was compiled for another array, or is larger than there is room for.
+            If the picture was compiled for another array, or is larger than there is room for.
         """
         picture.check_shape(self.display.shape)
         self._shown = picture, line
@@ -356,7 +356,7 @@ class Host:
         self.counts = answer.get("counts", self.counts)
 
     def _end(self) -> VbrailleError:
-        """The reason why there is no host any more."""
+        """Reason why there is no host any more."""
         code = self._reap()
         # An exception that is kept would keep all frames of its traceback alive.
         fault, self._fault = self._fault, None

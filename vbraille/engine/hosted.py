@@ -109,7 +109,7 @@ class Hosted:
     loop
         The loop to run.
     mailbox
-        Where the parent says what to show.
+        Mailbox in which the parent says what to show.
     parent
         Number of the parent's process; the loop ends when that does.
     """

@@ -50,11 +50,11 @@ class Loop:
     rate_hz
         Ticks a second.
     fade_s
-        How long a change takes that the hand did not cause.
+        Duration of a change that the hand did not cause.
     idle_s
-        How long without motion before the array goes to rest.
+        Time without motion before the array goes to rest.
     ring
-        Where to record every tick; if it is not given, only the last tick is kept.
+        Ring in which every tick is recorded; without it only the last tick is kept.
 
     Attributes
     ----------

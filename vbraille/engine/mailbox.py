@@ -30,11 +30,11 @@ class Posted(NamedTuple):
     Parameters
     ----------
     number
-        How many pictures had been posted with this one.
+        Number of pictures that had been posted, this one included.
     line
-        The number by which records call it.
+        Number by which records call the picture.
     program
-        The compiled picture.
+        Compiled picture.
     """
 
     number: int
@@ -48,7 +48,7 @@ class Mailbox:
     Parameters
     ----------
     buffer
-        Zeroed memory of `bytes_needed`, shared.
+        Shared memory of `bytes_needed`, zeroed.
     room
         Bytes of the largest program; see `Program.nbytes`.
     """
@@ -80,7 +80,7 @@ class Mailbox:
         Raises
         ------
         ValueError
-            If it is larger than the mailbox was made for.
+            If the picture is larger than the mailbox was made for.
         """
         if program.nbytes > self._room:
             raise ValueError(

@@ -33,12 +33,12 @@ def go_real_time() -> NotInTime | None:
 
 
 def come_first(priority: int) -> bool:
-    """Have this thread run by SCHED_FIFO, without garbage collection; whether the system allows it.
+    """Have this thread run by SCHED_FIFO, without garbage collection; tell if the system allows it.
 
     Parameters
     ----------
     priority
-        Of two that have something to do, the one with the higher number runs.
+        Priority of the thread: of two that have something to do, the higher number runs.
     """
     gc.collect()
     gc.freeze()

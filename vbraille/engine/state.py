@@ -82,9 +82,9 @@ class LoopState:
     now_ns
         Time at which it begins, by the clock of its ticks.
     fade_s
-        How long a change takes that the hand did not cause.
+        Duration of a change that the hand did not cause.
     idle_s
-        How long without motion before the array goes to rest.
+        Time without motion before the array goes to rest.
     rested
         How often the device has gone to rest by itself.
 
@@ -142,7 +142,7 @@ class LoopState:
         Raises
         ------
         ValueError
-            If it was compiled for another array.
+            If the program was compiled for another array.
         """
         now = self.now
         now["line"] = line

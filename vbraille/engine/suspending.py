@@ -20,7 +20,7 @@ class Suspension:
     Attributes
     ----------
     asked : bool
-        Whether the process is to stop: `stop` does.
+        Whether the process is to stop, which `stop` does.
     continued : bool
         Whether it was continued after a stop that it did not hear of (SIGSTOP); reset by
         whoever has looked.

@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """What a piece of a long block leaves for the next: its unfinished line.
+    """Unfinished line that a piece of a long block leaves for the next piece.
 
     Parameters
     ----------
     indent
-        Blank cells before the line.
+        Number of blank cells before the line.
     text, cells
-        What is on it so far.
+        What is on the line so far.
     character
-        The first source character whose text is on it.
+        First source character whose text is on the line.
     """
 
     indent: int
@@ -37,23 +37,23 @@ class Carried:
 
 
 class LaidBlock:
-    """A block, or a piece of one with what the piece before it left, in lines.
+    """A block, or a piece of a block with what the piece before left, in lines.
 
     Parameters
     ----------
     block, cells
-        What is laid out.
+        Block that is laid out, and its cells.
     width
-        Cells a line.
+        Number of cells in a line.
     carried
-        What the piece before it left; None if the block begins here.
+        What the piece before left; None if the block begins here.
     goes_on
         Whether another piece follows.
 
     Attributes
     ----------
     bounds : list of (start, stop, indent)
-        The cells of each line, as [start, stop), and the blank cells before them.
+        Cells of each line, as [start, stop), and the number of blank cells before them.
     carries : Carried or None
         What is left for the next piece.
     """
@@ -72,12 +72,12 @@ class LaidBlock:
         self.cells = cells
         breaks = breaks_of(block.text, cells)
         self.bounds = wrap(breaks, width, indent, runover, cells.starts.data)
-        self._rest: int | None = None  # where the cells begin that are left
+        self._rest: int | None = None  # where the cells that are left begin
         self.carries: Carried | None = None
         if goes_on:
             self.carries = self._carry(indent, runover)
         elif self.bounds == [(0, 0, 0)] and (carried is not None or block.kind is BlockKind.PAGE):
-            self.bounds.clear()  # nothing but blanks after the last piece, or a page of no number
+            self.bounds.clear()  # nothing but blanks is left, or the page has no number
 
     @cached_property
     def edges(self) -> list[int]:
@@ -90,12 +90,12 @@ class LaidBlock:
         return [self._first, *edges, *last]
 
     def _edge(self, start: int, stop: int) -> int:
-        """Where a line's text begins: the line has its cells from `start`, the last to `stop`."""
+        """Where a line's text begins: its cells begin at `start`, those before end at `stop`."""
         text, starts = self.block.text, self.cells.starts
         if start == starts.size:
             return len(text)
         character = int(starts[start])
-        if stop and starts[stop - 1] == character:  # its text is on the line before
+        if stop and starts[stop - 1] == character:  # the character's text is on the line before
             character = self.cells.source(start)[1]
         at = text.index(character)
         while at < len(text) and chr(text.codes[at]).isspace():
@@ -103,12 +103,12 @@ class LaidBlock:
         return at
 
     def _carry(self, indent: int, runover: int) -> Carried:
-        """Take the unfinished line; keeps nothing of what is before it in memory."""
+        """Unfinished line; nothing of what is before it is kept in memory."""
         text, cells = self.block.text, self.cells
         start, stop, its_indent = self.bounds.pop()
-        if start == stop:  # blank so far
+        if start == stop:  # the line is blank so far
             start, its_indent = len(cells), indent
-        elif stop < len(cells):  # the blanks after it have filled it
+        elif stop < len(cells):  # the blanks after the line have filled it
             self.bounds.append((start, stop, its_indent))
             start, its_indent = len(cells), runover
         self._rest = start

@@ -13,15 +13,15 @@ STEP = 2  # cells
 
 
 def indents(block: Block, width: int) -> tuple[int, int]:
-    """Blank cells before a block's first line and before its others.
+    """Numbers of blank cells before a block's first line and before its other lines.
 
-    They are less than half of a line, so that there is room for words: where a kind's own
-    would be more, they are the most even number of cells that is.
+    They are less than half of a line, so that there is room for words: a larger indent of the
+    kind is cut to the largest even number of cells that is.
 
     Parameters
     ----------
     width
-        Cells a line.
+        Number of cells in a line.
     """
     match block.kind:
         case BlockKind.PARAGRAPH:

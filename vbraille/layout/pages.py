@@ -34,15 +34,15 @@ class Line:
     Parameters
     ----------
     number : int
-        Its number in the book, from 1.
+        Number of the line in the book, from 1.
     indent : int
-        Blank cells before the first.
+        Number of blank cells before the line's cells.
     cells : Cells
-        What it shows after them.
+        Cells of the line after the indent.
     block : Block
-        The block that it is part of.
+        Block that the line is part of.
     first, after : int
-        Index of the first character of the block's text that it stands for, and one past the last.
+        Index of the first character of the block's text on the line, and one past the last.
     """
 
     number: int
@@ -64,12 +64,12 @@ class Line:
 
     @property
     def printed(self) -> Cells:
-        """The line as it would be embossed: its indent and its cells, without the way back."""
+        """Line as it would be embossed: its indent and its cells, without their way to the text."""
         return Cells.bare(self.masks)
 
     @property
     def text(self) -> str:
-        """The text that the line stands for; the lines of a block together are its text.
+        """Text that the line stands for; the lines of a block together are the block's text.
 
         White space at which a line ends belongs to that line. A character whose cells do not
         find room on one line belongs to the first of its lines.
@@ -109,15 +109,16 @@ class Layout:
     """A book laid out in lines of a width, only as far as somebody looks.
 
     Words wrap whole; a word that is longer than a line is cut between two of its characters and
-    goes on in the next. How a block is indented is a matter of its kind: a paragraph begins with
-    two blank cells, and of a line that is kept as the source has it, what runs over does.
+    goes on in the next line. The indent depends on the kind of block. A paragraph begins with two
+    blank cells. A line that is kept as the source has it begins at the margin, and what runs over
+    is indented.
 
     Parameters
     ----------
     book
-        The cells.
+        Cells of the book.
     width
-        Cells a line, at least 1.
+        Number of cells in a line, at least 1.
 
     Raises
     ------
@@ -130,9 +131,9 @@ class Layout:
             raise ValueError(f"width is {width} cells; it must be at least 1")
         self.book = book
         self.width = width
-        # Number of lines before each block; the last entry is of the block to come.
+        # Number of lines before each block; the last entry is that of the next block.
         self._before = array("q", [0])
-        # Where a long block comes in pieces: its unfinished line, by the next piece.
+        # Unfinished line of a long block that comes in pieces, by the number of the next piece.
         self._carried: dict[int, Carried] = {}
         self._complete = False
         self._recent: dict[int, LaidBlock] = {}
@@ -157,7 +158,7 @@ class Layout:
             number += 1
 
     def count(self) -> int:
-        """Lines in all; lays out the whole book."""
+        """Number of lines in all; this lays out the whole book."""
         while not self._complete:
             self._extend()
         return self._before[-1]
@@ -165,8 +166,8 @@ class Layout:
     def place(self, character: int) -> tuple[Line, int] | None:
         """Line and cell that a source character is on; None past the end.
 
-        A character that no cell stands for, such as a blank at a wrap, gives
-        the next cell after it.
+        A character that no cell stands for, such as a blank at a wrap, gives the next cell
+        after it.
         """
         block = self.book.source.block_at(character)
         while block is not None:
@@ -227,14 +228,14 @@ def locate(line: Line, geometry: Geometry, x_mm: float) -> int | None:
     Parameters
     ----------
     x_mm
-        The place: for an actuator column, the carriage's position plus the column's offset. The
-        space after a cell counts as the cell's.
+        Place on the surface: for a column of actuators, the carriage's position plus the column's
+        offset. The space after a cell counts as the cell's.
     """
     cell = math.floor(x_mm / geometry.cell_pitch_mm)
     return cell if 0 <= cell < len(line) else None
 
 
 def place_of(cell: int, geometry: Geometry) -> float:
-    """Middle of a cell of a line on the surface, in mm; `locate` takes it back."""
+    """Middle of a cell of a line on the surface, in mm; `locate` finds the cell there."""
     middle = (geometry.dot_spacing_mm + geometry.dot_width_mm) / 2
     return cell * geometry.cell_pitch_mm + min(middle, geometry.cell_pitch_mm / 2)

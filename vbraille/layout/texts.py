@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def cells_per_line(geometry: Geometry, display: Display) -> int:
-    """How many cells a line has on a display.
+    """Number of cells that a line has on a display.
 
     Raises
     ------
     InputError
-        If there is no room for one.
+        If there is no room for a single cell.
     """
     try:
         return geometry.cells_per_line(display.span_mm)
@@ -33,16 +33,16 @@ def choose_table(
     table: str | None = None,
     undefined: Undefined | str = Undefined.MARK,
 ) -> BrailleTable:
-    """A table by its name, or by a language and a grade.
+    """Table by its name, or by a language and a grade.
 
     Parameters
     ----------
     language
-        Such as "fr" or "pt-BR"; English if nothing is given.
+        Language, such as "fr" or "pt-BR"; English if nothing is given.
     grade
         0 or 1 for uncontracted braille, 2 and up for contracted; None for what is usual.
     table
-        Name of a liblouis table, instead of those.
+        Name of a liblouis table, in place of a language and grade.
     undefined
         What is written for a character that the table does not know.
 
@@ -65,19 +65,19 @@ def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool
     Parameters
     ----------
     text
-        Its blank lines part paragraphs.
+        Text to lay out; blank lines separate its paragraphs.
     width
-        Cells a line.
+        Number of cells in a line.
     table
-        How it is translated.
+        Table by which the text is translated.
     keep_lines
-        Whether each of its lines stays one, at the margin; else paragraphs are filled, each
-        with an indent.
+        Whether each line of the text stays a line, at the margin; otherwise paragraphs are filled,
+        each with an indent.
 
     Raises
     ------
     InputError
-        If it has nothing to show.
+        If the text has nothing to show.
     """
     document = Document.from_text(text, keep_lines=keep_lines)
     layout = Layout(Book(document, table), width)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Line
     from vbraille.translate import BrailleTable
 
-_NAMED = 3  # so many characters are named in the sentence, those that are most frequent
+_NAMED = 3  # at most so many characters are named in the sentence, the most frequent
 
 
 class Unknown:
@@ -22,9 +22,9 @@ class Unknown:
     Parameters
     ----------
     table
-        The table; it knows which characters those are.
+        Table that translates the lines; it knows which characters it does not know.
     how
-        What was written for them.
+        What was written for these characters.
     """
 
     def __init__(self, table: BrailleTable, how: Undefined) -> None:
@@ -34,7 +34,7 @@ class Unknown:
         self._counts: Counter[str] = Counter()
 
     def see(self, line: Line) -> None:
-        """Count those of a line, unless it or a later one was counted before."""
+        """Count the unknown characters of a line, unless it or a later one was counted before."""
         if line.number <= self._last:
             return
         self._last = line.number
@@ -43,7 +43,7 @@ class Unknown:
 
     @property
     def sentence(self) -> str | None:
-        """How many there were and what was written for them; None if there were none."""
+        """Sentence on how many there were and what was written instead; None if there were none."""
         total = self._counts.total()
         if not total:
             return None

@@ -19,7 +19,7 @@ _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
 
 
 def breaks_of(text: Text, cells: Cells) -> bytes:
-    """Cells as bytes: zero where a line may break, which is at blanks but for no-break spaces."""
+    """Cells as bytes that are zero where a line may break: at blanks, except no-break spaces."""
     if NO_BREAK_SPACE not in text.alphabet:
         return cells.masks.tobytes()
     no_break = text.places[text.codes == NO_BREAK_SPACE]
@@ -36,24 +36,24 @@ def wrap(
 ) -> list[tuple[int, int, int]]:
     """Break a block into lines, each as full as it can be.
 
-    The cells of one source character stay together, if need be at the cost of the indent. Only
-    where they are more than a line's width are they cut, where the line is full.
+    The cells of one source character stay together, if need be at the cost of the indent. They are
+    cut only if they are more than a line's width, where the line is full.
 
     Parameters
     ----------
     breaks
-        A byte a cell, zero where a line may break; what stands at a break is dropped.
+        One byte for each cell, zero where a line may break; what stands at a break is dropped.
     width
-        Cells a line.
+        Number of cells in a line.
     indent, runover
-        Blank cells before the first line and before the others; less than the width.
+        Numbers of blank cells before the first line and before the others; less than the width.
     starts
-        The source character of each cell, never decreasing; by default each has its own.
+        Source character of each cell, never decreasing; by default each cell has its own.
 
     Returns
     -------
     list of (start, stop, indent)
-        Cells of each line, as [start, stop), and the blank cells before them.
+        Cells of each line, as [start, stop), and the number of blank cells before them.
     """
     end = len(breaks)
     leading = end - len(breaks.lstrip(b"\0"))
@@ -84,7 +84,7 @@ def wrap(
 def _cut(
     breaks: bytes, start: int, full: int, starts: Sequence[int] | memoryview
 ) -> tuple[int, int]:
-    """Where a line ends that is full at a cell, and where the next begins."""
+    """Cell at which a full line ends, and the cell at which the next line begins."""
     at = breaks.rfind(0, start, full + 1)
     while at > start:
         stop, following = _around(breaks, start, at)
@@ -92,7 +92,7 @@ def _cut(
             break
         if following == len(breaks) or starts[stop - 1] != starts[following]:
             return stop, following
-        at = breaks.rfind(0, start, stop)  # that blank was one within a character's cells
+        at = breaks.rfind(0, start, stop)  # that blank was within a character's cells
     at = full
     while at > start and starts[at - 1] == starts[at]:
         at -= 1
@@ -101,6 +101,6 @@ def _cut(
 
 
 def _around(breaks: bytes, start: int, at: int) -> tuple[int, int]:
-    """One past the last cell before a place that is not blank, and the first after it."""
+    """One past the last cell before a place that is not blank, and the first such cell after it."""
     stop = start + len(breaks[start:at].rstrip(b"\0"))
     return stop, len(breaks) - len(breaks[at:].lstrip(b"\0"))

@@ -24,21 +24,21 @@ EVERYWHERE = tuple(Context)
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command.
+    """Something that a reader can be told to do by a key.
 
     Parameters
     ----------
     name
-        What it is called in documents, in capitals as BRLTTY has it.
+        Name in documents, in capitals as BRLTTY has it.
     keys
-        The keys that call it, as `vbraille.reading.keys` names them; `ANY` for each that calls no
-        other command of the context.
+        Keys that call the command, as `vbraille.reading.keys` names them; `ANY` for every key that
+        calls no other command of the context.
     help
-        What it does, for people.
+        What the command does, in words for its users.
     handler
-        What does it.
+        Function that does it.
     contexts
-        Where it can be called.
+        Contexts in which the command can be called.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Command:
 
     @property
     def spoken_keys(self) -> str:
-        """Its keys as people call them."""
+        """Names of the command's keys as people say them."""
         return " or ".join("space" if key == " " else key for key in self.keys)
 
 
@@ -64,7 +64,7 @@ def find(key: str, context: Context) -> Command | None:
 
 
 def press(reader: Reader, key: str) -> None:
-    """Do what a key stands for in the reader's context."""
+    """Call the command that a key stands for in the reader's context."""
     command = find(key, reader.context)
     if key == PASTE:
         reader.say("paste: text that is pasted is passed over; type the keys")

@@ -4,7 +4,7 @@ from enum import Enum
 
 
 class Context(Enum):
-    """What the reader is doing, which says what a key stands for."""
+    """What a reader is doing, which decides what each key stands for."""
 
     READING = "reading"
     """A line is under the hand."""

@@ -20,7 +20,7 @@ class Echo(StrEnum):
     BOTH = "both"
 
     def sentences(self, line: Line) -> Iterator[str]:
-        """What is said of a line, one thing after the other."""
+        """Sentences that are said of a line, in order."""
         if self is Echo.NONE:
             return
         yield f"line: {line.number}"

@@ -25,16 +25,16 @@ _MOST_FRAMES = 10_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RenderedLine:
-    """A line of text, and every frame along it.
+    """A line of text with every frame along it.
 
     Parameters
     ----------
     line
-        The line: its text, and which cell is which character.
+        Line with its text, and with the character that each cell stands for.
     display, style
-        What it is rendered for, and how.
+        Display and style that the line is rendered for.
     positions_mm : float64[n]
-        Where the array's centre is in each frame; 0 is where the line begins.
+        Place of the array's centre in each frame; 0 is where the line begins.
     frames : float64[n, rows, columns]
         Deflections, 0 (rest) to 1 (full swing).
     """
@@ -47,12 +47,12 @@ class RenderedLine:
 
     @property
     def cells(self) -> Cells:
-        """Cells of the line as it would be embossed."""
+        """Cells of the line as the line would be embossed."""
         return self.line.printed
 
     @property
     def text(self) -> str:
-        """The text that the line stands for."""
+        """Text that the line stands for."""
         return self.line.text
 
     def __len__(self) -> int:
@@ -75,20 +75,20 @@ def render_text(
     Parameters
     ----------
     text
-        What is to be read, from the margin.
+        Text of the line, which begins at the margin.
     display
-        What it is shown on: a `Model` such as `VBD` or `STRESS2`, or any `Display`.
+        Display that the line is shown on: a `Model` such as `VBD` or `STRESS2`, or any `Display`.
     style
         How braille is shown; None for how the display is read unless told otherwise. Make others
         with `BrailleStyle.replace`, as in ``VBD.style.replace(texture=0.5)``.
     language, grade
-        Such as "fr" and 1; the usual table of the language is taken if no grade is given.
+        Language and grade, such as "fr" and 1; without a grade the language's usual table is taken.
     table
-        Name of a liblouis table, instead of a language.
+        Name of a liblouis table, in place of a language.
     line
-        Which line of the text, from 1, where it takes more than one.
+        Number of the line, from 1, where the text takes more than one.
     step_mm
-        Between two frames: 0.06 mm is a hand at 60 mm/s and 1000 frames a second.
+        Distance between two frames: 0.06 mm is a hand at 60 mm/s and 1000 frames a second.
 
     Raises
     ------

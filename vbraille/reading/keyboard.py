@@ -14,7 +14,7 @@ from typing import Self
 
 from vbraille.reading.keys import PASTE_OFF, PASTE_ON, Keys
 
-_TERMINAL = "/dev/tty"  # the one that a process was started at, wherever its input comes from
+_TERMINAL = "/dev/tty"  # the terminal at which a process was started, wherever its input comes from
 
 
 class Keyboard:
@@ -26,19 +26,19 @@ class Keyboard:
     Parameters
     ----------
     beside
-        Whether standard input is read otherwise, so that keys are those of the terminal at which
-        the program was started, if there is one.
+        Whether standard input is read by others: keys then come from the terminal at which the
+        program was started, if there is one.
     """
 
     def __init__(self, *, beside: bool = False) -> None:
         self._descriptor: int | None = None
-        self._own: int | None = None  # a descriptor that we have opened
+        self._own: int | None = None  # a descriptor that is opened here
         self._before: list | None = None
         self._keys = Keys()
         if sys.stdin and sys.stdin.isatty():
             self._descriptor = sys.stdin.fileno()
         elif beside:
-            with suppress(OSError):  # there is none
+            with suppress(OSError):  # there is no terminal
                 self._own = os.open(_TERMINAL, os.O_RDWR | os.O_NOCTTY | os.O_CLOEXEC)
             self._descriptor = self._own
 
@@ -57,7 +57,7 @@ class Keyboard:
             self._own = self._descriptor = None
 
     def take(self) -> None:
-        """Have keys one at a time from now on, and pasted text marked as such.
+        """Read keys one at a time from now on, with pasted text marked as such.
 
         In the background this stops the process until it is in the foreground.
         """
@@ -90,7 +90,7 @@ class Keyboard:
     def pressed(self, wait_s: float = 0.0) -> list[str]:
         """Keys typed since the last call, as `vbraille.reading.keys` names them.
 
-        If there are none, it waits so long for one.
+        If there are none, this waits for one, ``wait_s`` at most.
         """
         watched = [] if self._descriptor is None else [self._descriptor]
         if not select.select(watched, [], [], wait_s)[0] or self._descriptor is None:

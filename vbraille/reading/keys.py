@@ -11,16 +11,16 @@ import re
 
 PASTE = "paste"
 ESCAPE = "escape"
-PASTE_ON, PASTE_OFF = b"\x1b[?2004h", b"\x1b[?2004l"  # have pasted text marked as such, or not
-ESCAPE_S = 0.05  # an Escape that nothing follows for so long is the key of that name
-BROKEN_S = 1.0  # so long after its last byte the rest of a sequence, or of a paste, comes no more
-# So many different characters in one read are no typing: the terminal does not mark what is pasted.
+PASTE_ON, PASTE_OFF = b"\x1b[?2004h", b"\x1b[?2004l"  # switch marks around pasted text on and off
+ESCAPE_S = 0.05  # an Escape that nothing follows for so long is the key Escape
+BROKEN_S = 1.0  # the rest of a sequence or of a paste does not come so long after its last byte
+# So many different characters in one read are no typing: they are a paste that is not marked.
 BURST = 20
-_BURST_S = 0.1  # and this is how soon after it comes what belongs to it
-_LONGEST = 64  # characters of a sequence; what is longer is none
+_BURST_S = 0.1  # what comes so soon after such a paste belongs to it
+_LONGEST = 64  # characters of a sequence; a longer one is none
 
-# The one table of sequences (ECMA-48 5.4, xterm, the Linux console): what ends them says the key,
-# or the number before a ~ does, and a number after a semicolon says what was held with it.
+# The one table of sequences (ECMA-48 5.4, xterm, the Linux console). The end of a sequence names
+# the key, or the number before a ~ does; a number after a semicolon says what was held with it.
 _LETTERS = {
     "A": "up",
     "B": "down",
@@ -40,12 +40,12 @@ _NUMBERS = {
     **{number: f"f{n}" for n, number in enumerate((*range(11, 16), *range(17, 22), 23, 24), 1)},
 }
 _PASTE_BEGINS, _PASTE_ENDS = 200, "\x1b[201~"
-_HELD = ("shift-", "alt-", "ctrl-", "meta-")  # by the bits of the number less 1
+_HELD = ("shift-", "alt-", "ctrl-", "meta-")  # one for each bit of the number less 1
 
 _KEY = re.compile(
     r"\x1b(?:\[(?P<first>[0-9]{0,4})(?:;(?P<held>[0-9]{1,4}))?(?P<end>\[[A-E]|[@-Z\\-~])"
     r"|O(?P<letter>[!-~])"
-    r"|\[[0-?]*[ -/]*[@-Z\\-~]"  # other sequences, whole
+    r"|\[[0-?]*[ -/]*[@-Z\\-~]"  # other sequences, as a whole
     r"|(?P<alt>[^\x1b\[O]))"
     r"|(?P<character>[^\x1b])",
     re.DOTALL,
@@ -69,7 +69,7 @@ class Keys:
         self._burst_end_s = float("-inf")
 
     def feed(self, typed: bytes, now_s: float) -> list[str]:
-        """Names of the keys that are whole with these bytes, which came now."""
+        """Names of the keys that these bytes, which came now, complete."""
         self._fed_s = now_s
         self._tail += self._decoder.decode(typed)
         keys = self._take()
@@ -81,7 +81,7 @@ class Keys:
         return [] if within else [PASTE]
 
     def wait(self, now_s: float) -> list[str]:
-        """Keys that are known by nothing having come until now."""
+        """Keys that are complete because nothing has come until now."""
         since_s = now_s - self._fed_s
         if self._tail == "\x1b" and not self._pasting and since_s >= ESCAPE_S:
             self._tail = ""
@@ -92,7 +92,7 @@ class Keys:
         return []
 
     def _take(self) -> list[str]:
-        """Take whole keys off the tail."""
+        """Take complete keys off the bytes that wait."""
         keys: list[str] = []
         while self._tail:
             if self._pasting:
@@ -109,7 +109,7 @@ class Keys:
                 key = self._name(found)
             elif begun is not None and begun.end() == len(self._tail) < _LONGEST:
                 break
-            else:  # an Escape before another, or a sequence that is none
+            else:  # an Escape before another key, or an unknown sequence
                 assert begun is not None, "whatever does not begin with Escape is a key"
                 self._tail = self._tail[begun.end() :]
                 key = ESCAPE if begun.end() == 1 else ""

@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 
 def next_line(reader: Reader) -> None:
-    """Go to the line after this one."""
+    """Go to the line after the present one."""
     _go(reader, reader.line_number + 1, "last line")
 
 
 def previous_line(reader: Reader) -> None:
-    """Go to the line before this one."""
+    """Go to the line before the present one."""
     _go(reader, reader.line_number - 1, "first line")
 
 
 def _go(reader: Reader, number: int, none: str) -> None:
-    """Go to a line and say its number, unless its echo does; or say that there is none."""
+    """Go to a line and say its number, unless its echo does; if there is none, say so."""
     if not reader.go(number):
         reader.say(none)
     elif reader.echo is Echo.NONE:

@@ -56,16 +56,16 @@ class OpenDevice:
         Spec of the device, which a process of its own then drives; or a device itself, which is
         driven here, as long as it is polled.
     wanted
-        The display that is asked for, at the rate that is: a simulated device is just so, a real
-        one is what it is.
+        Display and rate that are asked for: a simulated device is made like this, a real device is
+        what it is.
     hand, seed
-        What moves the simulated device, and what that is drawn from.
+        Hand that moves the simulated device, and seed of what is random in it.
     clock
-        What a device that is given itself goes by; None for the machine's.
+        Clock for a device that was given itself; None for the machine's.
     say
-        Where to say what the reader should hear, one thing a call.
+        Function that is called with each thing that the reader should hear.
     attended
-        Whether somebody is at a keyboard, who ends what no hand ends.
+        Whether somebody is at a keyboard, who can end a line that no hand ends.
 
     Attributes
     ----------
@@ -93,11 +93,11 @@ class OpenDevice:
         self._model: Model | None = None
         self._device = device if isinstance(device, Device) else None
         self._engine: Host | LocalEngine
-        # A hand that was recorded reads no more than it has recorded.
+        # A recorded hand reads no more than it has recorded.
         self._once = isinstance(parse_hand(hand, seed), Recorded)
         self._simulated = isinstance(device, str) and is_simulated(device)
         if isinstance(device, Device):
-            # Here and not above: what is imported is compiled code, which a host loads by itself.
+            # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
             from vbraille.engine.local import LocalEngine
 
@@ -118,12 +118,12 @@ class OpenDevice:
             )
 
     def find(self) -> Display:
-        """What the device is; it is opened for that, unless it is the simulated one.
+        """Find out what the device is; a device other than the simulated one is opened for that.
 
         Raises
         ------
         VbrailleError
-            If it cannot be opened.
+            If the device cannot be opened.
         """
         if self._simulated:
             return self._wanted
@@ -135,7 +135,7 @@ class OpenDevice:
         Raises
         ------
         VbrailleError
-            If it cannot be opened.
+            If the device cannot be opened.
         """
         self._model = model
         if isinstance(self._engine, Host):
@@ -167,17 +167,17 @@ class OpenDevice:
         Parameters
         ----------
         text
-            What is to be read, or a layout of it for this display.
+            Text that is read, or a layout of it for this display.
         language, grade, table
-            How it is translated, as for `vbraille.render_text`.
+            Language, grade or table of the translation, as for `vbraille.render_text`.
         keep_lines
-            Whether each line of the text stays one; else its paragraphs are filled.
+            Whether each line of the text stays a line; otherwise paragraphs are filled.
         first, last
-            Lines to read, from 1, both included; None for the end.
+            Numbers of the first and last line to read, from 1; None for the end.
         advance
-            Whether the next line comes when the hand returns; else `reader` is told to go on.
+            Whether the next line comes when the hand returns; otherwise `reader` is told to go on.
         echo
-            What is said of each line.
+            How much is said of each line.
 
         Raises
         ------
@@ -206,7 +206,7 @@ class OpenDevice:
     def read(self, text: str | Layout, **how: Any) -> Iterator[Line]:
         """Show a text, and give each line as it comes under the hand, until all are read.
 
-        Parameters and errors are as of `show`, and of `poll`.
+        Parameters and errors are those of `show`, and errors also those of `poll`.
         """
         self.show(text, **how)
         given = 0
@@ -218,19 +218,19 @@ class OpenDevice:
             self.poll()
 
     def poll(self, wait_s: float = _POLL_S) -> list[Event]:
-        """Let a moment go by: what the device had to tell, by `vbraille.devices.events`.
+        """Let a moment go by, and give the device's events; see `vbraille.devices.events`.
 
-        Lines go on by this. A device that was given itself lives by it: poll it again and again.
+        Lines go on by this. A device that was given itself needs it: poll it again and again.
 
         Parameters
         ----------
         wait_s
-            How long the moment is; a device that was given itself has one of its own.
+            Length of the moment; a device that was given itself has its own.
 
         Raises
         ------
         VbrailleError
-            If the device is gone, or a line cannot be read to its end and nobody can see to it.
+            If the device is gone, or a line cannot be read to its end and nobody can help.
         """
         if wait_s and isinstance(self._engine, Host):
             time.sleep(wait_s)
@@ -246,7 +246,7 @@ class OpenDevice:
         return events
 
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
-        """Have the reader look, and see to a simulated hand that cannot go on by itself."""
+        """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
         lines = reader.lines
         reader.step(ticks)
         if self._attended:
@@ -264,33 +264,33 @@ class OpenDevice:
 
     @property
     def display(self) -> Display:
-        """What the device is."""
+        """Display of the device."""
         return self.model.display
 
     @property
     def model(self) -> Model:
-        """The device and the style that lines are shown in."""
+        """Display and style that lines are shown in."""
         if self._model is None:
             raise DeviceError("the device is not open; start it first")
         return self._model if self._reader is None else replace(self._model, style=self.style)
 
     @property
     def style(self) -> BrailleStyle:
-        """How lines are shown; `tune` turns it."""
+        """Style that lines are shown in; `tune` changes it."""
         if self._reader is not None:
             return self._reader.style
         return self.model.style
 
     @property
     def reader(self) -> Reader:
-        """The reader of what is shown, who takes the commands of `vbraille read`."""
+        """Reader of what is shown, who takes the commands of `vbraille read`."""
         if self._reader is None:
             raise DeviceError("nothing is shown; show a text first")
         return self._reader
 
     @property
     def line(self) -> Line | None:
-        """The line under the hand; None before the first."""
+        """Line under the hand; None before the first."""
         return None if self._reader is None else self._reader.line
 
     @property
@@ -300,12 +300,12 @@ class OpenDevice:
 
     @property
     def x_mm(self) -> float | None:
-        """Where the array's centre was along the line at the last poll; None if not known."""
+        """Place of the array's centre along the line at the last poll; None if not known."""
         return self._engine.x_mm
 
     @property
     def pose(self) -> Pose | None:
-        """Where the array was at the last poll, by the device's clock; None if not known."""
+        """Pose of the array at the last poll, by the device's clock; None if not known."""
         tick = self._newest
         if tick is None or self._engine.x_mm is None:
             return None
@@ -314,12 +314,12 @@ class OpenDevice:
 
     @property
     def frame(self) -> NDArray[np.float32] | None:
-        """The frame sent last, float32[rows, columns], 0 to 1; None before the first poll."""
+        """Frame sent last, float32[rows, columns], 0 to 1; None before the first poll."""
         return None if self._newest is None else self._newest["frame"].copy()
 
     @property
     def paused(self) -> bool:
-        """Whether the array rests; set it to have it rest at once, or go on."""
+        """Whether the array rests; setting it has the array rest at once, or go on."""
         return self._engine.paused
 
     @paused.setter
@@ -328,12 +328,12 @@ class OpenDevice:
 
     @property
     def tally(self) -> Tally:
-        """What the loop has done so far: ticks, and how many came late."""
+        """Counts of what the loop has done so far, such as ticks and late ticks."""
         return self._engine.tally
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """What went wrong with the device, by name; known after `close`."""
+        """Counts of what went wrong with the device, by name; known after `close`."""
         return self._engine.counts
 
     def tune(self, **turned: float) -> None:

@@ -40,23 +40,25 @@ def open_device(
         driver that is installed. A process of its own then drives it. Or a `Device` itself,
         which is driven by this process, as long as the program polls it.
     display
-        What it must be; None for whatever it is. The simulated one is just this, or a STReSS².
+        Display that the device must have; None for whatever it has. A simulated device has this
+        display, or a STReSS².
     style
         How braille is shown; None for how the display is read unless told otherwise.
     hand, seed
-        What moves the simulated device, "sweep:60" unless given, and what that is drawn from.
+        Hand that moves the simulated device, "sweep:60" if not given, and seed of what is random
+        in it.
     rate_hz
         Frames a second, 1 to 10,000.
     clock
-        What a `Device` goes by; None for the machine's. One of `vbraille.testing` is turned by
-        hand, and lets a text be read as fast as the machine can.
+        Clock for a `Device` that is given itself; None for the machine's. A clock of
+        `vbraille.testing` is turned by hand, and lets a text be read as fast as the machine can.
     say
-        Where to say what the reader should hear, one thing a call.
+        Function that is called with each thing that the reader should hear.
 
     Raises
     ------
     InputError
-        If something cannot be used.
+        If an argument cannot be used.
     DeviceError
         If the device cannot be opened.
 
@@ -96,7 +98,7 @@ def open_device(
             geometry = replace(model.style.geometry, travel_mm=found.travel_mm)
             model = replace(model, style=model.style.replace(geometry=geometry))
         opened.start(model)
-    except BaseException:  # a signal, too
+    except BaseException:  # a signal's exception, too
         opened.close()
         raise
     return opened

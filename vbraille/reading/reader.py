@@ -24,48 +24,48 @@ if TYPE_CHECKING:
     from vbraille.render import Model
     from vbraille.simulation.steering import Steering
 
-# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+# Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PAUSED, _HELD = int(Flag.PAUSED), int(Flag.HELD)
 
 
 class Reader:
-    """Somebody who reads a range of lines: what is under the hand, and where that is on its way.
+    """Somebody who reads a range of lines: what is under the hand, and how far it has come.
 
-    It says what it has to say in sentences; `vbraille.reading.commands` does things with it.
+    It speaks in sentences; `vbraille.reading.commands` calls its methods.
 
     Parameters
     ----------
     layout
-        The book.
+        Lines of the book.
     engine
-        Drives the device.
+        Engine that drives the device.
     model
-        The display, and how lines are shown on it.
+        Display, and style in which lines are shown on it.
     first, last
-        Lines to read, from 1, both included; None for the end.
+        Numbers of the first and last line to read, from 1; None for the end.
     advance
-        Whether the next line comes when the hand returns; else a key brings it.
+        Whether the next line comes when the hand returns; otherwise a key brings it.
     stay
         Whether to wait for keys at the end of the text, instead of being done.
     echo
-        What to say of each line.
+        How much is said of each line.
     steering
-        What tells the simulated hand what to read; None if a person's hand reads.
+        Steering that tells a simulated hand what to read; None if a person reads.
     say
-        Takes what is said, one thing a call.
+        Function that is called with each thing to be said.
 
     Attributes
     ----------
     line : Line or None
-        The line under the hand; None before the first.
+        Line under the hand; None before the first.
     style : BrailleStyle
         How lines are shown.
     context : Context
-        What keys mean at the moment.
+        Meaning of the keys at the moment.
     lines : int
-        Lines read so far: those that were under the hand.
+        Number of lines read so far: those that were under the hand.
     done : bool
-        Whether there is no more to read, or the reader stopped.
+        Whether there is no more to read, or reading was stopped.
     """
 
     def __init__(
@@ -98,13 +98,13 @@ class Reader:
         self._steering = steering
         self._end: EndOfLine
         self._waiting: Waiting
-        self._finished = False  # said that there is no more, until a key brings another line
+        self._finished = False  # whether the end was said, until a key brings another line
         self._prefetched = False
         self._too_fast_said = False
 
     @property
     def hopeless(self) -> str | None:
-        """Why the line will not come to its end unless somebody sees to it; else None."""
+        """Reason why the line will not come to its end unless somebody helps; None without one."""
         return None if self.line is None else self._waiting.hopeless
 
     @property
@@ -114,7 +114,7 @@ class Reader:
 
     @property
     def cell(self) -> int | None:
-        """Cell of the line under the middle of the array; None if it is not on the line."""
+        """Number of the line's cell under the middle of the array; None if there is none."""
         x_mm = self.engine.x_mm
         if self.line is None or x_mm is None:
             return None
@@ -129,20 +129,20 @@ class Reader:
             self._show(line)
 
     def step(self, ticks: NDArray[np.void]) -> None:
-        """Look where the hand was in these ticks, all since the last call."""
+        """Look where the hand was in ticks, which are all since the last call."""
         if self.line is None:
             return
         ticks = ticks[(ticks["line"] == self.line.number) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             self._waiting.rest()
             return
-        # What the device did not take was not felt.
+        # Frames that the device did not take were not felt.
         felt_mm = ticks["x_mm"][ticks["flags"] & _HELD == 0]
         if self._end.find(felt_mm) is not None and self._advance and not self._finished:
             self.go_on()
         else:
             if self._end.reached and not self._prefetched:
-                # On the way back to the start there is time for it.
+                # On the way back to the start there is time for this.
                 self._prefetched = True
                 self.layout.line(self.line.number + 1)
             if not self._finished:
@@ -151,21 +151,21 @@ class Reader:
         self._watch_speed(float(ticks["vx_mm_s"].max()))
 
     def steer(self) -> None:
-        """Have a simulated hand read the line under it; a person's hand does by itself."""
+        """Have a simulated hand read the line under it; a person's hand does so by itself."""
         if self._steering is not None and self.line is not None:
             self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self.line))))
 
     def steered_till(self, tick: np.void) -> bool:
-        """Whether a simulated hand had read the line, by the time of a tick; no other ever has."""
+        """Whether a simulated hand had read the line by the time of a tick; False without one."""
         return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
 
     def go_on(self) -> None:
-        """Put the next line under the hand; where there is none, the reading is finished."""
+        """Put the next line under the hand; if there is none, reading is finished."""
         if self.line is not None and not self.go(self.line.number + 1):
             self._finish()
 
     def go(self, number: int) -> bool:
-        """Put a line of a number under the hand; False if there is none among those to read."""
+        """Put the line of a number under the hand; False if it is none of those to read."""
         if number < self._first or (self._last is not None and number > self._last):
             return False
         line = self.layout.line(number)
@@ -175,7 +175,7 @@ class Reader:
         return True
 
     def tune(self, **turned: float) -> None:
-        """Show the line, and those after it, with another texture or contrast, 0 to 1.
+        """Show this line and those after it with another texture or contrast, 0 to 1.
 
         Raises
         ------

@@ -12,7 +12,7 @@ FILTER_HZ = 200.0
 
 
 def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:
-    """What to say of a hand so fast that texture passes the filters; None if it is not."""
+    """Note on a hand so fast that the filters take texture away; None if it is not."""
     if not style.tuning.texture:
         return None
     period_mm = style.profile.texture_period_mm(style.geometry.dot_width_mm, style.tuning.cycles)

@@ -13,14 +13,14 @@ STEP = 0.1
 
 
 def turn(name: str, step: float) -> Callable[[Reader], None]:
-    """Command that turns a value of the tuning up or down by a step, between 0 and 1.
+    """Make a command that turns a value of the tuning up or down by a step, between 0 and 1.
 
     Parameters
     ----------
     name
         Name of the value: "texture" or "contrast".
     step
-        How much is added to it.
+        Number that is added to the value.
     """
 
     def handler(reader: Reader) -> None:

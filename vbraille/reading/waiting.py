@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STILL_S = 10.0
-REFUSED_S = 1.0  # without a frame taken: said
-HOPELESS_S = 10.0  # the same, where nobody can do anything about it
+REFUSED_S = 1.0  # time without a frame taken, after which it is said
+HOPELESS_S = 10.0  # time without a frame taken, after which nobody waits any more
 # A hand that moves less than this is still.
 STILL_MM = 0.5
-# A hand that turns back so often at the same place, to a millimetre, has met an obstacle there.
+# If a hand turns back so often at the same place, to a millimetre, there is an obstacle.
 TURNS = 3
 SAME_MM = 1.0
-LEAST_WAY_MM = 20.0  # less is a hand that waits at the left
+LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 _NS_PER_S = 1_000_000_000
-# Plain numbers: numpy asks an enumeration for attributes, and loses a signal that comes meanwhile.
+# Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PLACING, _HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
 
 
@@ -41,15 +41,15 @@ class Waiting:
     number
         Number of the line that is under the hand.
     by_hand
-        Whether the next line comes when the hand returns; else a key brings it.
+        Whether the next line comes when the hand returns; otherwise a key brings it.
     keys
         Whether there is somebody at a keyboard.
 
     Attributes
     ----------
     hopeless : str or None
-        Why the line will not come to its end unless somebody sees to the device: it takes nothing,
-        or the hand turned back at the same place again and again, before the end.
+        Reason why the line will not come to its end unless somebody sees to the device: it takes
+        no frames, or the hand turned back at the same place again and again, before the end.
     """
 
     def __init__(
@@ -62,18 +62,18 @@ class Waiting:
         self._by_hand = by_hand
         self._otherwise = "n brings the next line" if keys else "Ctrl-C stops"
         self._said: set[str] = set()
-        self._since_ns: int | None = None  # when it began to be still, or silent
+        self._since_ns: int | None = None  # when the hand began to be still, or the device silent
         self._refused_ns: int | None = None  # since when the device takes nothing
-        self._at_mm = np.nan  # where it is still
-        self._farthest_mm = -np.inf  # since it was at the left
+        self._at_mm = np.nan  # place where the hand is still
+        self._farthest_mm = -np.inf  # farthest place since the hand was at the left
         self._turns_mm: list[float] = []
 
     def rest(self) -> None:
-        """The array rests because somebody wants it: what goes before does not count."""
+        """Note that somebody wants the array to rest, so that what went before does not count."""
         self._since_ns = self._refused_ns = None
 
     def watch(self, ticks: NDArray[np.void], *, reached: bool) -> Iterator[str]:
-        """What there is to say after these ticks, all of the line, oldest first.
+        """Sentences to be said after these ticks, which are all of the line, oldest first.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ class Waiting:
             yield from self._watch_hand(ticks, reached)
 
     def _watch_hand(self, ticks: NDArray[np.void], reached: bool) -> Iterator[str]:
-        """Whether the hand is on its way through the line."""
+        """Sentences on a hand that is not on its way through the line."""
         x_mm = ticks["x_mm"]
         moved = (np.abs(x_mm - self._at_mm) > STILL_MM).any()
         found = np.isnan(self._at_mm) != np.isnan(x_mm[-1])
@@ -99,7 +99,7 @@ class Waiting:
                 yield from self._once("turned", self._turned())
 
     def _watch_device(self, ticks: NDArray[np.void]) -> Iterator[str]:
-        """Whether the device takes what it is sent."""
+        """Sentences on a device that does not take what it is sent."""
         if not ticks["flags"][-1] & _HELD:
             if "refused" in self._said:
                 self._said.remove("refused")
@@ -129,7 +129,7 @@ class Waiting:
 
     def _still(self, flags: int, *, reached: bool) -> str:
         if flags & _PLACING:
-            return ""  # it has been said what to do
+            return ""  # what to do was said already
         if flags & Flag.SILENT or np.isnan(self._at_mm):
             return (
                 f"waiting: the device has not said for {STILL_S:g} s where its carriage is; "

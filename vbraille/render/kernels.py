@@ -63,14 +63,14 @@ _inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
 
 @_inlined
 def _cos_pi(q):
-    """Compute the cosine of π d, for q = d² ≤ 1/4."""
+    """Compute cos π d from q = d² ≤ 1/4."""
     high = _C5 + q * (_C6 + q * (_C7 + q * (_C8 + q * (_C9 + q * _C10))))
     return _C0 + q * (_C1 + q * (_C2 + q * (_C3 + q * (_C4 + q * high))))
 
 
 @_inlined
 def _sin_pi(d, q):
-    """Compute the sine of π d, for q = d² ≤ 1/4."""
+    """Compute sin π d from d and q = d² ≤ 1/4."""
     high = _T5 + q * (_T6 + q * (_T7 + q * (_T8 + q * _T9)))
     return d * (_T0 + q * (_T1 + q * (_T2 + q * (_T3 + q * (_T4 + q * high)))))
 
@@ -126,7 +126,7 @@ def _swings(numbers, scratch, count, which):
 
 @_inlined
 def _places(scratch, left_mm, first, columns, pitch):
-    """Put down where on the surface each column is (eq. 3.1: all columns sample one surface)."""
+    """Fill in where on the surface each column is (eq. 3.1: all columns sample one surface)."""
     for column in range(columns):
         scratch[SWING, first + column] = left_mm + column * pitch
 
@@ -159,7 +159,7 @@ def _write_larger(numbers, table, base, scratch, first, out, above, below):
 
 @_compiled
 def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
-    """Fill rows of a frame whose left columns stand at the same place."""
+    """Fill rows of a frame, all of which have their left columns at the same place."""
     columns = out.shape[1]
     _places(scratch, left_mm, 0, columns, pitch)
     if numbers[OVERLAP] == 0.0:
@@ -176,7 +176,7 @@ def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
 
 @_inlined
 def _base(numbers, part):
-    """Tell where the table has the slots of a part; a part that is no line has empty ones."""
+    """Tell where in the table the slots of a part begin; a part that is no line has empty slots."""
     if numbers[KIND] != _PAGE:
         return 0
     lines = int(numbers[LINES])
@@ -198,7 +198,7 @@ def part_of(numbers, y_mm, before):
     if before != NO_PART and abs(at - before - 0.5) <= 0.5 + numbers[HYSTERESIS] / 2:
         return before
     lines = numbers[LINES]
-    at = at if at > -1.0 else -1.0  # a NaN, too
+    at = at if at > -1.0 else -1.0  # NaN, too, gives this place
     return math.floor(at if at < lines else lines)
 
 
@@ -209,7 +209,7 @@ def frame(numbers, table, scratch, part, at, out):
     ``at`` is what it is evaluated at, float64[6]: pose, time and velocity, by `work`.
     """
     rows, columns = out.shape
-    # Compiled, nothing else would stop it from reading beyond the numbers.
+    # Compiled code would otherwise read beyond the numbers.
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frame has not the shape of the array")
     if numbers[KIND] == VIBRATION:

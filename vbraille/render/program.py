@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
 
-_BLOCK = 64  # places whose swings stay in the processor's nearest cache
+_BLOCK = 64  # number of places whose swings stay in the processor's nearest cache
 # No picture moves by itself for longer, since vibration tires the skin (Lévesque 2009, 8.6).
 EXPOSURE_S = 60.0
-# At 1 kHz a period has twenty samples then: Lévesque 2009, 8.3.2.
+# At this frequency a period has twenty samples at 1 kHz: Lévesque 2009, 8.3.2.
 MOST_FREQUENCY_HZ = 50.0
 
 
@@ -33,12 +33,12 @@ class Program:
     numbers : float64[n]
         Numbers at the places that `vbraille.render.work` names; they begin alike for every kind.
     table : uint16[m]
-        What the kernel of this kind looks up.
+        Table in which the kernel of this kind looks things up.
 
     Attributes
     ----------
     shape : tuple[int, int]
-        Rows and columns of the display that it is for.
+        Rows and columns of the display that the program was compiled for.
     """
 
     __slots__ = ("_at", "_scratch", "numbers", "shape", "table")
@@ -52,31 +52,31 @@ class Program:
 
     @property
     def kind(self) -> ProgramKind:
-        """What kind of picture it is."""
+        """Kind of the picture."""
         return ProgramKind(int(self.numbers[work.KIND]))
 
     @property
     def nbytes(self) -> int:
-        """How many bytes it takes in memory."""
+        """Number of bytes that the program takes in memory."""
         return self.numbers.nbytes + self.table.nbytes
 
     @property
     def own_y_mm(self) -> float:
-        """Where on the canvas an array stands whose carriage measures no y."""
+        """Place on the canvas, along y, of an array whose carriage measures no y."""
         return float(self.numbers[work.OWN_Y])
 
     @property
     def moves(self) -> bool:
-        """Whether it moves by itself, without the hand."""
+        """Whether the picture moves by itself, without the hand."""
         return bool(self.numbers[work.FREQUENCY] > 0)
 
     def check_shape(self, shape: tuple[int, int]) -> None:
-        """Compare it with the rows and columns of the display that is to show it.
+        """Compare the program's shape with that of the display that is to show it.
 
         Raises
         ------
         ValueError
-            If it was compiled for another array.
+            If the program was compiled for another array.
         """
         if self.shape != shape:
             raise ValueError(
@@ -85,8 +85,8 @@ class Program:
             )
 
     def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
-        """Tell which part is under an array with its centre at y, after ``before`` was there."""
-        # Kernels, and numba with them, are loaded by who makes frames, not by who has a host do it.
+        """Tell which part is under an array with its centre at y, where ``before`` was before."""
+        # Importing kernels loads numba, which only a process that makes frames has to wait for.
         from vbraille.render import kernels
 
         return kernels.part_of(self.numbers, y_mm, before)
@@ -105,22 +105,22 @@ class Program:
         Parameters
         ----------
         x_mm
-            Where the array's centre is. A place that is not on the picture gives the
-            idle frame, and so does NaN.
+            Place of the array's centre. A place that is not on the picture gives the idle frame,
+            and so does NaN.
         out : float[rows, columns]
-            Deflections, 0 … 1. It need not be contiguous, but the first array of each
-            new type and layout takes some seconds, in which kernels are compiled.
+            Deflections, 0 … 1. The array need not be contiguous, but for the first array of each
+            new type and layout kernels are compiled, which takes some seconds.
         theta_rad
-            How far the array is turned, in radians.
+            Angle by which the array is turned, in radians.
         part
-            Which part of the picture is shown; see `part_of`.
+            Number of the part of the picture that is shown; see `part_of`.
         time_s
             The picture's own time, in seconds since its start.
 
         Raises
         ------
         ValueError
-            If ``out`` has not the shape of the array.
+            If ``out`` has another shape than the array.
         """
         from vbraille.render import kernels
 
@@ -131,14 +131,14 @@ class Program:
     def path(
         self, x_mm: NDArray[np.float64], out: NDArray[np.float32] | None = None
     ) -> NDArray[np.float32]:
-        """Fill the frames of a line for a path of places; much faster than `frame` for each.
+        """Fill the frames of a line for many places; much faster than `frame` for each.
 
         Parameters
         ----------
         x_mm : float64[n]
-            Where the array's centre is.
+            Places of the array's centre.
         out : float32[n, rows, columns], optional
-            Where to put the frames; a new array if it is not given.
+            Array for the frames; a new one is made if it is not given.
 
         Returns
         -------
@@ -148,7 +148,7 @@ class Program:
         Raises
         ------
         ValueError
-            If ``out`` has not that shape, or the picture is no line.
+            If ``out`` has another shape, or the picture is no line.
         """
         from vbraille.render import kernels
 
@@ -174,12 +174,12 @@ class Program:
         Parameters
         ----------
         x_mm, y_mm, theta_rad : float64[n]
-            Where the array's centre is, and how far it is turned.
+            Places of the array's centre, and angles by which the array is turned.
 
         Returns
         -------
         int64[n], float32[n, rows, columns]
-            The part that belongs under the array, and deflections, 0 … 1. Where one part follows
+            Parts that belong under the array, and deflections, 0 … 1. Where one part follows
             another nothing fades: fades take time, and are left to the engine.
         """
         from vbraille.render import kernels
@@ -192,13 +192,13 @@ class Program:
         return parts, out
 
     def with_anchor(self, anchor_mm: float) -> Program:
-        """Make a program of the same braille for places of another point than the array's centre.
+        """Make a program of the same braille for which another point of the array tells its place.
 
         Parameters
         ----------
         anchor_mm
-            How far right of the left column that point is: 0 is the left column itself, whose
-            places recordings held until 2026-11-21.
+            Distance of that point from the left column, to the right. Recordings until 2026-11-21
+            hold places of the left column itself, whose distance is 0.
         """
         numbers = self.numbers.copy()
         numbers[work.ANCHOR] = anchor_mm
@@ -206,14 +206,14 @@ class Program:
 
 
 def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
-    """Make the scratch room that kernels need for so many places of the array at once."""
+    """Make the scratch array that kernels need for a number of places at once."""
     return np.zeros((2, places * columns))
 
 
 def head(
     display: Display, kind: ProgramKind, places: int, own_y_mm: float = 0.0
 ) -> NDArray[np.float64]:
-    """Make the numbers of a program that does not move by itself, with room for so many."""
+    """Make the numbers of a program that does not move by itself, with room for so many numbers."""
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
     numbers[work.OWN_Y] = own_y_mm
@@ -223,7 +223,7 @@ def head(
 
 
 def nothing(display: Display) -> Program:
-    """Make a line without a dot, for as long as there is nothing to show."""
+    """Make a line without a dot, for times when there is nothing to show."""
     return Program(
         head(display, ProgramKind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16)
     )
@@ -242,13 +242,13 @@ def vibration(
     Parameters
     ----------
     display
-        What it is shown on.
+        Display that shows the program.
     frequency_hz
-        Swings a second, above 0 to 50 Hz.
+        Frequency of the swings, above 0 to 50 Hz.
     amplitude
         Share of the full swing, above 0 to 1.
     exposure_s
-        How long it is felt at a time, in seconds, above 0; then it fades.
+        Time for which it is felt before it fades, in seconds, above 0.
 
     Raises
     ------

@@ -8,7 +8,7 @@ from enum import IntEnum
 
 
 class ProgramKind(IntEnum):
-    """What a program shows; only the kernels ask for it."""
+    """Kinds of programs; only kernels distinguish them."""
 
     LINE = 0
     PAGE = 1
@@ -17,14 +17,14 @@ class ProgramKind(IntEnum):
 
 # The head, which is alike for every kind; the engine reads it.
 (
-    KIND,  # of `ProgramKind`
+    KIND,  # a number of `ProgramKind`
     OWN_Y,  # y of the array on a carriage that has no such axis, mm
     FREQUENCY,  # at which a picture moves by itself, Hz; 0 if it does not
-    AMPLITUDE,  # how far it moves an actuator by itself at most, of the swing
+    AMPLITUDE,  # its largest swing of an actuator by itself, as a share of the full swing
     EXPOSURE,  # how long it may move by itself before it fades, s
     ROWS,  # rows and columns of the display that it was compiled for
     COLUMNS,
-    OWN,  # the first number that has another meaning for each kind
+    OWN,  # first of the numbers whose meaning differs from kind to kind
 ) = range(8)
 
 # Braille: a line, or a page of lines.
@@ -34,7 +34,7 @@ class ProgramKind(IntEnum):
     ROW_PITCH,
     LINES,  # how many lines the page has; 0 for a line alone
     LINE_PITCH,
-    HYSTERESIS,  # between going to the next line and coming back, in line pitches
+    HYSTERESIS,  # distance between going to the next line and coming back, in line pitches
     SLOTS,  # slots of a line: 2 · (cells + 2)
     CELLS_PER_MM,
     CELL_PITCH,
@@ -42,7 +42,7 @@ class ProgramKind(IntEnum):
     DOT_SPACING,
     PROFILE,
     OVERLAP,  # 1 if two dots can be under one place
-    SHAPE,  # coefficients of the profile, 6
+    SHAPE,  # the 6 coefficients of the profile
     _S1,
     _S2,
     _S3,
@@ -51,10 +51,10 @@ class ProgramKind(IntEnum):
     IDLE,  # deflection of each row off the dots, then how far and which way a dot swings it
 ) = range(OWN, OWN + 20)
 
-# What a frame is evaluated at: pose, the picture's own time, velocity.
+# Numbers that a frame is evaluated at: pose, the picture's own time, velocity.
 X, Y, THETA, TIME, VX, VY = range(6)
 
-# Rows of the kernels' scratch: the swing under each column, and the slot that it is over.
+# Rows of the kernels' scratch: the swing under each column, and the slot that the column is over.
 SWING, SLOT = range(2)
-# Stands for no part: no line of a page was under the array yet.
+# Value for no part: no line of a page was under the array yet.
 NO_PART = -2

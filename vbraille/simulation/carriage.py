@@ -12,20 +12,21 @@ from vbraille.simulation.recorded import Recorded
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
 
-# How a hand goes where it does not read.
+# Speed of a hand that moves without reading.
 APPROACH_MM_S: Final = 250.0
 PAST_MARK_MM: Final = 1.0
 
 
 class Carriage:
-    """A carriage, at the left stop, and the hand that moves it once it is told to.
+    """A carriage at the left stop, and the hand that moves it when it is told to.
 
     Parameters
     ----------
     hand
-        Reads lines as wide as the travel, one after the other; a recorded one reads once.
+        Hand that reads lines as wide as the travel, one after the other; a recorded hand reads
+        once.
     span_mm, travel_mm
-        How wide the array is, and how far the carriage moves.
+        Width of the array, and how far the carriage can move.
     """
 
     def __init__(self, hand: Hand | Recorded, span_mm: float, travel_mm: float) -> None:
@@ -37,7 +38,7 @@ class Carriage:
         self._waits, self._reads = True, False
 
     def way_mm(self, now_us: int) -> float:
-        """How far it is from the left stop; time must not go back."""
+        """Distance of the carriage from the left stop; time must not go back."""
         if self._motion is not None:
             time_s = (now_us - self._begun_us) / 1e6
             self._x_mm = float(np.interp(time_s, self._motion.t_s, self._motion.x_mm))
@@ -48,12 +49,12 @@ class Carriage:
         return min(max(self._x_mm - self._left_mm, 0.0), self._travel_mm)
 
     def set_out(self) -> None:
-        """Have the hand read once it has done what it is about; it may have set out already."""
+        """Have the hand read when it has done what it is doing; it may be reading already."""
         if self._waits:
             self._waits, self._reads = False, True
 
     def cross(self, mark_mm: float, now_us: int) -> None:
-        """Move over the mark and back to the stop."""
+        """Move over the encoder's mark and back to the stop."""
         if self._motion is None:
             way = Way(self._x_mm)
             way.move(self._left_mm + mark_mm + PAST_MARK_MM, APPROACH_MM_S)
@@ -61,7 +62,7 @@ class Carriage:
             self._motion, self._begun_us = way.motion(), now_us
 
     def go_back(self, now_us: int) -> None:
-        """Move to the left stop, and wait there to be told again."""
+        """Move to the left stop, and wait there for the next order."""
         self.way_mm(now_us)
         self._motion = None
         if self._x_mm != self._left_mm:

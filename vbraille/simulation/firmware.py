@@ -42,11 +42,11 @@ if TYPE_CHECKING:
 
 WATCHDOG_US: Final = WATCHDOG_MS * 1000
 RAMP_US: Final = RAMP_MS * 1000
-# Where an index encoder has its mark; halfway on a carriage that hardly goes so far.
+# Place of an index encoder's mark; on a carriage that hardly goes so far it is halfway.
 MARK_MM: Final = 10.0
-# What an encoder that does not know its place is wrong by: anything but 0 in any number of bits.
+# Error of an encoder that does not know its place: a count that is not 0 in any number of bits.
 ASTRAY: Final = 12_345
-# Counts before a described encoder wraps, so that it does so on the way: 100 mm of 5 µm.
+# Counts before a described encoder wraps, few so that it wraps on the way: 100 mm of 5 µm.
 BEFORE_WRAP: Final = 20_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 
@@ -57,7 +57,7 @@ def describe(info: Display, encoder: Encoder) -> Info:
     Raises
     ------
     ValueError
-        If the wire has no room for a number.
+        If a number does not fit into its field on the wire.
     """
     actuators = info.rows * info.columns
     counts = round(info.travel_mm * info.counts_per_mm)
@@ -87,37 +87,38 @@ def describe(info: Display, encoder: Encoder) -> Info:
 
 
 class Controller:
-    """A device's controller, from its start.
+    """A device's controller, from the moment it starts.
 
-    Its clock is the caller's: plain microseconds that do not wrap, and do not go back.
+    Its clock is given by the caller: plain microseconds, which never wrap or go back.
 
     Parameters
     ----------
     info
-        What it is.
+        What the device says of itself.
 
     Attributes
     ----------
     buttons : int
         Bit 0 is the first button; 1 while it is pressed.
     force_mn : int | None
-        How hard the finger presses on the array; None if that is not measured.
+        How hard the finger presses on the array, in mN; None if that is not measured.
     levels : uint16[rows · columns]
-        Where each actuator stands.
+        Level at which each actuator stands.
     at_rest : bool
-        Whether they have come to rest, and no FRAME has been taken since.
+        Whether the actuators have come to rest, and no FRAME has been taken since.
     greeted, faulty, placed : bool
-        Whether a host of its version said HELLO; an ERROR stands; counts are true.
+        Whether a host of the same version has said HELLO, whether an ERROR stands, and whether
+        counts tell the true place.
     greetings, trips, frames : int
-        HELLOs of its version; of the watchdog; FRAMEs taken.
+        Numbers of HELLOs of the same version, of trips of the watchdog, and of FRAMEs taken.
     last_frame_us : int
         When the last FRAME was taken; 0 before the first.
     watchdog_us : int or None
-        How long without a FRAME until the watchdog trips; None is never, which no device may do.
+        Time without a FRAME until the watchdog trips; None is never, which no device may do.
     acknowledges : bool
-        Whether STATE tells the last FRAME taken, as it must.
+        Whether STATE tells which FRAME was taken last, as it must.
     rest_after_us : int | None
-        How long after that the actuators were at rest, the last time that they went there.
+        How long after that FRAME the actuators were at rest, the last time that they went there.
     """
 
     def __init__(self, info: Info) -> None:
@@ -142,13 +143,13 @@ class Controller:
         self._armed = self._tripped = False
         self._now_us = 0
         self._sequence = self._frame_sequence = 0
-        self._timer_us: int | None = None  # when its timer ticked first
+        self._timer_us: int | None = None  # when the timer ticked first
         self._way_mm: float | None = None
         self._astray = 0 if self.placed else ASTRAY
 
     @property
     def dropped(self) -> int:
-        """How many frames were received that came to nothing."""
+        """Number of frames that were received and could not be used."""
         return sum(self._decoder.dropped.values()) + self._misfits
 
     @property
@@ -158,24 +159,24 @@ class Controller:
 
     @property
     def mark_mm(self) -> float:
-        """Way from the left stop to the mark of an index encoder."""
+        """Distance from the left stop to the mark of an index encoder."""
         return min(MARK_MM, self.info.travel_um / 2000)
 
     def receive(self, chunk: bytes, now_us: int) -> bytes:
-        """Take bytes of the host's; what goes back to it."""
+        """Take bytes from the host; give the bytes that go back."""
         self._now_us = now_us
         answers = [self._take(event) for event in self._decoder.feed(chunk)]
         return b"".join(answers)
 
     def tick(self, now_us: int, way_mm: float) -> bytes:
-        """Do what a controller does `rate_hz` times a second; what goes to the host.
+        """Do what a controller does `rate_hz` times a second; give the bytes that go to the host.
 
         Parameters
         ----------
         now_us
-            The time by the controller's clock.
+            Time by the controller's clock.
         way_mm
-            How far the carriage is from the left stop.
+            Distance of the carriage from the left stop.
         """
         self._now_us = now_us
         if self._timer_us is None:
@@ -188,16 +189,18 @@ class Controller:
         return said + self._state(count) if self.greeted else b""
 
     def skip(self, ticks: int) -> None:
-        """Have missed ticks, and their STATEs dropped."""
+        """Skip ticks as if they had been missed, and drop their STATEs."""
         self._sequence = (self._sequence + ticks) & _U16
 
     def fault(self, code: int, text: str) -> bytes:
-        """Have something wrong: an ERROR, or from 128 on a notice; what goes to the host.
+        """Report that something is wrong; give the bytes that go to the host.
+
+        A code from 128 on makes a notice, any other an ERROR.
 
         Raises
         ------
         ValueError
-            If the code or the text is none for the wire.
+            If the wire allows no such code or text.
         """
         said = encode(Error(code, text))
         if code < NOTICES:
@@ -206,10 +209,10 @@ class Controller:
         return said if self.greeted else b""
 
     def hang_up(self) -> None:
-        """Have the line taken away, not the power: silent until HELLO, and all else goes on."""
+        """Lose the line, not the power: be silent until the next HELLO, while all else goes on."""
         self.greeted = False
         dropped = self._decoder.dropped
-        self._decoder = Decoder()  # what was begun to be received is gone
+        self._decoder = Decoder()  # what has come of a message is gone
         self._decoder.dropped = dropped
 
     def _take(self, event: Heard) -> bytes:
@@ -224,7 +227,7 @@ class Controller:
                 return encode(self.info) + self._watchdog()
             case Rest():
                 self._go_to_rest()
-            case _:  # a device's
+            case _:  # a message of a device's
                 self._misfits += 1
         return b""
 
@@ -253,7 +256,7 @@ class Controller:
     def _takes(self, sequence: int, levels: NDArray[np.uint16]) -> bool:
         """Whether a FRAME may move the actuators now.
 
-        The host may not know that they went to rest, or its FRAME may be an old one that was late.
+        The host may not know that they went to rest, or the FRAME may be an old one that came late.
         """
         if self._ramp_us is not None:
             return False
@@ -269,7 +272,7 @@ class Controller:
         self._start_ramp(self._now_us)
 
     def _watch(self) -> bytes:
-        """Trip if the time is up."""
+        """Trip the watchdog if its time is up."""
         watchdog_us = self.watchdog_us
         if watchdog_us is None or self._now_us - self.last_frame_us < watchdog_us:
             return b""
@@ -279,7 +282,7 @@ class Controller:
         return self._watchdog()
 
     def _start_ramp(self, begun_us: int) -> None:
-        # A ramp on its way goes on: begun anew, it would take longer than the watchdog promises.
+        # A ramp on its way goes on: begun anew it would take longer than the watchdog promises.
         if not self.at_rest and self._ramp_us is None:
             self._ramp_us = begun_us
             self._ramp_from = self.levels
@@ -296,13 +299,13 @@ class Controller:
         self.rest_after_us = self._due(begun_us + RAMP_US) - self.last_frame_us
 
     def _due(self, due_us: int) -> int:
-        """When the timer saw to what was due: at its first tick from then on."""
+        """Time at which the timer saw to what was due: its first tick from then on."""
         first_us, rate_hz = self._timer_us or 0, self.info.rate_hz
         ticks = -(-(due_us - first_us) * rate_hz // 1_000_000)
         return min(first_us + round(ticks * 1_000_000 / rate_hz), self._now_us)
 
     def _count(self, way_mm: float) -> int:
-        """Count of the encoder at a place; an index may be passed on the way there."""
+        """Count of the encoder at a place; on the way there it may have passed its index."""
         info = self.info
         if info.encoder is Encoder.INDEX and not self.placed and self._way_mm is not None:
             low_mm, high_mm = sorted((self._way_mm, way_mm))

@@ -19,24 +19,24 @@ from vbraille.simulation.paging import Area, Drift, read_lines
 from vbraille.simulation.recorded import MOST_MM
 
 EMPTY_LINE_S = 0.25
-# A hand that is not done comes no nearer to the start, once away from it, and turns no nearer to
+# Unless it is done, a hand comes no nearer to the start once it has left it, and turns no nearer to
 # the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
 # start" for the end of a line: this is what tells reading again from being done.
 CLEAR_MM = 1.25
 TURN_SHORT = (0.01, 0.10)  # passes but the last turn round at 90 to 99 % of the way
 SLOW_BACK_CHANCE = 0.3  # of feeling the line on the way back too, before reading it again
-LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # a shorter line has no room for that: one pass
-LEAST_MOVE_MM = 0.05  # what is left of a way when it is shorter is gone in the same movement
+LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # on a shorter line there is no room: one pass
+LEAST_MOVE_MM = 0.05  # a shorter rest of a way is gone in the same movement
 
 
 class Hand(Protocol):
     """A hand that reads line after line, or a page."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """The next line: from where the hand is, at start, to its end and back to the start.
+        """Read the next line: from its start, where the hand is, to its end and back.
 
-        Between the two it never leaves them. For an empty line, start = end,
-        it waits a little.
+        In between it never leaves the line. For an empty line, where start is end, it waits a
+        little.
 
         Raises
         ------
@@ -46,18 +46,18 @@ class Hand(Protocol):
         ...
 
     def read_page(self, area: Area) -> Motion:
-        """All lines of a page, from the first to the last, with y and θ where they change.
+        """Read all lines of a page, from the first to the last; y and θ are given if they change.
 
         Raises
         ------
         ValueError
-            As `read_line` does.
+            In the cases in which `read_line` raises it.
         """
         ...
 
 
 def along(start_mm: float, end_mm: float) -> Way:
-    """A way that begins at the start of a line, once that is seen to be one."""
+    """A way that begins at the start of a line, after a check of the line's places."""
     if not -MOST_MM <= start_mm <= end_mm <= MOST_MM:
         raise ValueError(
             f"a line is from {start_mm:g} to {end_mm:g} mm; "
@@ -68,12 +68,12 @@ def along(start_mm: float, end_mm: float) -> Way:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """A hand at constant speed; back at `RETURN_MM_S`.
+    """A hand at constant speed, which comes back at `RETURN_MM_S`.
 
     Parameters
     ----------
     speed_mm_s
-        How fast it moves to the right.
+        Speed to the right.
 
     Raises
     ------
@@ -87,7 +87,7 @@ class Sweep:
         check_range("sweep speed", self.speed_mm_s, *SPEED_BOUNDS_MM_S, " mm/s")
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Read the next line; see `Hand`."""
+        """Motion along the next line; see `Hand`."""
         way = along(start_mm, end_mm)
         if start_mm == end_mm:
             way.wait(EMPTY_LINE_S)
@@ -96,34 +96,35 @@ class Sweep:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """Read all lines of a page, each along its middle; see `Hand`."""
+        """Motion over all lines of a page, each along its middle; see `Hand`."""
         return read_lines(self.read_line, area)
 
 
 @dataclass(frozen=True, slots=True)
 class Habits:
-    """How somebody reads: in movements of constant speed, one after the other.
+    """Habits of a reader, who reads in movements of constant speed, one after the other.
 
-    Pairs bound what is drawn evenly. Chances are after each movement to the right.
+    A pair has the two bounds between which a value is drawn evenly. Each chance is that of
+    something to happen after a movement to the right.
 
     Parameters
     ----------
     speed_mm_s
         Median over time of the speed to the right.
     spread
-        Standard deviation of the speed's natural logarithm.
+        Standard deviation of the natural logarithm of the speed.
     speed_bounds_mm_s
-        No movement is slower or faster, quick returns apart.
+        Slowest and fastest speed of any movement but a quick return.
     movement_s
-        How long a movement lasts.
+        Duration of a movement.
     pause_chance, pause_s
-        The chance of standing still, and how long it does so.
+        Chance of standing still, and for how long.
     regression_chance, regression_mm
-        The chance of a step back, and how far it goes.
+        Chance of a step back, and its length.
     rescan_chance, rescan_mm
-        The chance of going back to feel one cell or two again, and how far it goes for each.
+        Chance of going back to feel one cell or two again, and the way for each of them.
     passes
-        How often a line is read.
+        Number of times that a line is read.
 
     Raises
     ------
@@ -190,14 +191,14 @@ FLUENT = Habits(
 
 
 class HumanHand:
-    """A hand that reads by habits; the same seed reads the same lines in the same way.
+    """A hand that reads by habits; equal seeds read equal lines in the same way.
 
     Parameters
     ----------
     habits
-        `DEVICE`, `FLUENT`, or others.
+        Habits of the reader: `DEVICE`, `FLUENT`, or others.
     seed
-        0 or more; ValueError if it is negative.
+        Seed of what is drawn at random, 0 or more.
     """
 
     def __init__(self, habits: Habits, seed: int = 1) -> None:
@@ -208,7 +209,7 @@ class HumanHand:
         self._drifting = np.random.default_rng((seed, 1))  # lines are read alike on any carriage
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Read the next line; see `Hand`. Each call draws further."""
+        """Motion along the next line; see `Hand`. Each call draws another one."""
         way = along(start_mm, end_mm)
         length_mm, passes = end_mm - start_mm, 1
         if length_mm >= LEAST_REREAD_MM:
@@ -228,11 +229,11 @@ class HumanHand:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """All lines of a page, drifting a little off each; see `Hand`. Each call draws further."""
+        """Motion over all lines of a page, drifting a little off each. Each call draws another."""
         return read_lines(self.read_line, area, Drift(self._drifting))
 
     def _read(self, way: Way, start_mm: float, to_mm: float) -> None:
-        """One pass to the right, with what holds it up."""
+        """Make one pass to the right, with steps back, pauses and what else holds it up."""
         habits = self.habits
         self._step(way, to_mm)
         while way.x_mm < to_mm:
@@ -253,7 +254,7 @@ class HumanHand:
             self._step(way, to_mm)
 
     def _step(self, way: Way, to_mm: float) -> None:
-        """Make one movement at a speed of its own."""
+        """Make one movement at a speed that is drawn for it."""
         habits = self.habits
         low, high = habits.speed_bounds_mm_s
         drawn = habits.speed_mm_s * math.exp(habits.spread * self._random.standard_normal())

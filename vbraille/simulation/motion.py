@@ -11,8 +11,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-LEAST_KNOT_S = 1e-6  # what is shorter takes as long, so that time always increases
-# Rounding: what ticks and samples at tenths or thousandths of a second may be off.
+LEAST_KNOT_S = 1e-6  # a shorter time is made as long, so that time always increases
+# Rounding error of ticks and samples at tenths or thousandths of a second.
 SLACK = 1e-9
 SPEED_BOUNDS_MM_S = (0.1, 1000.0)
 # Ours: a hand on its way back does not read, and crosses a carriage of 300 mm in little over 1 s.
@@ -21,25 +21,25 @@ RETURN_MM_S = 250.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """A way over the surface, straight between its knots.
+    """A way over the surface, in straight lines from knot to knot.
 
     Parameters
     ----------
     t_s : float64[n]
-        Time of each knot, from 0, increasing; at least 2.
+        Time of each knot, from 0, increasing; at least 2 knots.
     x_mm : float64[n]
-        Where the array is then: half its span left of its centre. As long as it is not turned
-        that is where its left column is.
+        Places of the array along x: half its span left of its centre. As long as the array is
+        not turned, that is where its left column is.
     y_mm : float64[n] or None
-        Where its centre is then, from the top of the page; None if it stays where it is.
+        Places of the array's centre, from the top of the page; None if y does not change.
     theta_rad : float64[n] or None
-        How far it is turned then, as in `vbraille.pose`; None if it stays as it is.
+        Angles by which the array is turned, as in `vbraille.pose`; None if they do not change.
 
     Raises
     ------
     ValueError
-        If they differ in length, a value is not finite, or time does not
-        begin at 0 and increase.
+        If the arrays differ in length, a value is not finite, or time does not begin at 0 and
+        increase.
     """
 
     t_s: NDArray[np.float64]
@@ -70,13 +70,13 @@ class Motion:
 
     @property
     def duration_s(self) -> float:
-        """How long the motion takes: the time of its last knot."""
+        """Duration of the motion: the time of its last knot."""
         return float(self.t_s[-1])
 
     def sample(
         self, rate_hz: float, first: int = 0, count: int | None = None
     ) -> NDArray[np.float64]:
-        """Positions along x at multiples of 1 / rate, up to the end.
+        """Places along x at multiples of 1 / rate, up to the end.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ class Motion:
         first
             Number of the first tick wanted; tick 0 is at time 0.
         count
-            How many ticks at most, for a long motion in parts; None is all.
+            Largest number of ticks, to take a long motion in parts; None is all.
 
         Returns
         -------
@@ -115,12 +115,12 @@ class Way:
     Parameters
     ----------
     x_mm
-        Where it begins.
+        Place where the way begins.
 
     Attributes
     ----------
     x_mm : float
-        Where it has come to.
+        Place that the way has come to.
     """
 
     def __init__(self, x_mm: float) -> None:
@@ -129,18 +129,18 @@ class Way:
         self._knots = [(0.0, x_mm)]
 
     def move(self, to_mm: float, speed_mm_s: float) -> None:
-        """Go to a place, at a speed above 0; where it is already, do nothing."""
+        """Go to a place at a speed above 0; do nothing if the way is there already."""
         if to_mm != self.x_mm:
             duration_s = abs(to_mm - self.x_mm) / speed_mm_s
             self.x_mm = to_mm
             self.wait(duration_s)
 
     def wait(self, duration_s: float) -> None:
-        """Stay where it is for some time."""
+        """Stay in the same place for some time."""
         self._t_s += max(duration_s, LEAST_KNOT_S)
         self._knots.append((self._t_s, self.x_mm))
 
     def motion(self) -> Motion:
-        """Give the motion that was made so far."""
+        """Give the motion made so far."""
         t_s, x_mm = np.array(self._knots).T
         return Motion(t_s, x_mm)

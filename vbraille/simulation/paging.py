@@ -16,31 +16,31 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # All ours. A finger drifts by less than what would bring the next line under the array's centre:
-# half a pitch, or with a hysteresis of a quarter three quarters of it.
+# half a pitch, or three quarters of it with a hysteresis of a quarter.
 DRIFT_PITCHES = 0.15
 TILT_RAD = math.radians(5.0)
 _PERIODS_S = (3.0, 9.0)
-_SHARES = (0.5, 0.3, 0.2)  # of the waves that make up a drift; 1 together
-_KNOTS_S = 0.02  # between knots, so that what is straight between them is smooth
+_SHARES = (0.5, 0.3, 0.2)  # shares of the waves that make up a drift; their sum is 1
+_KNOTS_S = 0.02  # time between knots, short enough that straight lines between them look smooth
 
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """Where the lines of a page are, for a hand.
+    """Area of a page that its lines take, as a hand needs it.
 
     Parameters
     ----------
     lines
-        How many, 1 or more; line n, from 0, takes y from n to n + 1 line pitches.
+        Number of lines, 1 or more; line n, from 0, takes y from n to n + 1 line pitches.
     pitch_mm
-        How far it is from one line to the next.
+        Distance from one line to the next.
     start_mm, end_mm
-        Where the array begins and ends each line, along x as in `Motion`.
+        Places where the array begins and ends each line, along x as in `Motion`.
 
     Raises
     ------
     ValueError
-        If there is no line, or no pitch.
+        If there is no line, or the pitch is not above 0.
     """
 
     lines: int
@@ -55,7 +55,7 @@ class Area:
             raise ValueError(f"line pitch is {self.pitch_mm:g} mm; it must be above 0")
 
     def middle_mm(self, line: int) -> float:
-        """Where the middle of a line is along y."""
+        """Place of the middle of a line along y."""
         return (line + 0.5) * self.pitch_mm
 
     @property
@@ -70,18 +70,21 @@ class Drift:
     Parameters
     ----------
     random
-        Draws how; each drift is another one.
+        Generator that draws the drift; each drift is a different one.
     """
 
     def __init__(self, random: np.random.Generator) -> None:
         self._waves = [self._draw(random) for _ in range(2)]
 
     def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far below the middle of the line at times, -`DRIFT_PITCHES` … `DRIFT_PITCHES`."""
+        """How far below the middle of the line the hand is at some times, in line pitches.
+
+        Values are in -`DRIFT_PITCHES` … `DRIFT_PITCHES`.
+        """
         return DRIFT_PITCHES * self._wave(0, t_s)
 
     def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far it is turned at times, -`TILT_RAD` … `TILT_RAD`."""
+        """How far the hand is turned at some times, -`TILT_RAD` … `TILT_RAD`."""
         return TILT_RAD * self._wave(1, t_s)
 
     @staticmethod
@@ -101,16 +104,17 @@ class Drift:
 def read_lines(
     read_line: Callable[[float, float], Motion], area: Area, drift: Drift | None = None
 ) -> Motion:
-    """A page, line by line: along each and back as on a line alone, then down to the next.
+    """Motion over a page: along each line and back as on a single line, then down to the next.
 
     Parameters
     ----------
     read_line
-        The next line from its start to its end and back, as of `vbraille.simulation.hand.Hand`.
+        Function that gives the motion along the next line and back, as in
+        `vbraille.simulation.hand.Hand`.
     area
-        Where they are.
+        Area that the lines take.
     drift
-        How the hand wanders off them; None if it keeps to the middle of each.
+        How the hand wanders off the lines; None if it keeps to the middle of each.
     """
     times_s, places_mm, middles_mm = [], [], []
     begun_s = 0.0

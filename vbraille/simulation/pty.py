@@ -14,12 +14,12 @@ _CHUNK = 65_536
 
 
 class Link:
-    """A symbolic link to a port, so that a port has the same name whichever it is.
+    """A symbolic link to a port, so that the port has the same name each time.
 
     Parameters
     ----------
     path
-        Where; whatever is there already is left alone.
+        Path of the link; whatever is there already is left alone.
     """
 
     def __init__(self, path: str) -> None:
@@ -32,7 +32,7 @@ class Link:
         Raises
         ------
         InputError
-            If there is something in its place, or no link can be made there.
+            If something else is at the path, or no link can be made there.
         """
         self.remove()
         try:
@@ -50,19 +50,19 @@ class Link:
         self._target = target
 
     def remove(self) -> None:
-        """Remove it, unless it has become somebody else's."""
+        """Remove the link, unless something else has taken its place."""
         with suppress(OSError):
             if self._target is not None and self.path.readlink() == Path(self._target):
                 self.path.unlink()
 
 
 class Port:
-    """A pseudo-terminal, plugged in until `unplug`. It never waits.
+    """A pseudo-terminal, plugged in until `unplug`. Its methods never wait.
 
     Parameters
     ----------
     link
-        What points at it while it is plugged in.
+        Link that points at the port while it is plugged in.
 
     Raises
     ------
@@ -74,17 +74,17 @@ class Port:
         self._link = link
         self._master: int | None = None
         self._slave: int | None = None
-        self._left = b""  # of a message that was written in part
+        self._left = b""  # rest of a message that was written in part
         self.path = ""
         self.plug()
 
     @property
     def descriptor(self) -> int | None:
-        """The descriptor to select on; None while it is unplugged."""
+        """Descriptor to wait for with select; None while the port is unplugged."""
         return self._master
 
     def plug(self) -> None:
-        """Be there, perhaps by another path than before."""
+        """Make the port, perhaps at another path than before."""
         # The host's end is kept open here: the line must not hang up each time a host leaves.
         self._master, self._slave = os.openpty()
         self.path = os.ttyname(self._slave)
@@ -108,7 +108,7 @@ class Port:
         self._master = self._slave = None
 
     def read(self) -> bytes:
-        """Give what has come."""
+        """Give the bytes that have come."""
         if self._master is None:
             return b""
         try:
@@ -117,7 +117,7 @@ class Port:
             return b""
 
     def send(self, message: bytes) -> bool:
-        """Send a message whole, or not at all; whether it is on its way."""
+        """Send a message whole, or not at all; tell whether it was sent."""
         if self._left:
             self._left = self._left[self._write(self._left) :]
         if self._left:

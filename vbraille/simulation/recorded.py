@@ -32,19 +32,20 @@ _MOST_DEG = 360_000.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recorded:
-    """A hand that was recorded: one motion over the whole reading, not one a line.
+    """A hand that was recorded: one motion over the whole reading, not one for each line.
 
     Parameters
     ----------
     t_s : float64[n]
-        Time of each sample, from anywhere, increasing by at most `MAX_GAP_S`.
+        Time of each sample, beginning anywhere, increasing by at most `MAX_GAP_S`.
     x_mm, y_mm, theta_rad : float64[n]
-        Where the array was then, as in `Motion`; the last two are None if nobody recorded them.
+        Places and angles of the array as in `Motion`; the last two are None if they were not
+        recorded.
 
     Raises
     ------
     ValueError
-        If they make no `Motion`, or there is a gap.
+        If the values make no `Motion`, or there is a gap in time.
     """
 
     t_s: NDArray[np.float64]
@@ -80,7 +81,7 @@ def load_recorded(path: Path | str) -> Recorded:
     Returns
     -------
     Recorded
-        Its times begin at 0.
+        Recorded hand, whose times begin at 0.
 
     Raises
     ------
@@ -169,7 +170,7 @@ def _is_number(field: str) -> bool:
 
 
 def _number(field: str, name: str, where: str) -> float:
-    """The value of a field, which must be finite."""
+    """Value of a field, which must be a finite number."""
     try:
         value = float(field)
     except ValueError:
@@ -181,7 +182,7 @@ def _number(field: str, name: str, where: str) -> float:
 
 
 def _bounded(field: str, name: str, where: str) -> float:
-    """Value of a field that says where the array is, no farther than it can be."""
+    """Value of a field that is a place of the array, within the bounds of places."""
     value = _number(field, name, where)
     most, unit = (_MOST_DEG, "degrees") if name == "theta_deg" else (MOST_MM, "mm")
     if abs(value) > most:
@@ -190,7 +191,7 @@ def _bounded(field: str, name: str, where: str) -> float:
 
 
 def _check_step(step_s: float, where: str) -> None:
-    """Refuse a sample that is not later than the one before, or too late."""
+    """Raise InputError for a sample that does not follow the one before, or follows it too late."""
     if step_s <= 0:
         raise InputError(
             f"{where}: t_s is not later than in the sample before; put the lines in order of time"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vbraille.simulation.steering import HandOrder
 
 NS_PER_S = 1_000_000_000
-# How a hand goes to where its next motion begins, or to where somebody has it be, and turns.
+# Speeds at which a hand goes, and turns, to where its next motion begins or where it is put.
 APPROACH_MM_S = 250.0
 HELD_MM_S = 1000.0
 TURN_RAD_S = 2 * math.pi
@@ -38,28 +38,28 @@ TURN_RAD_S = 2 * math.pi
 class SimulatedDevice(Device):
     """A device without hardware; a hand moves its carriage in the time of a clock.
 
-    Its encoders count, its levels are as coarse as it says, and it rests on
-    close, as other devices do. It has the axes that it says: y from the top of
-    the page down, and the angle, to any fraction.
+    The encoders count, levels are as coarse as the device says, and the actuators rest on close, as
+    on other devices. The carriage has the axes that the device says: y from the top of the page
+    down, and the angle, both without steps.
 
     Parameters
     ----------
     info
-        What it is to be.
+        What the device is to be.
     now_ns
-        The clock by which the hand moves, in nanoseconds.
+        Clock by which the hand moves, in nanoseconds.
     hand
-        What moves its carriage; `move` does, too.
+        Hand that moves the carriage; `move` moves it as well.
     steering
-        Tells the hand what to do, one thing after the other. Without it the hand sets out with
-        the first frame, and reads lines as wide as the travel, one after the other.
+        Orders to the hand, one after the other. Without it the hand sets out with the first frame,
+        and reads lines as wide as the travel, one after the other.
 
     Attributes
     ----------
     levels : int64[rows, columns]
-        What the actuators were last sent, 0 … info.levels - 1.
+        Levels that were last sent to the actuators, 0 … info.levels - 1.
     frames : int
-        Frames received.
+        Number of frames received.
     """
 
     def __init__(
@@ -72,28 +72,28 @@ class SimulatedDevice(Device):
         self._info = info
         self._hand = hand
         self._steering = steering
-        self._has_set_out = False  # of a hand that was recorded
-        self._ordered = False  # whether something is to be done that is not known to be done yet
+        self._has_set_out = False  # whether a recorded hand has set out
+        self._ordered = False  # whether an order is not known to be done yet
         self._now_ns = now_ns
         self.levels = np.zeros((info.rows, info.columns), np.int64)
         self.frames = 0
         self._begun_ns = now_ns()
         self._t_s: NDArray[np.float64] = np.zeros(1)
-        # x as in `Motion`, y and θ at these times; each float64[n].
+        # Places at these times: x as in `Motion`, y and θ; each float64[n].
         self._way = tuple(np.full(1, place) for place in (-info.span_mm, 0.0, 0.0))
 
     @property
     def display(self) -> Display:
-        """What the device says of itself."""
+        """Properties of the device, as it tells them."""
         return self._info
 
     @property
     def hand(self) -> Hand | Recorded | None:
-        """The hand that moves its carriage."""
+        """Hand that moves the carriage."""
         return self._hand
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
-        """Live by another clock from now on; a motion goes on from where it has come to."""
+        """Use another clock from now on; a motion goes on from where it has come to."""
         self._begun_ns += now_ns() - self._now_ns()
         self._now_ns = now_ns
 
@@ -104,11 +104,11 @@ class SimulatedDevice(Device):
 
     @property
     def steering(self) -> Steering | None:
-        """What tells the hand what to do."""
+        """Source of the hand's orders."""
         return self._steering
 
     def obey(self) -> None:
-        """Have the hand do what it is told to, from now on; `read` does this."""
+        """Have the hand follow the newest order from now on; `read` does this too."""
         steering = self._steering
         if steering is None:
             if self.frames and not self.moving:
@@ -123,7 +123,10 @@ class SimulatedDevice(Device):
             steering.answer(self._now_ns())
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
-        """How many of these times of its clock come until the hand has done what it was told to.
+        """Number of given times that come until the hand has done its order.
+
+        The time at which it is done counts too. All times count if there is no order or it takes
+        longer.
 
         The one at which it has is counted. All do if nothing is under way, or it takes longer.
         """
@@ -133,7 +136,7 @@ class SimulatedDevice(Device):
         return int(done.argmax()) + 1
 
     def _do(self, order: HandOrder) -> None:
-        """Have the hand do something; a recorded one sets out with the first, and goes on."""
+        """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
         hand, home_mm = self._hand, -self._info.span_mm
         if isinstance(order, BeAt):
             x_mm = order.x_mm - self._info.span_mm / 2
@@ -149,7 +152,7 @@ class SimulatedDevice(Device):
             self.move(hand.read_page(area))
 
     def move(self, motion: Motion) -> None:
-        """Move the hand along a motion, from now on; first to where that begins."""
+        """Move the hand along a motion from now on; it first goes to where the motion begins."""
         _, y_mm, theta_rad = self._hand_at(self._now_ns())
         count = motion.t_s.size
         way = (
@@ -167,7 +170,7 @@ class SimulatedDevice(Device):
             self._t_s, self._way = motion.t_s, way
 
     def _set_out(self, to: Sequence[float], speed_mm_s: float) -> None:
-        """Move the hand straight to a place, in no time if it is there."""
+        """Move the hand straight to a place; it takes no time if the hand is there."""
         here = self._hand_at(self._now_ns())
         x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
         if not self._info.height_mm:
@@ -194,15 +197,15 @@ class SimulatedDevice(Device):
         return Pose(now_ns, x_mm, round(way * info.counts_per_mm) / info.counts_per_mm, theta_rad)
 
     def places_mm(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Where `read` finds the centre at these times, if nothing comes between; float64[n]."""
-        # Said twice: for the one place of a `read`, arrays would take several times as long.
+        """Places of the centre that `read` would find at these times, undisturbed; float64[n]."""
+        # The same as in `read`, where arrays for a single place would take several times as long.
         info = self._info
         hand_mm = np.interp((times_ns - self._begun_ns) / NS_PER_S, self._t_s, self._way[0])
         way = np.clip(hand_mm + info.span_mm, 0.0, info.travel_mm)
         return np.rint(way * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
 
     def poses_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """What `read` gives at times of its clock if nothing comes between.
+        """Poses that `read` would give at times of the clock, if nothing changes.
 
         Returns
         -------
@@ -220,7 +223,7 @@ class SimulatedDevice(Device):
         return poses
 
     def _hand_at(self, now_ns: int) -> tuple[float, float, float]:
-        """Where the hand is along x and y, and how far it is turned, on the axes that there are."""
+        """Place of the hand along x and y and its angle, on the axes that the device has."""
         t_s = (now_ns - self._begun_ns) / NS_PER_S
         knots_s, (x_mm, y_mm, theta_rad) = self._t_s, self._way
         return (
@@ -234,7 +237,7 @@ class SimulatedDevice(Device):
         self.frames += 1
 
     def _release(self) -> None:
-        """Do nothing: there is nothing to let go."""
+        """Do nothing: there is nothing to release."""
 
 
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
@@ -243,7 +246,7 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     Raises
     ------
     InputError
-        If the address says anything else, or no device is wanted.
+        If the address holds anything else, or no display is wanted.
     """
     if wanted is None:
         raise InputError(
@@ -256,14 +259,14 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     hand = given.pop("hand", None)
     descriptor = given.pop("steering", None)
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
-        said = address.partition("&steering=")[0]  # a program adds it, and no person
+        said = address.partition("&steering=")[0]  # a program adds this part, never a person
         raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")
     steering = None if descriptor is None else _steering(descriptor)
     return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)), steering=steering)
 
 
 def _steering(descriptor: str) -> Steering:
-    """What steers the hand, in memory that this process has made or inherited."""
+    """Steering in memory that this process has made or inherited."""
     try:
         return Steering(int(descriptor))
     except (ValueError, OverflowError):

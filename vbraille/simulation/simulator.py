@@ -29,42 +29,42 @@ if TYPE_CHECKING:
     from vbraille.simulation.recorded import Recorded
 
 NS_PER_S: Final = 1_000_000_000
-# Between stalls, and how long it is unplugged.
+# Time between stalls, and time for which the device is unplugged.
 STALL_EVERY_S: Final = 1.0
 UNPLUGGED_S: Final = 0.3
-# How far a carriage that is off its place is off it, and how much too long a late watchdog takes.
+# Error in place of a carriage that is off its place, and delay of a late watchdog.
 _OFF_PLACE_MM = 5000.0
 _LATE_TIMES = 4
 
 
 class Defect(StrEnum):
-    """What a device may be built wrong in, so that it is not fit to be read on."""
+    """Ways in which a device may be built wrong, so that it is not fit to be read on."""
 
-    NO_ACKNOWLEDGEMENT = "no-acknowledgement"  # it takes FRAMEs, and does not say so
+    NO_ACKNOWLEDGEMENT = "no-acknowledgement"  # it takes FRAMEs without saying so
     NO_ACTUATORS = "no-actuators"  # all of them are disabled
     OFF_PLACE = "off-place"  # its carriage is 5 m away from where it can be
-    SLOW_CLOCK = "slow-clock"  # which goes at half its speed
+    SLOW_CLOCK = "slow-clock"  # its clock goes at half speed
     NO_WATCHDOG = "no-watchdog"
-    LATE_WATCHDOG = "late-watchdog"  # which takes 200 ms, not 50
+    LATE_WATCHDOG = "late-watchdog"  # its watchdog takes 200 ms, not 50
 
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """How the device misbehaves.
+    """Ways in which the device misbehaves.
 
     Parameters
     ----------
     drop, corrupt
-        Chance of each message, either way, to be lost, or to have a bit turned over.
+        Chances of a message, in either direction, to be lost or to have a bit turned over.
     stall_s
-        How long it does nothing, `STALL_EVERY_S` after it last did so; 0 is never.
-        Its watchdog and its ramp, being hardware, go on.
+        How long the device does nothing, `STALL_EVERY_S` after the last such time; 0 is never.
+        Its watchdog and its ramp, which are hardware, go on.
     unplug_every_s
-        How long after a greeting it is unplugged, for `UNPLUGGED_S`; 0 is never.
+        Time after a greeting until the device is unplugged, for `UNPLUGGED_S`; 0 is never.
     defect
-        What it is built wrong in; None if it is built right.
+        Way in which the device is built wrong; None if it is built right.
     seed
-        What these chances are drawn by.
+        Seed of the random draws.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Faults:
 
 
 class Spoiler:
-    """What loses and corrupts messages."""
+    """Loses and corrupts messages."""
 
     def __init__(self, faults: Faults) -> None:
         self._faults = faults
@@ -97,7 +97,7 @@ class Spoiler:
         self._begun = b""
 
     def spoil(self, message: bytes) -> bytes:
-        """What becomes of a message; nothing if it is lost."""
+        """What is left of a message; empty if it is lost."""
         if not self._spoils or message == DELIMITER:
             return message
         lost, corrupted = self._random.random(), self._random.random()
@@ -110,21 +110,21 @@ class Spoiler:
         return message
 
     def spoil_stream(self, chunk: bytes) -> bytes:
-        """What becomes of bytes; a message is held back until it has come whole."""
+        """What is left of a stream's bytes; a message is held back until it has come whole."""
         if not self._spoils:
             return chunk
         *messages, begun = split(self._begun + chunk)
-        # What has no end is no message, and must not be held for ever.
+        # Bytes without an end are no message, and must not be held for ever.
         self._begun, passed = (begun, b"") if len(begun) <= MOST_FRAME_BYTES else (b"", begun)
         return b"".join(map(self.spoil, messages)) + passed
 
     def forget(self) -> None:
-        """Forget what has begun to come."""
+        """Forget a message that has come in part."""
         self._begun = b""
 
 
 def split(chunk: bytes) -> list[bytes]:
-    """Messages, each with its delimiter, and what is begun after them, perhaps nothing."""
+    """Messages with their delimiters, and last the bytes after them, which may be none."""
     *messages, begun = chunk.split(DELIMITER)
     return [*(message + DELIMITER for message in messages), begun]
 
@@ -135,22 +135,22 @@ class Simulator:
     Parameters
     ----------
     info
-        What it is.
+        What the device says of itself.
     hand
-        What moves its carriage.
+        Hand that moves its carriage.
     port
-        Where a host finds it.
+        Pseudo-terminal at which a host finds the device.
     say
-        Told what happens, a sentence each.
+        Function that is told what happens, a sentence at a time.
     faults
-        How it misbehaves.
+        Ways in which the device misbehaves.
 
     Attributes
     ----------
     controller : Controller
-        What it is driven by.
+        Controller that drives the device.
     states_sent, states_dropped : int
-        How many of the STATEs that were due since it was greeted went out, and how many did not.
+        Numbers of STATEs since the device was greeted: those sent, and those due that were not.
     """
 
     def __init__(
@@ -181,17 +181,17 @@ class Simulator:
         self._begun_ns = time.monotonic_ns()
         self._greetings = self._frames = self._trips = 0
         self._stalled = False
-        self._turn_us = round(STALL_EVERY_S * 1e6)  # when it stalls, or goes on
-        self._plug_us = 0  # when it is unplugged, or back
+        self._turn_us = round(STALL_EVERY_S * 1e6)  # when the device stalls, or goes on
+        self._plug_us = 0  # when the device is unplugged, or plugged in again
 
     @property
     def now_us(self) -> int:
-        """The time by the controller's clock."""
+        """Time by the controller's clock."""
         us = (time.monotonic_ns() - self._begun_ns) // 1000
         return us // 2 if self._faults.defect is Defect.SLOW_CLOCK else us
 
     def run(self, stopped: Callable[[], bool]) -> None:
-        """Be a device until told to stop; a late tick is skipped, not chased.
+        """Run the device until it is told to stop; a late tick is skipped, not caught up on.
 
         Raises
         ------
@@ -211,7 +211,7 @@ class Simulator:
             self._tick()
 
     def _listen_until(self, deadline_ns: float) -> float:
-        """Take what the host sends until a time, at least once; how late it is then."""
+        """Take what the host sends until a time, at least once; give how late it is then."""
         while True:
             left_s = max(deadline_ns - time.monotonic_ns(), 0.0) / NS_PER_S
             port = self._port.descriptor
@@ -245,7 +245,7 @@ class Simulator:
         if self._faults.defect is Defect.OFF_PLACE:
             way_mm += _OFF_PLACE_MM
         *messages, _ = split(controller.tick(now_us, way_mm))
-        if messages:  # the last is STATE
+        if messages:  # the last message is STATE
             sent = [self._send(message) for message in messages][-1]
             self.states_sent += sent
             self.states_dropped += not sent

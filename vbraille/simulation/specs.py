@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.recorded import Recorded
 
-SLOW = ("slow", "device")  # what the hand that reads so is called; the second is its older name
+SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is its older name
 
 
 def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
-    """The hand that a spec describes.
+    """Hand that a spec describes.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
         ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s or
         ``recorded:FILE``.
     seed
-        What a hand that is drawn at random begins from.
+        Seed of a hand that is drawn at random.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
 
 
 def is_simulated(device: str) -> bool:
-    """Whether the spec of a device is that of the simulated one, which is as the settings say."""
+    """Whether the spec of a device is that of the simulated one, which follows the settings."""
     return device.rstrip(":") == "sim"
 
 
@@ -80,12 +80,12 @@ def refuse_hand(device: str, **given: object) -> None:
 
 
 def steering_of(device: str) -> Steering | None:
-    """What steers the hand of a simulated device; None for a device that a person moves."""
+    """Steering for the hand of a simulated device; None for a device that a person moves."""
     return Steering() if is_simulated(device) or device.startswith("sim:?") else None
 
 
 def device_spec(device: str, hand: str, seed: int, steering: Steering | None) -> str:
-    """Spec of a device; the simulated one is told its hand, and what steers it."""
+    """Spec of a device; that of the simulated one has its hand and its steering added."""
     if steering is None:
         return device
     if is_simulated(device):

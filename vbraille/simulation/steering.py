@@ -19,7 +19,7 @@ from dataclasses import astuple, dataclass
 from typing import Final
 from zlib import crc32
 
-# Words of 8 bytes: the number of the last order given, of the last one that is done, and when.
+# Words of 8 bytes: number of the last order given, number of the last one done, time it was done.
 _GIVEN, _DONE, _DONE_NS = range(3)
 _HEADER_BYTES: Final = 64
 _MOST_NUMBERS: Final = 4
@@ -29,12 +29,12 @@ _MEMORY_BYTES: Final = _HEADER_BYTES + 2 * _SLOT.size
 
 @dataclass(frozen=True, slots=True)
 class ReadLine:
-    """Read a line from the left stop to its end and come back; one that was recorded goes on.
+    """Order to read a line from the left stop to its end and back; a recorded hand goes on.
 
     Parameters
     ----------
     end_mm
-        Where the last dot of the line ends.
+        Place where the last dot of the line ends.
     """
 
     end_mm: float
@@ -42,21 +42,21 @@ class ReadLine:
 
 @dataclass(frozen=True, slots=True)
 class ReadPage:
-    """Read a page from its first line to its last; a hand that was recorded goes on.
+    """Order to read a page from its first line to its last; a recorded hand goes on.
 
     Parameters
     ----------
     lines
-        How many there are; line n, from 0, takes y from n to n + 1 line pitches.
+        Number of lines; line n, from 0, takes y from n to n + 1 line pitches.
     pitch_mm
-        How far it is from one line to the next.
+        Distance from one line to the next.
     end_mm
-        Where the last dot of the longest line ends.
+        Place where the last dot of the longest line ends.
 
     Raises
     ------
     ValueError
-        If there is no line, or no pitch.
+        If there is no line, or the pitch is not above 0.
     """
 
     lines: int
@@ -64,7 +64,7 @@ class ReadPage:
     end_mm: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "lines", int(self.lines))  # in memory all are doubles
+        object.__setattr__(self, "lines", int(self.lines))  # numbers in memory are all doubles
         if self.lines < 1 or not 0 < self.pitch_mm < math.inf:
             raise ValueError(
                 f"a page of {self.lines} lines {self.pitch_mm:g} mm apart is not possible; "
@@ -74,17 +74,17 @@ class ReadPage:
 
 @dataclass(frozen=True, slots=True)
 class BeAt:
-    """Go straight to a pose and stay there, as if somebody had the hand in his own.
+    """Order to go straight to a pose and stay there, as if somebody held the hand.
 
     Parameters
     ----------
     x_mm, y_mm, theta_rad
-        As in `vbraille.pose`: the array's centre, and how far it is turned.
+        Pose as in `vbraille.pose`: place of the array's centre, and angle by which it is turned.
 
     Raises
     ------
     ValueError
-        If one is not finite.
+        If a value is not finite.
     """
 
     x_mm: float
@@ -101,22 +101,22 @@ _KINDS: Final[tuple[type[HandOrder], ...]] = (ReadLine, ReadPage, BeAt)
 
 
 class Steering:
-    """Both ends of what steers a simulated hand.
+    """Both ends of the channel that steers a simulated hand.
 
     Parameters
     ----------
     descriptor
-        The descriptor of memory that another `Steering` has made; None makes some.
+        Descriptor of memory that another `Steering` has made; None makes new memory.
 
     Attributes
     ----------
     descriptor : int
-        The descriptor of the memory; it is closed with the `Steering` that has made it.
+        Descriptor of the memory; the `Steering` that made it closes it.
 
     Raises
     ------
     ValueError
-        If a descriptor is of something else.
+        If the descriptor is that of something else.
     """
 
     def __init__(self, descriptor: int | None = None) -> None:
@@ -134,13 +134,13 @@ class Steering:
                 f"descriptor {descriptor} is not of memory that steers a hand: {error.strerror}"
             ) from None
         self._words = self._memory[:_HEADER_BYTES].cast("q")
-        # Orders that were given before are not for whoever takes them from now on.
+        # Orders that were given before this is opened are not for whoever takes orders from now on.
         self._taken = self._words[_GIVEN]
 
     def give(self, order: HandOrder) -> None:
-        """Have the hand do something else from now on.
+        """Give the hand another order from now on.
 
-        It sets out at once: show first what it is to read.
+        The hand sets out at once: show what it is to read first.
         """
         number = self._words[_GIVEN] + 1
         numbers = (*astuple(order), *[0.0] * _MOST_NUMBERS)[:_MOST_NUMBERS]
@@ -150,12 +150,12 @@ class Steering:
         self._words[_GIVEN] = number
 
     def done_at(self, time_ns: int) -> bool:
-        """Whether the hand had done by a time of the device's clock all that it was told to."""
+        """Whether the hand had followed all orders by a time of the device's clock."""
         given = self._words[_GIVEN]
         return given > 0 and self._words[_DONE] == given and self._words[_DONE_NS] <= time_ns
 
     def take(self) -> HandOrder | None:
-        """The last order given, for the device; None if it was taken before, or is not whole."""
+        """Last order given, for the device; None if it was taken before, or is being written."""
         number = self._words[_GIVEN]
         if number == self._taken:
             return None
@@ -169,11 +169,11 @@ class Steering:
         return order(*numbers[: len(order.__slots__)])
 
     def answer(self, time_ns: int) -> None:
-        """Tell, for the device, that the order taken last is done at a time of its clock."""
+        """Tell, for the device, when the order taken last was done, by its clock."""
         self._words[_DONE_NS] = time_ns
         self._words[_DONE] = self._taken
 
 
 def _place(number: int) -> int:
-    """Where in the memory the slot of an order is."""
+    """Place of an order's slot in the memory."""
     return _HEADER_BYTES + number % 2 * _SLOT.size

@@ -18,26 +18,27 @@ if TYPE_CHECKING:
 
 # All ours.
 TURN_RAD = math.radians(30.0)
-ARM_MM = 60.0  # a turn by 1 rad counts as so long a way, so that no hand spins on the spot
-_KNOTS = 64  # of the path between two of the places that it is drawn to
-# A path is drawn to more places than it needs and ends on its way: of the width and height
-# together it goes at least so much between two of them, in the mean.
+ARM_MM = 60.0  # a turn by 1 rad counts as a way of this length, so that no hand spins on the spot
+_KNOTS = 64  # knots of the path between two of the places that it is drawn to
+# A path is drawn to more places than it needs, and is then cut off. On average it goes at least
+# this share of width and height together between two of the places.
 _LEAST_SHARE = 0.05
-_BEYOND = 0.5  # of the width and height: how far beyond each edge places are drawn
+_BEYOND = 0.5  # how far beyond each edge places are drawn, as a share of width and height
 
 
 class Wander:
-    """A hand that wanders at a speed of its own; the same seed wanders in the same way.
+    """A hand that wanders at a constant speed; equal seeds wander in the same way.
 
-    It is drawn to places anywhere on the page one after the other, without quite coming to them,
-    and turns meanwhile. Of a page it goes as far as reading each line once would take it.
+    It is drawn to places anywhere on the page one after the other, without quite reaching them,
+    and turns meanwhile. On a page it goes as far as reading each line once would take it.
 
     Parameters
     ----------
     speed_mm_s
-        Along its path, as long as it does not turn; then it is slower. Back at `RETURN_MM_S`.
+        Speed along the path as long as the hand does not turn; while turning it is slower. The way
+        back is at `RETURN_MM_S`.
     seed
-        0 or more.
+        Seed of the path, 0 or more.
 
     Raises
     ------
@@ -53,7 +54,7 @@ class Wander:
         self._random = np.random.default_rng(seed)
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Move to and fro on the next line, then to its end and back; see `Hand`."""
+        """Motion to and fro on the next line, then to its end and back; see `Hand`."""
         way = along(start_mm, end_mm)
         low_mm, high_mm = start_mm + CLEAR_MM, end_mm - CLEAR_MM
         if low_mm >= high_mm:
@@ -66,18 +67,18 @@ class Wander:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """Move all about a page, and back to the start of its first line; see `Hand`."""
+        """Motion all about a page, and back to the start of its first line; see `Hand`."""
         along(area.start_mm, area.end_mm)
         home = np.array([area.start_mm, area.middle_mm(0), 0.0])
         low = np.array([area.start_mm, 0.0, -TURN_RAD])
         high = np.array([area.end_mm, area.height_mm, TURN_RAD])
         length_mm = area.lines * (area.end_mm - area.start_mm) + area.height_mm
         least_mm = _LEAST_SHARE * float((high - low)[:2].sum())
-        # Since the path keeps between the places, some are beyond the edges and brought back there.
+        # The path keeps between the places; so some are drawn beyond the edges, and brought back.
         beyond = _BEYOND * (high - low)
         count = math.ceil(length_mm / least_mm)
         drawn = self._random.uniform(low - beyond, high + beyond, (count, 3)).clip(low, high)
-        # The spline keeps between them but for rounding.
+        # The spline keeps between the places, but for rounding.
         path = _spline(np.concatenate(([home, home, home], drawn))).clip(low, high)
         far_mm = np.concatenate(([0.0], np.cumsum(_steps_mm(path))))
         kept = int(np.searchsorted(far_mm, length_mm))
@@ -89,7 +90,7 @@ class Wander:
 
 
 def _spline(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Uniform cubic B-spline of places, float64[m, 3]: smooth, and never outside of all of them."""
+    """Uniform cubic B-spline of places, float64[m, 3]: smooth, and never outside their bounds."""
     u = (np.arange(_KNOTS) / _KNOTS)[:, None, None]
     weights = (
         (1 - u) ** 3 / 6,

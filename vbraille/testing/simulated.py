@@ -31,16 +31,16 @@ def simulated_device(
     seed: int = 1,
     clock: Clock | None = None,
 ) -> SimulatedDevice:
-    """A device in memory, whose hand reads what is shown on it.
+    """Make a device in memory, whose hand reads what is shown on it.
 
     Parameters
     ----------
     display
-        What it is.
+        Display of the device.
     hand, seed
-        What moves its carriage, as of `parse_hand`.
+        Hand that moves the carriage, and its seed, as in `parse_hand`.
     clock
-        What it lives by; None for the machine's.
+        Clock of the device; None for the machine's.
 
     Raises
     ------
@@ -74,22 +74,22 @@ def simulated_controller(
     Parameters
     ----------
     display
-        What it is; its rate is 50 Hz or more, and whole.
+        Display of the device; its rate must be 50 Hz or more, and whole.
     hand, seed
-        What moves its carriage, as of `parse_hand`.
+        Hand that moves the carriage, and its seed, as in `parse_hand`.
     encoder
-        What it knows of its place when it starts: "absolute", "index" or "incremental".
+        What the encoder knows of its place at the start: "absolute", "index" or "incremental".
     faults
-        How it misbehaves.
+        Ways in which the controller misbehaves; None for none.
     say
-        Is told what happens, a sentence each.
+        Function that is told what happens, a sentence at a time.
 
     Raises
     ------
     InputError
         If there is no such hand.
     ValueError
-        If the wire has no room for a number of the display.
+        If a number of the display does not fit into its field on the wire.
 
     Examples
     --------

@@ -20,9 +20,9 @@ class Book:
     Parameters
     ----------
     source
-        The blocks. Those that hold cells are shown as they are, the others are translated.
+        Source of the blocks. Blocks with cells are shown as they are; others are translated.
     table
-        The table to translate with; None for a source of ready cells.
+        Table to translate with; None for a source of ready cells.
     """
 
     _REMEMBERED = 16
@@ -38,7 +38,7 @@ class Book:
         Raises
         ------
         ValueError
-            If it has to be translated and there is no table.
+            If the block has to be translated and there is no table.
         """
         found = self._recent.get(number)
         if found is None:
@@ -52,7 +52,7 @@ class Book:
         return found
 
     def notes(self) -> Iterator[str]:
-        """What is to be said now of the source and of the table, each thing once."""
+        """Notes on the source and the table that are due now; each is given once."""
         table = self.table
         for note in (self.source.note(), None if table is None else foreign_note(table)):
             if note is not None:

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 class CellsSource:
     """A source whose characters are cells, in ASCII braille (BRF) or Unicode braille patterns.
 
-    Each character is the source of one cell, and what is printed as its text.
+    Each character is the source of one cell, and each printed cell is its own text.
 
     Parameters
     ----------
     source
-        The characters. A `Document` of a braille file keeps the lines of the file.
+        Source of the characters. A `Document` of a braille file keeps the lines of the file.
     """
 
     def __init__(self, source: Source) -> None:
@@ -28,7 +28,7 @@ class CellsSource:
 
     @property
     def name(self) -> str:
-        """What to call it in messages."""
+        """Name of the source in messages."""
         return self._source.name
 
     def block(self, number: int) -> Block | None:
@@ -37,7 +37,7 @@ class CellsSource:
         Raises
         ------
         InputError
-            If a character is no braille, or it cannot be read any more.
+            If a character is no braille, or the source cannot be read any more.
         """
         block = self._source.block(number)
         if block is None:
@@ -53,7 +53,7 @@ class CellsSource:
         return replace(block, cells=cells)
 
     def block_at(self, character: int) -> int | None:
-        """Number of the block that holds a character, or the first after it; None past the end."""
+        """Number of the block that holds a character, or of the next block; None past the end."""
         return self._source.block_at(character)
 
     def progress(self, number: int) -> float:
@@ -61,9 +61,9 @@ class CellsSource:
         return self._source.progress(number)
 
     def note(self) -> str | None:
-        """What must be said of the source, each thing once after it is found; None if nothing."""
+        """Note on the source, given once after its cause is found; None if there is none."""
         return self._source.note()
 
     def sha256(self) -> str:
-        """SHA-256 of the bytes that it was read from, in hexadecimal."""
+        """SHA-256 of the bytes that the source was read from, in hexadecimal."""
         return self._source.sha256()

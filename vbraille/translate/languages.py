@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Usual:
-    """The tables of a language that readers expect.
+    """Tables of a language that its readers expect.
 
     Parameters
     ----------
     uncontracted, contracted
-        Names of tables; empty where there is none, or the general rule finds it.
+        Names of tables; empty where there is no table, or the general rule finds it.
     customary
-        Whether books are contracted as a rule.
+        Whether books in the language are contracted as a rule.
     """
 
     uncontracted: str = ""
@@ -38,9 +38,10 @@ class Usual:
     customary: bool = False
 
 
-# Contracted where books of general interest are: English and German, Danish (the standard of 2022)
-# and Korean. French, Spanish, Portuguese, Hungarian, Arabic and Turkish books are uncontracted as a
-# rule, and contractions are for those who ask for them. Chinese is the common scheme of 2018.
+# Languages with contracted tables here: books of general interest are contracted in English and
+# German, Danish (the standard of 2022) and Korean. French, Spanish, Portuguese, Hungarian, Arabic
+# and Turkish books are not as a rule; contractions are for those who ask for them. For Chinese it
+# is the common scheme of 2018.
 USUAL = {
     "ar": Usual("ar.tbl", "ar-ar-g2.ctb"),
     "cmn": Usual("zhcn-cbs.ctb"),
@@ -61,7 +62,7 @@ USUAL = {
     "tr": Usual("tr-g1.ctb", "tr-g2.ctb"),  # the first has no metadata
     "vi": Usual("vi-vn-g0.utb", "vi-vn-g2.ctb"),
 }
-# Tags that people write, and the ones that liblouis has.
+# Tags that people write, and the tags that liblouis has instead.
 _SAME = {
     "iw": "he",
     "ku": "kmr",
@@ -82,18 +83,18 @@ _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
 
 
 def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
-    """The tag that liblouis has for a language, in lower case, and its tables that it tells of.
+    """Tag that liblouis has for a language, in lower case, and the tables that it lists for it.
 
     Parameters
     ----------
     language
-        BCP 47 tag, with hyphens or underscores; of "fr-CA" those for French are taken, unless
-        there are some for Canada.
+        BCP 47 tag, with hyphens or underscores; for "fr-CA" the tables for French are taken,
+        unless there are some for Canada.
 
     Raises
     ------
     InputError
-        If there is none; it names the nearest languages.
+        If there are no tables; the message names the nearest languages.
     """
     wanted = language.strip().lower().replace("_", "-")
     if not wanted:
@@ -122,13 +123,13 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
     language
         BCP 47 tag; a region may follow ("en-GB").
     grade
-        0 or 1 uncontracted, 2 and up contracted; None for what is usual in the language. Where
-        the language's own grades are others, as in German, those are meant.
+        0 or 1 for uncontracted, 2 and up for contracted braille; None for what is usual in the
+        language. Where a language numbers its grades otherwise, as German does, its numbers count.
 
     Raises
     ------
     InputError
-        If there is none; it names the nearest.
+        If there is no such table; the message names the nearest.
     """
     tag, tables = tables_of(language)
     usual = USUAL.get(tag, Usual())
@@ -149,7 +150,7 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
 
 
 def six_dot_table(language: str) -> str | None:
-    """Name of a language's table of six-dot braille, the most usual; None if there is none."""
+    """Name of the most usual six-dot table of a language; None if there is none."""
     try:
         _, tables = tables_of(language)
     except InputError:
@@ -159,7 +160,7 @@ def six_dot_table(language: str) -> str | None:
 
 
 def foreign_note(table: BrailleTable) -> str | None:
-    """Say once of each script that passages are in it which a table does not know."""
+    """Note on scripts of passages that a table does not know, each script once."""
     script = table.take_foreign()
     if script is None:
         return None
@@ -183,7 +184,7 @@ def tables_for(script: Script) -> str:
 
 
 def _graded(usual: Usual, tables: tuple[TableInfo, ...], grade: int) -> str:
-    """Table of a grade; empty if there is none that says so."""
+    """Name of the table of a grade; empty if no table has that grade."""
     if grade == 1 and usual.uncontracted:
         return usual.uncontracted
     if grade == 2 and usual.contracted:

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from vbraille.translate.scripts import Script
     from vbraille.translate.text import Text
 
-# Bytes; liblouis puts a name, with a folder before it, into 2 kB, and does not look if it fits.
+# In bytes; liblouis puts a name, with a folder before it, into 2 kB without checking that it fits.
 _LONGEST_NAME = 1_000
 
 _MODE = louis.dotsIO | louis.ucBrl
@@ -57,8 +57,8 @@ _SMALL = "abcdefghijklmnopqrstuvwxyz"
 _DIGITS = "0123456789"
 
 _lock = threading.RLock()
-# Calls of our own: the binding's would copy every number of the maps through Python lists.
-# Indexing a ctypes library makes a function object that the binding's own does not share.
+# Our own prototypes: the binding would copy every number of the maps through Python lists.
+# Indexing a ctypes library makes a function object that the binding does not share.
 _translate = louis.liblouis["lou_translate"]
 _translate.argtypes = [ctypes.c_char_p, *[ctypes.c_void_p] * 9, ctypes.c_int]
 _list_tables = louis.liblouis["lou_listTables"]
@@ -70,7 +70,7 @@ _get_info.restype = ctypes.c_char_p
 
 @louis.LogCallback
 def _say_nothing(_level: int, _message: bytes) -> None:
-    """Keep liblouis off stderr; what goes wrong is said by an exception."""
+    """Keep liblouis off stderr; an exception says what goes wrong."""
 
 
 louis.liblouis.lou_registerLogCallback(_say_nothing)
@@ -78,7 +78,7 @@ louis.liblouis.lou_registerLogCallback(_say_nothing)
 
 @dataclass(frozen=True, slots=True, order=True)
 class TableInfo:
-    """What a table's metadata say.
+    """Metadata of a table.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class TableInfo:
     kind: str
 
     def speaks(self, language: str) -> bool:
-        """Whether it is for a language; the tag is in lower case, with hyphens."""
+        """Whether the table is for a language, given by a tag in lower case with hyphens."""
         tag = self.language.lower()
         return tag == language or tag.startswith(f"{language}-")
 
@@ -137,20 +137,20 @@ class BrailleTable:
     Parameters
     ----------
     name
-        A file name of liblouis's (``en-ueb-g2.ctb``), a path, or several with
-        commas between, as liblouis has it.
+        File name of a table that liblouis has (``en-ueb-g2.ctb``), a path, or several of these
+        with commas in between, as liblouis reads them.
     undefined
         What is written for a character that the table does not know.
 
     Attributes
     ----------
     undefined : set of int
-        Code points that were met and that the table does not know.
+        Code points that occurred and that the table does not know.
 
     Raises
     ------
     InputError
-        If there is no such table or liblouis cannot compile it; it names the nearest.
+        If there is no such table, or liblouis cannot compile it; the message names the nearest.
     """
 
     def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
@@ -168,10 +168,10 @@ class BrailleTable:
                     f"there is no braille table {name!r}; {nearest(name, names, 3)} "
                     f"(vbraille tables lists all)"
                 )
-        # Characters this table was seen to know; what stands for those it does not.
+        # Characters that the table is known to have; what stands for those it does not have.
         self._known = {SPACE}
         self._instead: dict[int, tuple[int, ...]] = {}
-        self._foreign: dict[str, Script] = {}  # scripts of whole passages, by name
+        self._foreign: dict[str, Script] = {}  # scripts of whole unknown passages, by name
         self._noted = 0
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
@@ -187,12 +187,12 @@ class BrailleTable:
 
     @property
     def info(self) -> TableInfo | None:
-        """The table's metadata, if it has some."""
+        """Metadata of the table; None if it has none."""
         return next((t for t in list_tables() if t.name == Path(self.name).name), None)
 
     @cached_property
     def eight_dots(self) -> bool:
-        """Whether it is a table of eight-dot braille; one of six dots writes no dot 7 or 8.
+        """Whether this is a table of eight-dot braille; a six-dot table writes no dot 7 or 8.
 
         Metadata may leave it unsaid, or say it of a table that never raises dots 7 and 8.
         Six-dot tables may have eight-dot cells for capitals or letters of another script.
@@ -210,21 +210,21 @@ class BrailleTable:
 
     @cached_property
     def marker(self) -> str:
-        """What marks characters that the table does not know."""
+        """Text that marks characters that the table does not know."""
         return "".join(map(chr, self._first_written(MARKERS)))
 
     def take_foreign(self) -> Script | None:
-        """Give each script once that a passage is in and the table does not know; then None."""
+        """Next script that a passage was in and the table does not know, each once; then None."""
         if self._noted == len(self._foreign):
             return None
         self._noted += 1
         return list(self._foreign.values())[self._noted - 1]
 
     def translate(self, text: Text) -> Cells:
-        """Cells of a paragraph's text, none of its characters left out unless that was asked for.
+        """Cells of a paragraph's text; no character is left out unless that was asked for.
 
-        What stands for a character that the table does not know is written by the rules
-        of the table, so that it reads back like any other text.
+        The replacement of a character that the table does not know is written by the rules of the
+        table, so that it reads back like any other text.
         """
         codes, places = text.codes, text.places
         if not text.alphabet <= self._known:
@@ -246,8 +246,8 @@ class BrailleTable:
     def _call(
         self, codes: NDArray[np.uint32], mode: int
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
-        """Translate code points; dot masks, and of each the index of its character."""
-        if louis.wideCharBytes == 2:  # liblouis built with UTF-16: the places are of its units
+        """Translate code points; give dot masks, and for each the index of its character."""
+        if louis.wideCharBytes == 2:  # liblouis built with UTF-16: places count its units
             return self._call_utf16(codes, mode)
         return self._call_units(np.ascontiguousarray(codes), mode)
 
@@ -268,7 +268,7 @@ class BrailleTable:
             if units.size > self._room:
                 self._grow(2 * units.size)
             self._in_length.value = units.size
-            # No more than this text can need: liblouis clears and copies all that it is offered.
+            # Larger arrays would cost time: liblouis clears and copies all that it is offered.
             self._out_length.value = units.size * louis.outlenMultiplier
             done = _translate(
                 self._list,
@@ -287,12 +287,12 @@ class BrailleTable:
                 raise VbrailleError(f"liblouis could not translate a text with {self.name}")
             cells = self._out_length.value
             masks = self._out[:cells].astype(np.uint8)  # the low byte of U+2800-28FF
-            # Never decreasing, and none below 0, whatever liblouis says of dropped characters.
+            # Places never decrease or fall below 0, whatever liblouis says of dropped characters.
             inputs = np.maximum(np.maximum.accumulate(self._inputs[:cells]), 0)
         return masks, inputs
 
     def _substitute(self, text: Text) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
-        """Put what the table can write for what it cannot."""
+        """Replace characters that the table cannot write by others that it can."""
         for code in text.alphabet - self._known - self._instead.keys():
             self._probe(code)
         own = text.codes.tolist()
@@ -307,13 +307,13 @@ class BrailleTable:
             instead = self._instead.get(code, (code,))
             marked, before = instead == mark and code in self.undefined, marked
             if marked and before:
-                continue  # one marker for all that stand together
+                continue  # one marker stands for all neighbours
             written += instead
             places += (place,) * len(instead)
         return np.array(written, np.uint32), np.array(places, np.int64)
 
     def _look_for_foreign(self, codes: list[int]) -> None:
-        """Remember the script of a passage whose letters are mostly unknown to the table."""
+        """Remember the script of a passage if the table does not know most of its letters."""
         if self.undefined.isdisjoint(codes):
             return
         letters = [letter for letter in map(chr, codes) if letter.isalpha()]
@@ -348,11 +348,11 @@ class BrailleTable:
         return self._first_written(spellings(character, self._how))
 
     def _first_written(self, texts: Iterable[str]) -> tuple[int, ...]:
-        """The first of these texts all of whose characters the table can write, or nothing."""
+        """First of the texts that the table can write in full; empty if there is none."""
         return next((c for c in map(_codes, texts) if all(map(self._writes, c))), ())
 
     def _writes(self, code: int) -> bool:
-        """Whether the table has dots of its own for a character, and not more than it may."""
+        """Whether the table has dots of its own for a character, and only dots that it may use."""
         if code in (0, SPACE):
             return code == SPACE
         masks, _ = self._call(np.array([code], np.uint32), _MODE | louis.noUndefined)
@@ -373,7 +373,7 @@ def _codes(text: str) -> tuple[int, ...]:
 def _is_file(name: str) -> bool:
     try:
         return Path(name).is_file()
-    except OSError:  # longer than names can be
+    except OSError:  # the name is longer than names can be
         return False
 
 

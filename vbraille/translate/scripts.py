@@ -19,7 +19,7 @@ class Script:
     Parameters
     ----------
     name
-        What its letters are called, such as "Cyrillic letters".
+        Name of its letters, such as "Cyrillic letters".
     languages
         Tags and names of languages that are written in it, those with most readers first.
     """
@@ -28,7 +28,7 @@ class Script:
     languages: dict[str, str]
 
 
-# By the first word of its characters' names in Unicode.
+# Scripts by the first word of their characters' names in Unicode.
 _SCRIPTS = {
     "CYRILLIC": Script(
         "Cyrillic letters",
@@ -79,9 +79,9 @@ _SCRIPTS["KATAKANA"] = _SCRIPTS["HIRAGANA"]
 
 
 def script_of(letters: Iterable[str]) -> Script | None:
-    """Script that most of these letters are of; None if it is one that is not known here."""
+    """Script of most of these letters; None if that script is not known here."""
     counts = Counter(unicodedata.name(letter, "").partition(" ")[0] for letter in letters)
-    if counts["HIRAGANA"] or counts["KATAKANA"]:  # beside them stand as many Chinese characters
+    if counts["HIRAGANA"] or counts["KATAKANA"]:  # as many Chinese characters stand beside them
         return _SCRIPTS["HIRAGANA"]
     commonest = counts.most_common(1)
     return _SCRIPTS.get(commonest[0][0]) if commonest else None
@@ -94,6 +94,6 @@ def native_letters() -> str:
 
 
 def all_letters() -> str:
-    """Letters of every script of today but the Latin; of the large ones some."""
+    """Letters of every script in use today but Latin; some letters only of large scripts."""
     codes = (*range(0x370, 0x2000), *range(0x3041, 0x3100), *range(0x4E00, 0xD7A4, 64))
     return "".join(c for c in map(chr, codes) if c.isalpha())

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BlockKind(Enum):
-    """What a block is in its text."""
+    """Role of a block in its text."""
 
     PARAGRAPH = "paragraph"
     HEADING = "heading"
@@ -37,13 +37,13 @@ class Block:
     Parameters
     ----------
     text : Text
-        Its characters. Those of ready cells are how the source writes the cells.
+        Characters of the block. If the cells are ready, these are the source's way to write them.
     kind : BlockKind
-        What it is.
+        Role of the block in its text.
     level : int
-        How deep a heading or an item stands, from 1; 0 for all other kinds.
+        Depth of a heading or an item, from 1; 0 for all other kinds.
     cells : Cells or None
-        The block in braille if the source has it so; None if its text is to be translated.
+        The block in braille, if the source has it in braille; None if its text is to be translated.
     continues : bool
         Whether this piece goes on where the block before it broke off.
 
@@ -76,7 +76,7 @@ class Source(Protocol):
 
     @property
     def name(self) -> str:
-        """What to call it in messages."""
+        """Name of the source in messages."""
         ...
 
     def block(self, number: int) -> Block | None:
@@ -85,12 +85,12 @@ class Source(Protocol):
         Raises
         ------
         InputError
-            If it cannot be read any more.
+            If the source cannot be read any more.
         """
         ...
 
     def block_at(self, character: int) -> int | None:
-        """Number of the block that holds a character, or the first after it; None past the end."""
+        """Number of the block that holds a character, or of the next block; None past the end."""
         ...
 
     def progress(self, number: int) -> float:
@@ -98,9 +98,9 @@ class Source(Protocol):
         ...
 
     def note(self) -> str | None:
-        """What must be said of the source, each thing once after it is found; None if nothing."""
+        """Note on the source, given once after its cause is found; None if there is none."""
         ...
 
     def sha256(self) -> str:
-        """SHA-256 of the bytes that it was read from, in hexadecimal."""
+        """SHA-256 of the bytes that the source was read from, in hexadecimal."""
         ...

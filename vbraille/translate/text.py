@@ -23,9 +23,9 @@ class Text:
     codes : uint32[n]
         The characters as code points, as they are to be read: white space folded, lines joined.
     places : int64[n]
-        Where each stands in the source, counted in characters from its first.
+        Place of each character in the source, counted in characters from the first.
     end : int
-        One past the source's last character that belongs to the run.
+        One past the last character of the source that belongs to the run.
     alphabet : frozenset of int
         Code points among which all of its own are. They are gathered once for
         many texts: array scans between calls of liblouis slow it by a
@@ -39,7 +39,7 @@ class Text:
 
     @classmethod
     def empty(cls, end: int = 0) -> Text:
-        """No characters at all, at a place of the source."""
+        """A run of no characters, at a place of the source."""
         return cls(np.empty(0, np.uint32), np.empty(0, np.int64), end, frozenset())
 
     def __str__(self) -> str:
@@ -57,11 +57,11 @@ class Text:
         )
 
     def index(self, character: int) -> int:
-        """Index of the first of its characters that stands at a place of the source or after it."""
+        """Index of the first character that stands at a place of the source or after it."""
         return int(np.searchsorted(self.places, character))
 
     def since(self, character: int) -> Text:
-        """The part from a source character on; keeps nothing of the rest in memory."""
+        """Part from a source character on; nothing of the rest is kept in memory."""
         at = self.index(character)
         return Text(self.codes[at:].copy(), self.places[at:].copy(), self.end, self.alphabet)
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-# In order of preference: the first of which the table can write every character is the marker.
+# In order of preference: the marker is the first text that the table can write in full.
 # Three full cells are how typists of braille cross out; few tables know no question mark.
 MARKERS = ("[?]", "(?)", "?", "⠿⠿⠿")
 _BRACKETS = ("[]", "()")
-# What typewriters put for the marks of typesetters.
+# Characters that typewriters put in place of the marks of typesetters.
 _PLAIN = str.maketrans(
     {
         "\u2010": "-", "\u2011": "-", "\u2012": "-", "\u2013": "-", "\u2014": "--", "\u2015": "--",
@@ -65,5 +65,5 @@ def number_of(character: str) -> str:
 
 
 def describe(character: str) -> str:
-    """A character's number, and its name where it has one."""
+    """Number of a character, with its name if it has one."""
     return f"{number_of(character)} {unicodedata.name(character, '').lower()}".rstrip()

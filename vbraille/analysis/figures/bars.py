@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Row
     from vbraille.pictures.charts import Numbers
 
-MOST_ERRORS = 12  # kinds that are drawn
+MOST_ERRORS = 12  # kinds of errors that are drawn
 
 
 def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
-    """Bars by participant and condition: Lévesque 2009, figs. 4.7 and 4.9."""
+    """Bars of legibility by participant and condition: Lévesque 2009, figs. 4.7 and 4.9."""
     people = _distinct(table, "participant")
     conditions = _distinct(table, "condition")
     at = {(row["participant"], row["condition"]): row for row in table.records()}
@@ -66,7 +66,7 @@ def legibility(table: ResultTable, averages: ResultTable) -> ReportFigure:
 
 
 def dots(table: ResultTable, own: ResultTable) -> ReportFigure:
-    """Legibility by number of dots: Lévesque 2009, fig. 4.8."""
+    """Bars of legibility by number of dots: Lévesque 2009, fig. 4.8."""
     rows = table.records()
     series = Series(
         "all",
@@ -95,7 +95,7 @@ def dots(table: ResultTable, own: ResultTable) -> ReportFigure:
 
 
 def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
-    """Kinds of errors: Lévesque 2009, fig. 4.8."""
+    """Bars of the kinds of errors: Lévesque 2009, fig. 4.8."""
     rows = table.records()[:MOST_ERRORS]
     kinds = [row["error"] for row in rows]
     series = Series(
@@ -117,7 +117,7 @@ def errors(table: ResultTable, own: ResultTable) -> ReportFigure:
 
 
 def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """How often each value was chosen, a figure a parameter: Lévesque 2009, fig. 3.12."""
+    """How often each value was chosen, one figure for a parameter: Lévesque 2009, fig. 3.12."""
     for liked in preferred.records():
         name = liked["parameter"]
         rows = [row for row in table.records() if row["parameter"] == name]
@@ -152,7 +152,7 @@ def choices(table: ResultTable, preferred: ResultTable, own: ResultTable) -> Ite
 
 
 def level_means(table: ResultTable, own: ResultTable) -> Iterator[ReportFigure]:
-    """Means of the levels with intervals and each participant's own, a figure a factor."""
+    """Means of the levels with intervals and each participant's own, one figure for a factor."""
     for factor in _distinct(table, "factor"):
         rows = [row for row in table.records() if row["factor"] == factor]
         whose = [row for row in own.records() if row["factor"] == factor]
@@ -201,7 +201,7 @@ def _interval(row: Row) -> str:
 def _points(
     records: Sequence[Row], group: str, groups: Sequence[object], value: str, scale: float
 ) -> tuple[Numbers, ...]:
-    """Each participant's values, a value a group; none of one participant alone."""
+    """Values of each participant, an array for each group; empty where there is one participant."""
     of: dict[str, dict[object, float]] = {}
     for row in records:
         of.setdefault(row["participant"], {})[row[group]] = scale * row[value]
@@ -211,7 +211,7 @@ def _points(
 
 
 def _places(table: ResultTable) -> list[int]:
-    """Mean places of a string, of each row that has any."""
+    """Mean number of places in a string, for each row that has any."""
     return [row["characters"] // row["trials"] for row in table.records() if row["trials"]]
 
 
@@ -236,5 +236,5 @@ def _in_words(parameter: str) -> str:
 
 
 def _file_name(name: str) -> str:
-    """What a figure of something is called: letters and digits of its name."""
+    """Name for the files of a figure: letters and digits of what it shows."""
     return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in name)

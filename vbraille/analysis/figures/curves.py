@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sittings import Example, SessionTrials
     from vbraille.analysis.schemas import ResultTable, Row
 
-MOST_RUNS = 24  # panels of a figure of curves
-MOST_PAGES = 10  # figures of that kind
+MOST_RUNS = 24  # panels in one figure of curves
+MOST_PAGES = 10  # figures of curves
 PATHS = Schema(
     "examples",
     "Trajectories of the trials that are drawn",
@@ -36,7 +36,7 @@ PATHS = Schema(
 
 
 def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]:
-    """Single trials and their moving average: Lévesque 2009, fig. 3.14; pages of `MOST_RUNS`."""
+    """Single trials and their moving average, `MOST_RUNS` to a figure: Lévesque 2009, fig. 3.14."""
     of: dict[tuple, list[Row]] = {}
     for row in table.records():
         of.setdefault((row["participant"], row["session"], row["condition"]), []).append(row)
@@ -78,7 +78,7 @@ def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]
 
 
 def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigure] | None:
-    """Trajectory of a trial of each pattern: Lévesque 2009, fig. 3.15; None if there are none."""
+    """Trajectories, one for each pattern (Lévesque 2009, fig. 3.15); None if there are none."""
     chosen = list(_chosen(sittings))
     if not chosen:
         return None
@@ -127,7 +127,7 @@ def examples(sittings: Sequence[SessionTrials]) -> tuple[ResultTable, ReportFigu
 
 
 def _chosen(sittings: Sequence[SessionTrials]) -> Iterator[tuple[str, Example]]:
-    """Of the sessions' examples one of each pattern: that in the middle by duration."""
+    """One example of each pattern: the one whose duration is in the middle."""
     found = [(sitting.name, example) for sitting in sittings for example in sitting.examples]
     for pattern in dict.fromkeys(sorted(example.pattern for _, example in found)):
         of = [pair for pair in found if pair[1].pattern == pattern]

@@ -12,13 +12,13 @@ from vbraille.pictures.charts import Matrix
 if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable
 
-MOST_ROWS = 30  # of a matrix that fits upon A4
+MOST_ROWS = 30  # rows of a matrix that fits upon A4
 
 
 def confusion(table: ResultTable) -> ReportFigure:
     """Matrix of counts: Lévesque 2009, tables 3.4, 3.5 and 4.1.
 
-    Of more rows than a page has room for the figure has those with the most errors.
+    If there are more rows than a page has room for, the figure shows those with the most errors.
     """
     shown = table.gathered()
     errors = table.wrong()
@@ -59,7 +59,7 @@ def confusion(table: ResultTable) -> ReportFigure:
 
 
 def _worst(table: ResultTable) -> tuple[list[tuple], list[int]]:
-    """Rows of a matrix with the most errors, in their order, and the columns most used by them."""
+    """Rows of a matrix with the most errors, in their order, and the columns they use most."""
     wrong = [
         sum(_whole(count) for at, count in enumerate(row) if at and not table.is_right(row, at))
         for row in table.rows

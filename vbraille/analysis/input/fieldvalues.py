@@ -41,7 +41,7 @@ def parse_cells(text: str) -> str:
 
 
 def parse_presented(text: str) -> str:
-    """Unicode braille of what was shown: no place of it is unread."""
+    """Unicode braille of what was shown, in which no place may be marked as unread."""
     cells = parse_cells(text)
     if not cells or UNREAD in cells:
         raise ValueError(f"is {text!r}; give the cells that were shown")
@@ -49,7 +49,7 @@ def parse_presented(text: str) -> str:
 
 
 def parse_name(text: str) -> str:
-    """A name, which is not empty."""
+    """A name, which must not be empty."""
     if not text.strip():
         raise ValueError("is empty; name it")
     return text.strip()
@@ -70,7 +70,7 @@ def parse_seconds(text: str, *, number: Callable[[str], float]) -> float:
     Parameters
     ----------
     number
-        What reads numbers.
+        Function that gives the value of a number's text.
     """
     if text.strip().lower() in UNKNOWN:
         return math.nan
@@ -96,7 +96,7 @@ def parse_pair(
     Parameters
     ----------
     number
-        What reads numbers.
+        Function that gives the value of a number's text.
     """
     found = _PAIR.fullmatch(presented)
     try:

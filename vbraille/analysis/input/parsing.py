@@ -28,32 +28,32 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sheets import Sheet
 
 NEEDED = ("participant", "condition", "presented", "answered")
-# What is understood beside these, all optional.
+# Further columns that are understood; all are optional.
 _KNOWN = [
     *NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct",
     "string_set",
 ]  # fmt: skip
 _OPEN = ("", "n/a")  # the answer to a trial that was not answered
-# Columns that say, if they are above 0, why a duration does not count.
+# Columns that, where they are above 0, say why a duration does not count.
 _UNTIMED = {
     "paused_s": "the trial was paused meanwhile",
     "early": "it was answered before it was read to its end",
 }
-ALL = "all"  # the condition of a protocol that compares none
+ALL = "all"  # name of the condition in a protocol that compares none
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Parsed:
-    """What sheets hold.
+    """What the sheets hold.
 
     Parameters
     ----------
     trials, comparisons
-        By `vbraille.analysis.input.trials`; None if there are none.
+        Data frames as in `vbraille.analysis.input.trials`; None if there are none.
     left_out
-        Rows that are in neither.
+        Rows that are in neither data frame.
     warnings
-        What does not agree.
+        Sentences about what does not agree.
     """
 
     trials: pd.DataFrame | None
@@ -63,7 +63,7 @@ class Parsed:
 
 
 def parse(sheets: Sequence[Sheet]) -> Parsed:
-    """Trials of some sheets together; comparisons are those that present two values.
+    """Trials of some sheets together; a row that presents two values is a comparison.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
 
 
 def _strings(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
-    """What rows of strings say, typed."""
+    """Rows of strings with values of the right types."""
     read = _who(sheet, rows).assign(
         presented=_each(sheet, rows, "presented", parse_presented),
         string_set=_each(sheet, rows, "string_set", parse_cells, ""),
@@ -122,7 +122,7 @@ def _strings(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _pairs(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
-    """What rows of comparisons say, typed."""
+    """Rows of comparisons with values of the right types."""
     told = []
     for row, presented, answered in rows[["presented", "answered"]].itertuples(name=None):
         try:
@@ -135,7 +135,7 @@ def _pairs(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _who(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:
-    """Whose trials, and which ones."""
+    """Columns that say whose trial each row is, and which one."""
     numbers = pd.Series(range(1, len(sheet) + 1), sheet.frame.index)
     return pd.DataFrame(
         {
@@ -156,12 +156,12 @@ def _each(
     parse: Callable[[str], Any],
     absent: Any = None,
 ) -> pd.Series:
-    """Values of a column, text parsed; an InputError names the first row that has none.
+    """Parsed values of a column; an InputError names the first row that cannot be parsed.
 
     Parameters
     ----------
     absent
-        Value, or a value a row, where there is no such column.
+        One value for all rows, or a value for each, where there is no such column.
     """
     if column not in rows:
         return pd.Series(absent, rows.index)
@@ -182,7 +182,7 @@ def _seconds(sheet: Sheet, rows: pd.DataFrame, column: str, absent: float) -> pd
 
 
 def _scored_otherwise(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> Iterator[str]:
-    """What to say of a column ``correct`` that does not agree with the answers."""
+    """Sentences about a column ``correct`` that does not agree with the answers."""
     if "correct" not in rows:
         return
     told = rows["correct"].astype(str).str.strip().map({"0": False, "1": True})
@@ -195,7 +195,7 @@ def _scored_otherwise(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> I
 
 
 def _forget_durations(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> Iterator[LeftOut]:
-    """Take durations away for which a column says so; how many."""
+    """Take durations away that do not count, as a column says; tell how many those are."""
     for column, why in _UNTIMED.items():
         if column == "early":
             told = _each(sheet, rows, column, parse_whole, 0)
@@ -210,7 +210,7 @@ def _forget_durations(sheet: Sheet, rows: pd.DataFrame, read: pd.DataFrame) -> I
 def _check_once(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> None:
     """Raise InputError if a trial is there twice: it would count twice in every figure.
 
-    Those whose number or session is not given are not known to be the same.
+    Trials whose number or session is not given may be different ones, and are not checked.
     """
     names = ["participant", "session", "protocol", "condition", "block", "trial"]
     again = whole[whole.duplicated(names) & numbered(whole, sheets)]
@@ -222,7 +222,7 @@ def _check_once(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> None:
 
 
 def _conditions(whole: pd.DataFrame) -> pd.Series:
-    """Condition of each trial, told apart from another protocol's of the same name."""
+    """Condition of each trial; equal names in different protocols are told apart."""
     condition, protocol = whole["condition"], whole["protocol"]
     if protocol.nunique() < 2:
         return condition
@@ -238,7 +238,7 @@ def _trials(whole: pd.DataFrame | None) -> pd.DataFrame | None:
     whole["condition"] = _conditions(whole)
     strings = {name: factor(whole[name], None) for name in ("presented", "string_set", "answered")}
     others = whole.columns.difference(list(TRIAL_COLUMNS))
-    whole[others] = whole[others].fillna("")  # of sheets that do not have them
+    whole[others] = whole[others].fillna("")  # empty where a sheet has no such column
     return _sorted(whole.assign(**strings))
 
 
@@ -249,7 +249,7 @@ def _comparisons(whole: pd.DataFrame | None) -> pd.DataFrame | None:
 
 
 def _sorted(whole: pd.DataFrame) -> pd.DataFrame:
-    """Rows in the order of participants, sessions, blocks and trials, levels in natural order."""
+    """Rows by participant, session, block and trial, with levels in natural order."""
     names = ("participant", "session", "protocol", "condition")
     whole = whole.assign(**{name: factor(whole[name]) for name in names})
     order = ["participant", "session", "block", "trial"]

@@ -19,28 +19,28 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.trials import Places
 
-MOST_LEVELS = 50  # a factor of more was not varied by an experimenter
-MOST_CELLS = 1_000_000  # of all participants
+MOST_LEVELS = 50  # a factor with more levels was not varied by an experimenter
+MOST_CELLS = 1_000_000  # cells of all participants together
 
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Scores in long form.
+    """Scores in long form: one entry of each column for each score.
 
     Parameters
     ----------
     measure
-        What they are, with the unit: "duration (s)".
+        What the scores are, with the unit: "duration (s)".
     participants : [n]
-        Whose.
+        Participant of each score.
     factors
-        Level of each score, [n], by the factor's name.
+        Levels of all scores, [n], by the name of the factor.
     scores : [n]
-        NaN where one is missing.
+        Values; NaN where one is missing.
     durations
         Whether scores are durations, which are above 0 and skewed.
     trials : [n]
-        How many answers each share is of; None if scores are no shares of answers.
+        How many answers each score is a share of; None if scores are no shares of answers.
     """
 
     measure: str
@@ -98,12 +98,12 @@ def of_trials(trials: pd.DataFrame, places: Places, factors: Sequence[str]) -> l
 
 
 def of_sheet(sheet: Sheet) -> Scores:
-    """Scores of a table with columns participant, score, and the factors.
+    """Scores of a table with columns ``participant`` and ``score``, and one for each factor.
 
     Raises
     ------
     InputError
-        If it is no such table.
+        If the sheet is no such table.
     """
     sheet.need(("participant", "score"))
     names = [str(name) for name in sheet.frame if name not in ("participant", "score")]

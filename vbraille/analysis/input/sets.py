@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 def string_sets(whole: pd.DataFrame) -> list[str]:
-    """String of each trial whose cells it shows in this order or another.
+    """String that each trial is an ordering of: the one whose cells it shows, in any order.
 
-    It is what column ``string_set`` says. Tables that were exported before there was one are
-    told by their protocol: if that is one of ours which reorders strings, and all that it
-    presented are orders of its strings. Else a string is itself.
+    The column ``string_set`` says which that is. For tables that were exported before there was
+    such a column, the protocol tells: if it is one of ours that reorders strings, and all that it
+    presented are orders of its strings. Otherwise each string stands for itself.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def string_sets(whole: pd.DataFrame) -> list[str]:
 
 
 def numbered(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> NDArray[np.bool_]:
-    """Whether each trial's session and number are given, by which it can be there twice.
+    """Whether a trial has session and number, so that it can be seen to be there twice.
 
     Parameters
     ----------
@@ -57,14 +57,14 @@ def numbered(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> NDArray[np.bool_]:
 
 
 def tell_sessions_apart(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> list[str]:
-    """Rename sessions of two tables that have one name and other answers; what to know of them.
+    """Rename sessions of two tables that share a name but not their answers; tell of it.
 
-    Where the answers are the same a trial is there twice, and that is not for us to mend.
+    Where the answers are the same a trial is there twice, which is an error and is not mended here.
 
     Parameters
     ----------
     whole
-        As of `numbered`; ``session`` changes.
+        Data frame as in `numbered`; its column ``session`` changes.
     """
     number = pd.Series(whole.index.get_level_values(0), whole.index)
     who = [whole["participant"], whole["session"]]
@@ -88,7 +88,7 @@ def tell_sessions_apart(whole: pd.DataFrame, sheets: Sequence[Sheet]) -> list[st
 
 
 def _answers(part: pd.DataFrame) -> dict[tuple, tuple]:
-    """What was shown and answered in each trial."""
+    """What was shown and answered in each trial, by what identifies the trial."""
     names = ("presented", "answered", "duration_s", "first", "second", "chosen")
     known = part[[name for name in names if name in part]].map(str)
     keys = part[["protocol", "condition", "block", "trial"]]
@@ -97,9 +97,9 @@ def _answers(part: pd.DataFrame) -> dict[tuple, tuple]:
 
 
 def _differ(sheets: Sequence[Mapping[tuple, tuple]]) -> bool:
-    """Whether tables have trials of the same numbers that are not the same trials.
+    """Whether tables have different trials under the same numbers.
 
-    An edited copy of a table is a copy: in it most of the trials agree.
+    If most of the trials agree, one table is taken for an edited copy of the other.
     """
     clash = False
     for n, one in enumerate(sheets):

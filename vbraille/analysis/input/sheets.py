@@ -26,17 +26,17 @@ _DELIMITERS = ",;\t"  # spreadsheets write semicolons where the comma is the dec
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """A table as it came.
+    """A table as it was given.
 
     Parameters
     ----------
     name
-        Name of the file or the session, as an error has it.
+        Name of the file or the session, as it stands in messages.
     frame
         Values: text from a file, numbers and text from a session; empty text where there is
         nothing. The index is the number of each row's line or, from a session, of the row.
     unit
-        What the index counts.
+        Word for what the index counts.
     decimal_comma
         Whether numbers in text may have a comma for a point.
     """
@@ -50,16 +50,16 @@ class Sheet:
         return len(self.frame)
 
     def place(self, row: object) -> str:
-        """Where a row is, for a sentence."""
+        """Words for where a row is, such as a message needs."""
         return f"{self.name} {self.unit} {row}"
 
     def need(self, names: Sequence[str]) -> None:
-        """See that columns are there.
+        """Check that columns are there.
 
         Raises
         ------
         InputError
-            If some are not: naming those that are nearest.
+            If some are missing; the message names the columns that are nearest.
         """
         missing = [name for name in names if name not in self.frame]
         if missing:
@@ -71,23 +71,23 @@ class Sheet:
             )
 
     def number(self, text: str) -> float:
-        """Value of a number.
+        """Value of a number's text.
 
         Raises
         ------
         ValueError
-            If it is none.
+            If the text is no number.
         """
         return float(text.replace(",", ".") if self.decimal_comma else text)
 
 
 def read_csv(path: Path) -> Sheet:
-    """Read a CSV file, its column names first.
+    """Read a CSV file whose first row has the names of the columns.
 
     Raises
     ------
     InputError
-        If it is no such file.
+        If the file is not of this kind.
     """
     try:
         content = path.read_bytes()
@@ -109,7 +109,7 @@ def read_csv(path: Path) -> Sheet:
 
 
 def from_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> Sheet:
-    """Sheet of a session's rows, each value of the type that its export has."""
+    """Sheet of a session's rows; values have the types that they have in an export."""
     return Sheet(name, pd.DataFrame(rows, range(1, len(rows) + 1), dtype=object))
 
 
@@ -127,7 +127,7 @@ def _frame(reader: Any, name: str) -> pd.DataFrame:
         raise InputError(f"{name} has column {twice[0] or 'without a name'} twice; rename one")
     columns: list[list[str]] = [[] for _ in heads]
     lines: list[int] = []
-    known: dict[str, str] = {}  # few values, many times
+    known: dict[str, str] = {}  # few different values, which occur many times
     for row in rows:
         if len(row) != len(heads):
             raise InputError(

@@ -42,19 +42,19 @@ class Example:
     Parameters
     ----------
     trial, participant, condition, presented
-        What it is; ``presented`` is Unicode braille of the cells asked for.
+        Which trial it is; ``presented`` is Unicode braille of the cells asked for.
     pattern
-        Of its reading.
+        One of `PATTERNS`: how the string was read.
     time_s : float64[n]
-        Since the first tick of the attempt; n is at most `MOST_PICKED`.
+        Time since the first tick of the attempt; n is at most `MOST_PICKED`.
     left_mm : float64[n]
         Where the array's left column was at these ticks.
     start_s, end_s
-        The time that counts for the duration; both are among ``time_s``.
+        Beginning and end of the time that counts for the duration; both are in ``time_s``.
     span_mm
-        From the array's left column to its right one.
+        Distance from the array's left column to its right one.
     dots_mm
-        Centres of the dot columns that are shown.
+        Centres of the columns of dots that are shown.
     """
 
     trial: int
@@ -72,31 +72,31 @@ class Example:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SessionTrials:
-    """A session, read for the analysis.
+    """A session that was read for the analysis.
 
     Parameters
     ----------
     folder
-        Its directory.
+        Directory of the session.
     name
-        What it is called: its directory's name, with more of the path if another has that too.
+        Name of the directory, with more of the path if another session's has the same.
     head
-        Of its ``session.json``.
+        Head of the session's ``session.json``.
     protocol
-        What was done.
+        Protocol that the session followed.
     rows
-        A row a planned trial, as `vbraille.sessions.record.export.rows` makes them.
+        One row for each planned trial, as `vbraille.sessions.record.export.rows` makes them.
     readings
-        Of each answered trial that shows a string on a device, by its number: how it was
-        read, or in a clause why that is not known.
+        For each answered trial that shows a string on a device, by its number: how the string was
+        read, or a clause that says why that is not known.
     examples
-        A trial of each pattern that occurs, in the order of `PATTERNS`, by `EXAMPLE_RULE`.
+        One trial of each pattern that occurs, in the order of `PATTERNS`, by `EXAMPLE_RULE`.
     faults
-        What is damaged, a clause each.
+        What is damaged, in clauses.
     state
-        How far it came.
+        How far the session came.
     versions
-        Of the programs it was run with, by name; several if its runs differ.
+        Versions of the programs that ran the session, by name; several if its runs differ.
     notes
         What the experimenter wrote down, in order.
     """
@@ -115,14 +115,14 @@ class SessionTrials:
 
 
 def read_sitting(folder: Path) -> SessionTrials:
-    """Read a session's directory; of a damaged one, what is whole.
+    """Read a session's directory; if it is damaged, read what is whole.
 
     Raises
     ------
     InputError
-        If it is no session, or one of a newer format.
+        If the directory is no session, or one of a newer format.
     VbrailleError
-        If a file other than the journal and the traces is missing or not what it was.
+        If a file other than the journal and the traces is missing or has changed.
     """
     record = load(folder)
     progress = Progress(record.plan, record.told.events, record.procedure)
@@ -158,19 +158,19 @@ def read_sitting(folder: Path) -> SessionTrials:
 
 
 def pick(x_mm: NDArray[np.float64], kept: Sequence[int]) -> NDArray[np.intp]:
-    """Choose ticks to draw a way by: evenly, of those whose place is known.
+    """Choose ticks by which to draw a way: evenly, among those whose place is known.
 
     Parameters
     ----------
     x_mm : float64[n]
-        Places; NaN where not known.
+        Places; NaN where one is not known.
     kept
-        Ticks that are to be among them.
+        Ticks that must be among the chosen ones.
 
     Returns
     -------
     intp[m]
-        Ticks, increasing; at most `MOST_PICKED`.
+        Chosen ticks, increasing; at most `MOST_PICKED`.
     """
     known = np.flatnonzero(np.isfinite(x_mm))
     count = min(known.size, MOST_PICKED - len(kept))
@@ -200,7 +200,7 @@ def _example(trajectory: Trajectory, trial: Trial, participant: str, pattern: st
 
 
 def _examples(examples: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
-    """One of each pattern, by `EXAMPLE_RULE`; given with their durations."""
+    """One example of each pattern by `EXAMPLE_RULE`, out of examples with their durations."""
     of: dict[str, list[tuple[float, int, Example]]] = defaultdict(list)
     for duration_s, example in examples:
         of[example.pattern].append((duration_s, example.trial, example))
@@ -215,7 +215,7 @@ def _state(progress: Progress) -> str:
     if progress.ended:
         return "ended"
     trial = progress.next_trial
-    # An answer that was undone is one of a trial that was read to its end.
+    # A trial whose answer was undone was read to its end all the same.
     if trial is not None and progress.correcting is None and progress.told(trial).attempts:
         return f"broken off in {'practice ' if trial.practice else ''}trial {trial.number}"
     answered = sum(told.answer is not None for told in progress.trials.values())

@@ -22,7 +22,7 @@ def distinct_names(paths: Sequence[Path]) -> list[str]:
     Parameters
     ----------
     paths
-        Resolved, and no two alike.
+        Resolved paths, no two alike.
     """
     names = [path.name for path in paths]
     for many in range(2, max((len(path.parts) for path in paths), default=0) + 1):
@@ -37,7 +37,7 @@ def distinct_names(paths: Sequence[Path]) -> list[str]:
 
 
 def named(sitting: SessionTrials, name: str, site: str = "") -> SessionTrials:
-    """Session under a name, its participant under that of a site, if one is given."""
+    """Session under another name; if a site is given, its participant is named after it as well."""
     who = f"{site}/{sitting.head['participant']}" if site else sitting.head["participant"]
     return replace(
         sitting,
@@ -58,10 +58,10 @@ def of_site(sheet: Sheet, site: str) -> Sheet:
 
 
 def check_copies(sittings: Iterable[SessionTrials]) -> None:
-    """Raise InputError if two directories are of the same session.
+    """Raise InputError if two directories hold the same session.
 
-    They are if they began alike and an answer was given at the same moment; a copy may be of
-    an earlier time, or damaged.
+    They do if they began alike and an answer was given at the same moment: one may be an earlier
+    copy of the other, or a damaged one.
     """
     moments: dict[tuple, SessionTrials] = {}
     for sitting in sittings:
@@ -79,7 +79,7 @@ def check_copies(sittings: Iterable[SessionTrials]) -> None:
 
 
 def told_apart(sittings: Iterable[SessionTrials]) -> list[str]:
-    """What to know of sessions that have one folder's name."""
+    """Sentences that tell which sessions have the same folder name."""
     of: defaultdict[tuple[str, str], list[SessionTrials]] = defaultdict(list)
     for sitting in sittings:
         of[sitting.folder.resolve().name, sitting.head["participant"]].append(sitting)

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
     from vbraille.sessions.record.trajectory import Trajectory
 
-# Ours: about a dot's width, so that what goes back further can bring a dot by again. Tremor and
+# Ours: about a dot's width, since a hand that goes back further can feel a dot again. Tremor and
 # the counts of an encoder stay far below it.
 REVERSAL_MM = 2.0
-# Ours: a hand so close to where it turns is turning. It may stand there, which is no stroke's time.
+# Ours: so close to where it turns, a hand is turning; it may stand there, which is not counted.
 TURN_MM = 0.25
 PASS_SHARE, RESCAN_SHARE = 0.9, 0.1
 
@@ -47,14 +47,14 @@ SPEED_RULE = (
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """A motion one way.
+    """A motion in one direction.
 
     Parameters
     ----------
     start, end
         First and last tick of the stroke: the hand turned at either.
     from_mm, to_mm
-        Where the array's left column was then.
+        Where the array's left column was at the first tick and at the last.
     length_mm, seconds
         Length and time of the stroke without the turns at its ends.
     """
@@ -68,13 +68,13 @@ class Stroke:
 
     @property
     def right(self) -> bool:
-        """Whether it goes to the right."""
+        """Whether the stroke goes to the right."""
         return self.to_mm > self.from_mm
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What the hand did in a trial.
+    """How a string was read in a trial.
 
     Parameters
     ----------
@@ -86,11 +86,11 @@ class Reading:
         Whether the hand went back over the leftmost dot; see
         `vbraille.sessions.record.trajectory.Duration`.
     passes, rescans
-        Strokes to the right that are one or the other; short ones are neither.
+        Numbers of strokes to the right of either kind; short strokes are of neither.
     strokes_right, strokes_left
-        All of them.
+        Numbers of all strokes, by direction.
     speed_right_mm_s, speed_left_mm_s
-        By `SPEED_RULE`; None if there is no stroke that way.
+        Speeds by `SPEED_RULE`; None if there is no stroke in that direction.
     """
 
     pattern: str
@@ -105,7 +105,7 @@ class Reading:
 
 
 def read(trajectory: Trajectory) -> Reading:
-    """Tell what the hand did in a trial, within the time that counts."""
+    """Find out how a string was read in a trial, within the time that counts."""
     found = trajectory.duration
     counts = slice(found.start, found.end + 1)
     known = np.isfinite(trajectory.left_mm[counts])
@@ -116,7 +116,7 @@ def read(trajectory: Trajectory) -> Reading:
     half_mm = trajectory.span_mm / 2
 
     def share(from_mm: float, to_mm: float) -> float:
-        """How much of the string the middle of the array goes over."""
+        """Share of the string that the middle of the array goes over."""
         over_mm = min(to_mm + half_mm, last_mm) - max(from_mm + half_mm, first_mm)
         return max(over_mm, 0.0) / (last_mm - first_mm)
 
@@ -143,19 +143,19 @@ def strokes(
 ) -> list[Stroke]:
     """Cut a way into strokes.
 
-    They go in turns to the right and to the left, each from where the one before
-    ends, and none is shorter than ``least_mm``. What comes before the first and
-    after the last never amounts to so much, and is in none. Read backwards, a
-    way has the same strokes, each the other way.
+    Strokes go to the right and to the left in turn. Each begins where the one before it ends, and
+    none is shorter than ``least_mm``. What comes before the first stroke and after the last is
+    shorter than that, and belongs to none. Read backwards, a way has the same strokes, each in
+    the other direction.
 
     Parameters
     ----------
     x_mm : float64[n]
-        Places, all known.
+        Places, all of them known.
     time_ns : int64[n]
-        When.
+        Time of each place.
     least_mm
-        Reversals shorter than that are none.
+        Shorter reversals do not end a stroke.
     """
     turns = turning_points(x_mm, least_mm).tolist()
     return [_stroke(x_mm, time_ns, *ends) for ends in pairwise(turns)]
@@ -167,29 +167,29 @@ def turning_points(x_mm: NDArray[np.float64], least_mm: float) -> NDArray[np.int
     Parameters
     ----------
     x_mm : float64[n]
-        Places, all known.
+        Places, all of them known.
     least_mm
-        Above 0.
+        Length of the shortest reversal that counts; above 0.
 
     Returns
     -------
     intp[turns]
-        Ticks, the way's two furthest ends among them: in turns the lowest and the highest
-        place between their neighbours, which are ``least_mm`` or more away. None if the way
-        never amounts to so much.
+        Ticks of the turns, with the way's two furthest ends. They are in turn the lowest and
+        the highest place between their neighbours, which are ``least_mm`` or more away. Empty
+        if the way never extends so far.
     """
     steps_mm = np.diff(x_mm)
     moves = np.flatnonzero(steps_mm)
     if not moves.size:
         return np.zeros(0, np.intp)
     up = steps_mm[moves] > 0
-    # The first tick at the place where it turns, and both ends of the way.
+    # The first tick at each place where the way turns, and both ends of the way.
     at = np.concatenate(([0], moves[:-1][up[1:] != up[:-1]] + 1, [moves[-1] + 1]))
     while at.size > 2:
         legs = np.abs(np.diff(x_mm[at]))
         beside = np.concatenate(([np.inf], legs, [np.inf]))
-        # A short leg between longer ones is taken out, both its ends: what is left goes on as
-        # before. Of two as long as each other the first, so that never two neighbours go at once.
+        # Both ends of a short leg between longer ones are taken out; the rest goes on as before.
+        # If two neighbours are as long as each other the first goes, so that never both go at once.
         out = np.flatnonzero((legs < least_mm) & (legs < beside[:-2]) & (legs <= beside[2:]))
         if not out.size:
             return at
@@ -203,13 +203,13 @@ def turning_points(x_mm: NDArray[np.float64], least_mm: float) -> NDArray[np.int
 def _stroke(x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], start: int, end: int) -> Stroke:
     way_mm = x_mm[start : end + 1]
     from_mm, to_mm = float(way_mm[0]), float(way_mm[-1])
-    # Nothing of a stroke is beyond its ends.
+    # No place of a stroke is beyond its ends.
     if to_mm > from_mm:
         at_start, at_end = way_mm <= from_mm + TURN_MM, way_mm >= to_mm - TURN_MM
     else:
         at_start, at_end = way_mm >= from_mm - TURN_MM, way_mm <= to_mm + TURN_MM
     leaves, comes = end - int(np.argmax(at_start[::-1])), start + int(np.argmax(at_end))
-    if leaves >= comes:  # a short one, that goes to and fro
+    if leaves >= comes:  # a short way that only goes to and fro
         leaves, comes = start, end
     return Stroke(
         start,
@@ -222,10 +222,10 @@ def _stroke(x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], start: int, e
 
 
 def _pattern(seen: float, passes: int, rescans: int) -> str:
-    """Pattern of a trial, of whose string that share was gone over in all."""
+    """Pattern of a trial in which the given share of the string was gone over."""
     if seen < PASS_SHARE:
         return IN_PART
-    if rescans or not passes:  # without either, many steps have done it
+    if rescans or not passes:  # many small steps may go over it with neither
         return RESCAN
     return {1: ONE_PASS, 2: TWO_PASSES}.get(passes, MORE_PASSES)
 

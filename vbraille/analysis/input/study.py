@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
 
-_TOLD_VERSIONS = ("numpy", "scipy", "statsmodels", "matplotlib")  # what numbers and bytes hang on
+_TOLD_VERSIONS = ("numpy", "scipy", "statsmodels", "matplotlib")  # numbers and bytes hang on them
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,17 +37,17 @@ class Study:
     Parameters
     ----------
     trials, comparisons
-        By `vbraille.analysis.input.trials`; None if there are none.
+        Data frames as in `vbraille.analysis.input.trials`; None if there are none.
     sittings
         Sessions that were read, in the order of participants.
     left_out
-        What is no part of it.
+        What was left out of the analysis.
     about
-        Where it comes from, as pairs of a word and a sentence.
+        Where the data come from, as pairs of a word and a sentence.
     warnings
-        What to know before all numbers.
+        What a reader must know before all numbers.
     faults
-        What of the sessions is damaged, a clause each.
+        What is damaged in the sessions, in clauses.
     """
 
     trials: pd.DataFrame | None
@@ -71,18 +71,18 @@ def load_study(
     Parameters
     ----------
     paths
-        Of either, in any order.
+        Directories and files, in any order.
     exclude
         Participants who are left out, each with the reason.
     protocol
-        Only its trials.
+        Name of the protocol whose trials are taken; None takes those of all.
     sites
         Whether each folder that something stands in has participants of its own.
 
     Raises
     ------
     InputError
-        If something is neither, cannot be read, or there is nothing to analyse.
+        If a path is neither, cannot be read, or there is nothing to analyse.
     VbrailleError
         If a session has lost what it began with.
     """
@@ -127,7 +127,7 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
     Raises
     ------
     InputError
-        If it is no such table.
+        If the file is no such table.
     """
     sheet = read_csv(path)
     scores = of_sheet(sheet)
@@ -141,7 +141,7 @@ def load_scores(path: Path) -> tuple[Scores, list[tuple[str, str]]]:
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """Who or what is left out."""
+    """Rule by which participants and trials are left out."""
 
     factor: str
     level: str
@@ -154,12 +154,12 @@ class _Rule:
         comparisons: pd.DataFrame | None,
         sittings: Sequence[SessionTrials],
     ) -> tuple[pd.DataFrame | None, pd.DataFrame | None, list[SessionTrials]]:
-        """What is left.
+        """Apply the rule, and give what is left.
 
         Raises
         ------
         InputError
-            If there is no such participant or protocol: it was misspelled.
+            If there is no such participant or protocol, as when a name is misspelled.
         """
         parts = [part[self.factor] for part in (trials, comparisons) if part is not None]
         known = {level for part in parts for level in part.cat.categories}
@@ -253,7 +253,7 @@ def _describe_sitting(sitting: SessionTrials) -> str:
 
 
 def _versions(sittings: Sequence[SessionTrials]) -> list[tuple[str, str]]:
-    """Versions of the analysis, and of what the sessions were run with."""
+    """Versions of the programs that analyse, and of those that ran the sessions."""
     ours = {"vbraille": __version__, "python": platform.python_version()}
     ours |= {name: version(name) for name in _TOLD_VERSIONS}
     of: dict[str, list[str]] = {}
@@ -268,7 +268,7 @@ def _listed(versions: Mapping[str, str]) -> str:
 
 
 def _sources(sheets: Sequence[Sheet]) -> list[str]:
-    """What to know of answers that nobody typed."""
+    """Sentences about answers that no person gave."""
     simulated, scripted = [], []
     for sheet in sheets:
         kinds = {source.partition(":")[0] for source in sheet.frame.get("answers_from", ())}

@@ -60,9 +60,9 @@ class LeftOut:
     Parameters
     ----------
     what
-        "participant S1", "3 trials of session P07-letters".
+        What is left out: "participant S1", "3 trials of session P07-letters".
     reason
-        The rule.
+        Rule by which it is left out.
     """
 
     what: str
@@ -71,7 +71,7 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Places:
-    """The places of all strings whose answer has as many of them.
+    """All places of the strings whose answer has as many places as the string.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Places:
         ``answered``, int64 dot masks with `UNREAD_MASK` for a place not read, and ``correct``.
         The index is that of the trial.
     unequal : int
-        Trials that are left out, since their answer has another number of places.
+        Number of trials that are left out, since their answer has another number of places.
     """
 
     frame: pd.DataFrame
@@ -88,7 +88,7 @@ class Places:
 
     @classmethod
     def of(cls, trials: pd.DataFrame) -> Places:
-        """Places of some trials."""
+        """All places of some trials."""
         asked, given = (_lengths(trials[name]) for name in ("presented", "answered"))
         equal = np.flatnonzero(asked == given)
         frame = trials[["participant", "condition"]].take(np.repeat(equal, asked[equal]))
@@ -101,7 +101,7 @@ class Places:
         return len(self.frame)
 
     def where(self, chosen: pd.Series) -> Places:
-        """Some of the places."""
+        """Those places for which ``chosen`` is true."""
         return replace(self, frame=self.frame[chosen])
 
 
@@ -120,12 +120,12 @@ def factor(
 
 
 def codes(levels: pd.Series) -> NDArray[np.int64]:
-    """Index of the level of each row of categories."""
+    """Number of each row's level, counted from 0 in the order of the levels."""
     return np.asarray(levels.cat.codes, np.int64)
 
 
 def chosen(frame: pd.DataFrame, rows: pd.Series) -> pd.DataFrame:
-    """Some rows of trials or comparisons; levels that none of them has are gone."""
+    """Chosen rows of trials or comparisons, without levels that none of them has."""
     part = frame[rows].reset_index(drop=True)
     for name in part.select_dtypes("category"):
         part[name] = part[name].cat.remove_unused_categories()
@@ -135,12 +135,12 @@ def chosen(frame: pd.DataFrame, rows: pd.Series) -> pd.DataFrame:
 def groups(
     frame: pd.DataFrame, *names: str, observed: bool = True
 ) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    """Rows that have the same levels, in the order of the levels.
+    """Groups of rows that have the same levels, in the order of the levels.
 
     Parameters
     ----------
     observed
-        Whether levels that no row has together are left out.
+        Whether combinations of levels that no row has are left out.
     """
     grouped: Any = frame.groupby(list(names), observed=observed)
     return iter(grouped)
@@ -157,7 +157,7 @@ def written(trials: pd.DataFrame) -> pd.DataFrame:
 
 
 def comparable(trials: pd.DataFrame) -> list[str]:
-    """Columns that trials can be compared by."""
+    """Names of the columns by which trials can be compared."""
     given = [str(name) for name in trials if name not in TRIAL_COLUMNS]
     return ["condition", "block", "session", "protocol", *given]
 
@@ -176,7 +176,7 @@ def name_cell(mask: int) -> str:
 
 
 def masks_of(text: str) -> list[int]:
-    """Dot mask of each place of Unicode braille; `UNREAD_MASK` for one not read."""
+    """Dot mask of each place of Unicode braille; `UNREAD_MASK` for a place that was not read."""
     return [UNREAD_MASK if place == UNREAD else ord(place) - UNICODE_BLANK for place in text]
 
 
@@ -189,17 +189,17 @@ def name_string(text: str) -> str:
 
 
 def count(number: int, noun: str) -> str:
-    """A number of things: "1 trial", "2 trials"."""
+    """A number with a noun: "1 trial", "2 trials"."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def times(number: int) -> str:
-    """How often: "once", "2 times"."""
+    """Words for how often: "once", "2 times"."""
     return "once" if number == 1 else f"{number} times"
 
 
 def _lengths(strings: pd.Series) -> NDArray[np.int64]:
-    """How many places each string has."""
+    """Number of places of each string."""
     return np.array([len(text) for text in strings.cat.categories])[codes(strings)]
 
 

@@ -25,8 +25,8 @@ def over_participants(
 ) -> tuple[NDArray[np.int64], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
     """Mean of each level over conditions within each participant.
 
-    As tables 3.2 and 3.3 of Lévesque 2009 were most likely found: "computed across all
-    subjects using individual subject means to compensate for the unequal number of trials
+    Tables 3.2 and 3.3 of Lévesque 2009 were most likely found in this way: "computed across
+    all subjects using individual subject means to compensate for the unequal number of trials
     under the different conditions".
 
     Parameters
@@ -34,16 +34,17 @@ def over_participants(
     level : int64[n]
         Level of each observation.
     frame
-        Observations: whether each is ``correct``, its ``participant`` and ``condition``.
+        Data frame of observations: whether each is ``correct``, its ``participant`` and
+        ``condition``.
 
     Returns
     -------
     levels : int64[k]
-        Codes of the levels that there are, ascending.
+        Codes of the levels that occur, ascending.
     own : list of float64[participants]
-        At each level, the mean of each participant who has it.
+        For each level, the means of the participants who have it.
     numbers : list of int64[participants]
-        How many observations each is of.
+        Number of observations behind each of these means.
     """
     participant, condition = codes(frame["participant"]), codes(frame["condition"])
     shape = (int(level.max()) + 1, int(participant.max()) + 1)
@@ -59,7 +60,7 @@ def over_participants(
 def _means(
     of: tuple[NDArray[np.int64], ...], value: NDArray
 ) -> tuple[tuple[NDArray[np.int64], ...], NDArray[np.float64]]:
-    """Mean of the observations that have the same codes; the codes, in order."""
+    """Codes that occur, in order, and the mean of the observations that have each of them."""
     shape = tuple(int(code.max()) + 1 for code in of)
     cells, cell = np.unique(np.ravel_multi_index(of, shape), return_inverse=True)
     sums = np.bincount(cell, value, cells.size)

@@ -84,7 +84,7 @@ DOTS_OWN = Schema(
 
 
 def characters(places: Places) -> ResultTable:
-    """Table 3.2, a row a character."""
+    """Table 3.2 of Lévesque 2009: one row for each character."""
     rows = [
         {"name": name_cell(mask), "braille": chr(UNICODE_BLANK + mask), "dots": mask.bit_count()}
         | counts
@@ -95,7 +95,7 @@ def characters(places: Places) -> ResultTable:
 
 
 def strings(trials: pd.DataFrame) -> ResultTable:
-    """Table 3.3, a row a string."""
+    """Table 3.3 of Lévesque 2009: one row for each string."""
     names = trials["string_set"].cat.categories
     shown = trials[["string_set", "presented"]].drop_duplicates()
     orders = shown["string_set"].value_counts(sort=False)
@@ -109,13 +109,13 @@ def strings(trials: pd.DataFrame) -> ResultTable:
 
 
 def dots(places: Places) -> ResultTable:
-    """Legibility by number of dots, a row a number."""
+    """Legibility by number of dots: one row for each number."""
     rows = [{"dots": number} | counts for number, counts in _counts(_dots(places), places.frame)]
     return DOTS.fill(rows, _notes(rows, places))
 
 
 def dots_of_participants(places: Places) -> ResultTable:
-    """Legibility by number of dots, a row a participant and number."""
+    """Legibility by number of dots: one row for each participant and number."""
     many = _dots(places)
     rows: list[Row] = [
         {
@@ -130,18 +130,18 @@ def dots_of_participants(places: Places) -> ResultTable:
 
 
 def cell_order(mask: int) -> tuple[bool, str, int]:
-    """Key by which letters come before other cells, and a place not read last."""
+    """Key that sorts letters before other cells, and a place that was not read last."""
     name = name_cell(mask)
     return len(name) > 1 or not name.isalpha(), name if len(name) == 1 else "", mask
 
 
 def _dots(places: Places) -> NDArray[np.int64]:
-    """How many dots each place has that was presented."""
+    """Number of dots that were presented at each place."""
     return np.array([mask.bit_count() for mask in range(256)])[places.frame["presented"]]
 
 
 def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> list[tuple[int, Row]]:
-    """Each level with the values of `_COUNTS`; see `over_participants`."""
+    """Values of the columns `_COUNTS` at each level; see `over_participants`."""
     if not level.size:
         return []
     levels, own, numbers = over_participants(level, frame)
@@ -153,7 +153,7 @@ def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> list[tuple[int, Ro
 
 
 def _share(means: NDArray[np.float64], numbers: NDArray[np.int64]) -> Row:
-    """Mean of the participants' means, with its interval or why there is none."""
+    """Mean of the participants' means with its interval, or the reason why there is no interval."""
     row: Row = {"participants": means.size, "legibility": float(means.sum()) / means.size}
     if means.size < FEWEST_PARTICIPANTS:
         return row | {"note": f"no interval: {too_few(means.size)}"}

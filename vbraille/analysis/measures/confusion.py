@@ -67,15 +67,15 @@ INFORMATION = Schema(
 
 
 def of_characters(places: Places) -> pd.DataFrame | None:
-    """Counts of characters, by names: presented in rows, answered in columns; None without any.
+    """Counts of characters: presented in rows, answered in columns; None if there are no places.
 
-    The columns are the rows' names first, then others, at last `UNREAD`.
+    The columns are the names of the rows, then other answers, and last `UNREAD`.
     """
     return _confusion(places.frame, cell_order, name_cell)
 
 
 def of_pairs(trials: pd.DataFrame) -> pd.DataFrame | None:
-    """Counts of pairs, as of `of_characters`; None unless every string has two places."""
+    """Counts of pairs, like `of_characters`; None unless every string has two places."""
     strings = trials[["presented", "answered"]].astype(object)
     if any(len(string) != 2 for string in strings["presented"].unique()):
         return None
@@ -85,14 +85,14 @@ def of_pairs(trials: pd.DataFrame) -> pd.DataFrame | None:
 def to_table(
     schema: Schema, counts: pd.DataFrame, places: Places, marks: Sequence[int] = MARKS
 ) -> ResultTable:
-    """Table of a matrix.
+    """Table of a confusion matrix.
 
     Parameters
     ----------
     schema
         `CONFUSION_CHARACTERS` or `CONFUSION_PAIRS`.
     marks
-        Errors above each of these are marked.
+        Counts: errors that are more frequent than one of these are marked.
     """
     answers = [
         Column(f"answered {name}", name, f"times answered {name}", Kind.COUNT)
@@ -104,12 +104,12 @@ def to_table(
 
 
 def transmitted(trials: pd.DataFrame, places: Places, *, seed: int) -> ResultTable:
-    """Accuracy, kappa and bits, of characters and pairs, of all trials and each condition.
+    """Accuracy, kappa and bits of characters and pairs, over all trials and for each condition.
 
     Parameters
     ----------
     seed
-        Of the draws that corrected bits come from.
+        Seed of the random draws that corrected bits come from.
     """
     characters, pairs = {"all": of_characters(places)}, {"all": of_pairs(trials)}
     conditions = trials["condition"].cat.categories

@@ -47,7 +47,7 @@ _BITS = np.array([mask.bit_count() for mask in range(256)])
 
 
 def errors(places: Places) -> ResultTable:
-    """Kinds of errors, the most frequent first; places not read are a kind of their own."""
+    """Kinds of errors, the most frequent first; "not read" is a kind of its own."""
     kinds = ["added", "removed", "moved"]
     wrong = _wrong(places)
     found = wrong.groupby(["error", *kinds], as_index=False).size()
@@ -72,7 +72,7 @@ def of_participants(places: Places) -> ResultTable:
 
 
 def _wrong(places: Places) -> pd.DataFrame:
-    """Places answered wrongly, each with the name of its error and the dots it is made of."""
+    """Places answered wrongly, each with the name of its error and its changes of dots."""
     wrong = places.frame[~places.frame["correct"]]
     presented, answered = (wrong[name].to_numpy() for name in ("presented", "answered"))
     read = answered != UNREAD_MASK
@@ -86,7 +86,7 @@ def _wrong(places: Places) -> pd.DataFrame:
 
 @cache
 def _name(added: int, removed: int, moved: int) -> str:
-    """Words for an error: "1 dot moved, 2 dots added"; nothing differs in what was not read."""
+    """Words for an error: "1 dot moved, 2 dots added"; other words where nothing was read."""
     named = ((moved, "moved"), (added, "added"), (removed, "removed"))
     return (
         ", ".join(f"{count(number, 'dot')} {what}" for number, what in named if number)

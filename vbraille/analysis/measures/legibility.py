@@ -68,7 +68,7 @@ AVERAGES = Schema(
 
 
 def legibility(trials: pd.DataFrame, places: Places) -> ResultTable:
-    """Table 3.1: one row a participant and condition, also where there are no trials."""
+    """Table 3.1 of Lévesque 2009: a row for each participant and condition, even without trials."""
     whose = ("participant", "condition")
     of_places = dict(groups(places.frame, *whose, observed=False))
     rows = [
@@ -79,12 +79,12 @@ def legibility(trials: pd.DataFrame, places: Places) -> ResultTable:
 
 
 def averages(table: ResultTable) -> ResultTable:
-    """The last row of table 3.1, a row a condition.
+    """Last row of table 3.1 of Lévesque 2009, with a row for each condition.
 
     Parameters
     ----------
     table
-        Of `legibility`.
+        Table that `legibility` gives.
     """
     rows: list[Row] = []
     for condition, part in table.frame.groupby("condition", sort=False):
@@ -116,7 +116,7 @@ def averages(table: ResultTable) -> ResultTable:
 
 
 def unequal_notes(places: Places) -> list[str]:
-    """What characters leave out."""
+    """Notes on what the legibility of characters leaves out."""
     if not places.unequal:
         return []
     return [
@@ -131,7 +131,7 @@ def _row(trials: pd.DataFrame, right: pd.Series) -> Row:
     Parameters
     ----------
     right
-        Whether each place is right, of the strings whose answer has as many.
+        Whether each place is right, in strings whose answer has as many places.
     """
     correct, durations = trials["correct"], trials["duration_s"].dropna().to_numpy()
     row: Row = {

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Row
 
 NOTHING = "there are no scores to compare"
-MOST_LEVELS = 12  # 66 pairs: more t-tests than anybody should make of one table
+MOST_LEVELS = 12  # they make 66 pairs: more t-tests than anybody should make of one table
 MEANS = Schema(
     "level_means",
     "Means of the levels",
@@ -122,7 +122,7 @@ def level_means(measures: Sequence[Scores]) -> ResultTable:
     Parameters
     ----------
     measures
-        What is compared.
+        Scores of each measure that is compared.
     """
     rows: list[Row] = []
     for scores in measures:
@@ -172,9 +172,10 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
     Parameters
     ----------
     measures
-        What is compared.
+        Scores of each measure that is compared.
     correction
-        How p-values of one measure and factor are corrected; see `statistics.correction.METHODS`.
+        How p-values of one measure and factor are corrected: a key of
+        `statistics.correction.METHODS`.
     """
     rows: list[Row] = []
     notes: list[str] = []
@@ -195,7 +196,7 @@ def t_tests(measures: Sequence[Scores], correction: str) -> ResultTable:
 
 
 def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
-    """Analysis of variance of each measure, and who was left out of it."""
+    """Analyses of variance of all measures, and who was left out of them."""
     rows: list[Row] = []
     notes: list[str] = []
     left_out: list[LeftOut] = []
@@ -226,10 +227,10 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
 
 
 def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
-    """Mean of each participant at each level of a factor: cells averaged, then over cells.
+    """Mean of each participant at each level of a factor: of each cell first, then over cells.
 
-    Who has not all of a level's cells has no mean there: it would be of other things than
-    the others' are.
+    Whoever lacks one of a level's cells has no mean there: it would be the mean of other things
+    than the others' means.
     """
     cells: dict[tuple[str, str, tuple[str, ...]], list[float]] = {}
     others = [column for name, column in scores.factors.items() if name != factor]
@@ -249,7 +250,7 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
 
 
 def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
-    """How many answers each participant gave at a level; None if scores are no shares."""
+    """Number of answers that each participant gave at a level; None if scores are no shares."""
     if scores.trials is None:
         return None
     columns = (scores.participants, scores.factors[factor], scores.trials)
@@ -261,7 +262,7 @@ def _trials(scores: Scores, factor: str, level: str) -> dict[str, int] | None:
 
 
 def _interval(scores: Scores, means: dict[str, float], trials: dict[str, int] | None) -> Interval:
-    """Interval of the population's mean: of a share, of a duration, or of anything else."""
+    """Interval of the population's mean, by the method for shares, for durations or for others."""
     own = list(means.values())
     if trials is not None:
         return mean_share(own, [trials[who] for who in means])
@@ -275,7 +276,7 @@ def _pairs(
     means: dict[str, dict[str, float]],
     correction: str,
 ) -> Iterator[Row]:
-    """Rows of all pairs of levels, p corrected for their number."""
+    """Rows for all pairs of levels, with p corrected for the number of pairs."""
     rows: list[Row] = []
     tested: list[Row] = []
     for first, second in combinations(levels, 2):
@@ -316,7 +317,7 @@ def _pairs(
 
 
 def _without(participants: Iterable[str], having: Iterable[str]) -> list[str]:
-    """Who is left out, as a note; empty if nobody is."""
+    """Note on who is left out; empty if nobody is."""
     without = sorted({*participants} - {*having}, key=natural)
     return [f"without {', '.join(without)}: a score is missing"] if without else []
 

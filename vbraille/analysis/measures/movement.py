@@ -88,14 +88,14 @@ CORRELATIONS = Schema(
 def trajectories(
     sittings: Iterable[SessionTrials], trials: pd.DataFrame | None = None
 ) -> ResultTable:
-    """Row a trial of strings on a device, by participant, session and trial.
+    """Table with a row for each trial of a string on a device, by participant, session and trial.
 
     Parameters
     ----------
     sittings
-        Sessions.
+        Sessions that were read.
     trials
-        Whose conditions' names count, where several protocols have one of the same name.
+        Trials with the names of conditions, which differ where two protocols share a name.
     """
     named: dict[Any, str] = {}
     if trials is not None:
@@ -126,7 +126,7 @@ def patterns(table: ResultTable) -> ResultTable:
     Parameters
     ----------
     table
-        Of `trajectories`.
+        Table that `trajectories` gives.
     """
     known = table.frame[table.frame["pattern"].notna()]
     whose = [column.name for column in _WHOSE]
@@ -149,7 +149,7 @@ def patterns(table: ResultTable) -> ResultTable:
 
 
 def correlations(trials: pd.DataFrame) -> ResultTable:
-    """Duration against legibility, of trials, strings and participants."""
+    """Correlations of duration with legibility over trials, strings and participants."""
     timed = chosen(trials, trials["duration_s"].notna())
     if timed.empty:
         return CORRELATIONS.fill([], ["no duration is known"])
@@ -170,7 +170,7 @@ def correlations(trials: pd.DataFrame) -> ResultTable:
 
 
 def _described(reading: Reading) -> Row:
-    """Values of a reading; why one is missing."""
+    """Values of a reading, or a note on why one is missing."""
     row: Row = {
         "duration_s": reading.duration_s,
         "returned": int(reading.returned),
@@ -185,7 +185,7 @@ def _described(reading: Reading) -> Row:
 
 
 def correlation(duration: NDArray, correct: NDArray, what: str) -> Row:
-    """Pearson's r of durations with shares, or with right and wrong, of so many of something."""
+    """Pearson's r of durations with shares, or with right and wrong; ``what`` is counted."""
     row: Row = {"n": duration.size}
     if duration.size < 3:
         return row | {"note": f"{count(duration.size, what[:-1])}: a correlation needs three"}

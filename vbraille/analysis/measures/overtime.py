@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from vbraille.analysis.schemas import ResultTable, Row
 
-PAST = 10  # trials that the moving average is over
+PAST = 10  # trials that the moving average is taken over
 _WHOSE = (
     Column("participant", "participant", "pseudonym"),
     Column("session", "session", "name of the session"),
@@ -57,7 +57,7 @@ SLOPES = Schema(
 
 
 def over_time(trials: pd.DataFrame) -> ResultTable:
-    """Moving average of every trial, in the order of the sessions."""
+    """Moving average at every trial, in the order of the sessions."""
     names = [column.name for column in _WHOSE]
     frame = trials.sort_values(names, kind="stable")[[*names, "trial", "correct"]]
     by = [frame[name] for name in names]
@@ -71,7 +71,7 @@ def over_time(trials: pd.DataFrame) -> ResultTable:
 
 
 def slopes(trials: pd.DataFrame) -> ResultTable:
-    """Slope of every session and condition."""
+    """Slope of legibility in every session and condition."""
     names = [column.name for column in _WHOSE]
     return SLOPES.fill(
         [
@@ -82,7 +82,7 @@ def slopes(trials: pd.DataFrame) -> ResultTable:
 
 
 def slope(correct: NDArray[np.bool_]) -> Row:
-    """Least squares of right and wrong on the number of the trial, for 10 trials."""
+    """Least-squares slope of right and wrong on the number of the trial, for 10 trials."""
     row: Row = {"trials": correct.size}
     if correct.size < 3:
         return row | {"note": f"{count(correct.size, 'trial')}: a slope needs three"}

@@ -77,7 +77,7 @@ def tuning(comparisons: pd.DataFrame, *, seed: int) -> tuple[ResultTable, Result
     Parameters
     ----------
     seed
-        Of the bootstrap.
+        Seed of the bootstrap's random draws.
     """
     rows: list[Row] = []
     liked: list[Row] = []
@@ -116,7 +116,7 @@ def tuning(comparisons: pd.DataFrame, *, seed: int) -> tuple[ResultTable, Result
 
 
 def choices_of_participants(comparisons: pd.DataFrame) -> ResultTable:
-    """Choices of each participant, a row a parameter, participant and value."""
+    """Choices of each participant: a row for each parameter, participant and value."""
     won = comparisons["first"].where(comparisons["chosen"] == 0, comparisons["second"])
     shown = [comparisons.assign(value=comparisons[name]) for name in ("first", "second")]
     whose = ["parameter", "participant", "value"]
@@ -129,7 +129,7 @@ def choices_of_participants(comparisons: pd.DataFrame) -> ResultTable:
 def _choices(
     parameter: str, values: NDArray, first: NDArray, second: NDArray, choice: NDArray
 ) -> list[Row]:
-    """One row a value."""
+    """Rows of choices, one for each value."""
     won = np.where(choice == 0, first, second)
     lost = np.where(choice == 0, second, first)
     wins = np.zeros((values.size, values.size), np.int64)

@@ -19,35 +19,35 @@ if TYPE_CHECKING:
 
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
 TRIALS = "trials.csv"
-_DPI = 300  # of the PNGs: what a journal asks for
+_DPI = 300  # dots per inch of the PNGs, as journals ask for
 
 
 def write_report(results: Results, folder: Path) -> list[Path]:
-    """Make a directory with the report, its numbers and its figures; the files, in their order.
+    """Make a directory of the report, its numbers and its figures; give the files in their order.
 
     Parameters
     ----------
     folder
-        Not there yet, or empty.
+        Directory that does not exist yet, or is empty.
 
     Raises
     ------
     InputError
-        If there is something already, or no directory can be made there.
+        If there is something at this path already, or no directory can be made there.
     VbrailleError
-        If the disk does not take it; nothing is left then.
+        If the disk cannot take the report; then nothing is left of it.
     """
     folder = folder.absolute()
-    check_free(folder)  # before the figures are drawn, which takes a while
+    check_free(folder)  # checked before the figures are drawn, which takes a while
     files = _files(results)
-    # Not forced onto the disk, as a session is: a report can be made again.
+    # Not flushed to the disk as a session is: a report can be made again.
     write_folder(folder, files)
     return [folder / name for name in files]
 
 
 def _files(results: Results) -> dict[str, bytes]:
     """Contents of all files, by their paths in the directory."""
-    # Here, as matplotlib takes longer to import than all else to be written.
+    # Imported here, as matplotlib takes longer to import than all else takes to be written.
     from vbraille.pictures.drawcharts import draw_chart
     from vbraille.pictures.figurefiles import to_bytes
 

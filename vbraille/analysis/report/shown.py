@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import ReportFigure
     from vbraille.analysis.schemas import ResultTable, Value
 
-ROWS = 60  # of a table that a report shows: more are heard by nobody, and its CSV has all
+ROWS = 60  # rows of a table that a report shows: nobody listens to more, and the CSV has all
 WARNINGS = "Read this first"
 FINDINGS = "What was found"
 ABOUT = "Data, versions and what was left out"
-KINDS = ("svg", "png", "pdf")  # of a figure's files
+KINDS = ("svg", "png", "pdf")  # kinds of files that a figure is written as
 ABOVE = "This figure stands at the head of the report:"
 CONTENTS = "Contents"
 UNKNOWN = "What cannot be said here"
@@ -27,9 +27,9 @@ FILES = "Files beside this report"
 
 
 def in_report(table: ResultTable) -> ResultTable:
-    """Return the table without its notes, if no row has one: empty cells are a noise in speech.
+    """Return the table as it is shown: empty notes left out, as empty cells are noise in speech.
 
-    Of a confusion matrix rare answers are gathered.
+    In a confusion matrix rare answers are gathered.
     """
     table = table.gathered()
     if not len(table) or table.columns[-1].name != NOTE or table.frame[NOTE].any():
@@ -39,24 +39,24 @@ def in_report(table: ResultTable) -> ResultTable:
 
 
 def rows(table: ResultTable) -> Sequence[tuple[Value, ...]]:
-    """Rows that are shown."""
+    """Rows of a table that the report shows."""
     return replace(table, frame=table.frame.head(ROWS)).rows
 
 
 def caption(table: ResultTable) -> str:
-    """Title of a table, and how many rows it has."""
+    """Title of a table, with the number of its rows."""
     return f"{table.title}: {_how_many(table)}"
 
 
 def numbers(table: ResultTable) -> str:
-    """Where all of a table is, before the name of its file."""
+    """Sentence on where all rows of a table are; the name of the file follows it."""
     if len(table) > ROWS:
         return f"Shown are {_how_many(table)}. All rows, in full precision:"
     return "In full precision:"
 
 
 def marking(table: ResultTable) -> str:
-    """How errors of a confusion matrix are marked; empty if none are."""
+    """Sentence on how errors of a confusion matrix are marked; empty if none are."""
     if not table.marks:
         return ""
     above = " and ".join(f"above {mark}" for mark in table.marks)
@@ -64,7 +64,7 @@ def marking(table: ResultTable) -> str:
 
 
 def heads(table: ResultTable) -> int:
-    """How many of the first columns head a row: the fewest of words that tell the rows apart."""
+    """Number of first columns that head a row: the fewest columns of words that tell rows apart."""
     words = 1
     while words < len(table.columns) and table.columns[words].kind is Kind.TEXT:
         if table.columns[words].name == NOTE or _tell_apart(table, words):
@@ -74,12 +74,12 @@ def heads(table: ResultTable) -> int:
 
 
 def values(table: ResultTable, row: Sequence[Value]) -> list[str]:
-    """Texts of a row, a missing value in words."""
+    """Texts of a row's values, a missing one in words."""
     return [to_print(value, column.kind) for value, column in zip(row, table.columns, strict=True)]
 
 
 def alternative(figure: ReportFigure) -> str:
-    """What stands for a figure, next to its text."""
+    """Words that stand for a figure, next to its text."""
     return f"Figure: {figure.title}. What it shows is told beside it."
 
 

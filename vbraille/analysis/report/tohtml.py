@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable, Value
 
 Element = ElementTree.Element
-_INLINE = {"a", "span", "strong"}  # after all others the source has a new line
-# Nothing is fetched, whatever a name in the data should be.
+_INLINE = {"a", "span", "strong"}  # every other element begins a new line in the source
+# Nothing is fetched, whatever names there are in the data.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'"
 _STYLE = """
 :root { color-scheme: light dark; --ink: #111; --paper: #fff; --line: #767676; --shade: #e2e2e2;
@@ -67,14 +67,14 @@ img { max-width: 100%; height: auto; background: #fff; }
 
 
 def to_html(results: Results, drawings: Mapping[str, bytes], beside: Sequence[str] = ()) -> str:
-    """Page of the results.
+    """Web page of the results.
 
     Parameters
     ----------
     figures
         SVG of each figure, by its name.
     beside
-        Names of other files in the report's directory, which the page links to.
+        Names of other files in the report's directory, to which the page links.
     """
     titles = {table.name: table.title for table in results.result_tables()}
     main = _e("main", id="results", tabindex="-1")
@@ -120,7 +120,7 @@ def _header(results: Results) -> Element:
 def _findings(
     results: Results, titles: Mapping[str, str], drawings: Mapping[str, bytes]
 ) -> Iterator[Element]:
-    """What was found, and its main figure; nothing if nothing was."""
+    """What was found, with the main figure; empty if nothing was found."""
     figure = results.main_figure()
     if results.findings or figure is not None:
         yield _e("h2", shown.FINDINGS, id="findings")
@@ -182,7 +182,7 @@ def _table(table: ResultTable) -> Iterator[Element]:
         for row in shown.rows(table):
             body.append(_row(table, row, heads))
         made = _e("table", _e("caption", shown.caption(table)), _e("thead", names), body)
-        # Whatever its width, it scrolls within itself, by the keyboard too.
+        # A wide table scrolls within itself, by the keyboard too.
         about = f"table-{table.name}"
         looks = "wide matrix" if table.marks else "wide"
         yield _e("div", made, class_=looks, tabindex="0", role="group", aria_labelledby=about)
@@ -255,7 +255,7 @@ def _list(items: Iterable[Element]) -> Element:
 
 
 def _e(tag: str, *content: Element | str, **attributes: str) -> Element:
-    """Element with text and elements in it; attributes that are empty are left out."""
+    """Element with text and elements in it; empty attributes are left out."""
     made = Element(tag)
     for name, value in attributes.items():
         if value:

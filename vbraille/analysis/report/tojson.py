@@ -11,12 +11,12 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import Results
     from vbraille.analysis.schemas import ResultTable
 
-# A value is a line, for who compares two files; json's own indenting takes ten times as long.
+# One value a line, for whoever compares two files; json's own indenting takes ten times as long.
 _ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",\n", ": ")).encode
 
 
 def to_json(results: Results) -> Iterator[str]:
-    """Text of the results, in the report's order, table by table; a missing value is null."""
+    """Text of the results, table by table in the report's order; a missing value is null."""
     head = {
         "title": results.title,
         "warnings": results.warnings,

@@ -18,10 +18,10 @@ _UNIT = " (%)"
 
 
 def to_lines(results: Results) -> Iterator[str]:
-    """Lines of text: a heading or a row each.
+    """Lines of text, each of them a heading or a row.
 
-    A row says its first columns as they are, the others with their headings. Tables of over
-    `ROWS` rows are counted, not told; so is what each number means, which the report has.
+    A row says its first columns as they are, the others with their headings. Of tables with over
+    `ROWS` rows only the number of rows is told. What each number means is left to the report.
     """
     yield results.title
     for warning in results.warnings:

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from vbraille.analysis.results import ReportFigure, Results
     from vbraille.analysis.schemas import ResultTable, Value
 
-# What Markdown does something with: anywhere, in an address, at the beginning of a line.
+# What Markdown gives a meaning to: anywhere, in an address, at the beginning of a line.
 _ACTIVE = re.compile(r"[\\`*_{}\[\]<>|~$&]|(?<=:)//|(?<=www)\.|^[#+=-]")
-_NUMBERED = re.compile(r"^(\d+)(?=[.)](?: |$))")  # a list begins so
+_NUMBERED = re.compile(r"^(\d+)(?=[.)](?: |$))")  # a list begins like this
 
 
 def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
-    """Text of the results, paragraphs apart by an empty line.
+    """Text of the results, with an empty line between paragraphs.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def to_markdown(results: Results, beside: Sequence[str] = ()) -> str:
 
 
 def escape(text: str) -> str:
-    """Text that Markdown leaves as it is, on one line."""
+    """Text on one line, escaped so that Markdown shows it as it is."""
     escaped = _ACTIVE.sub(lambda found: f"\\{found[0]}", plain(text).strip())
     return _NUMBERED.sub(r"\1\\", escaped)
 

@@ -36,7 +36,7 @@ ROUNDING = 1e-24
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """One effect. What has no value is None, and `note` says why.
+    """One effect. A value that cannot be found is None, and `note` says why.
 
     Parameters
     ----------
@@ -49,15 +49,15 @@ class Effect:
     f, p
         F, and its p if sphericity holds.
     epsilon, p_corrected
-        Greenhouse and Geisser's, and p with both degrees of freedom times it.
+        Greenhouse and Geisser's epsilon, and p with both degrees of freedom multiplied by it.
     huynh_feldt, p_huynh_feldt
-        The same of Huynh and Feldt's.
+        Huynh and Feldt's epsilon, and p with both degrees of freedom multiplied by it.
     mauchly_w, mauchly_chi2, mauchly_df, mauchly_p, mauchly_p_exact
         Mauchly's test of sphericity; see `sphericity`.
     partial_eta2, partial_low, partial_high
         SS_effect / (SS_effect + SS_error), and its 95 % interval by noncentral F.
     generalised_eta2
-        SS_effect over itself, the participants' and all errors' (Olejnik and
+        SS_effect over the sum of itself, the participants' SS and all errors' SS (Olejnik and
         Algina 2003, all factors manipulated).
     note
         Why something is None, or ought not to be read on its own; may be empty.
@@ -109,12 +109,12 @@ class Anova:
     Parameters
     ----------
     participants
-        Those who have a score in every cell, in order of appearance.
+        Participants who have a score in every cell, in order of appearance.
     dropped
-        Those who have not, each with the cells that are missing: a cell is a
+        Participants who lack a score, each with the cells that are missing: a cell is a
         level of each factor, in the factors' order.
     averaged
-        Those of `participants` with more than one score in a cell, each with the
+        Members of `participants` with more than one score in a cell, each with the
         number of such cells; the mean stands for them.
     effects
         Main effects in the factors' order, then their interactions.
@@ -141,7 +141,7 @@ def anova(
         One to four names, each with the level of every row, str[n]. Any name
         will do. Levels count in order of first appearance.
     scores : float[n]
-        In any one unit; NaN where a score is missing.
+        Scores in any one unit; NaN where a score is missing.
 
     Raises
     ------

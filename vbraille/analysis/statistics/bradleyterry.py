@@ -37,13 +37,14 @@ class Scale:
     Parameters
     ----------
     strengths : float64[k]
-        Natural logarithms, of sum 0; bias-reduced (Firth 1993), see `bradley_terry`.
+        Natural logarithms of the strengths, with sum 0; bias-reduced (Firth 1993), see
+        `bradley_terry`.
     errors : float64[k]
-        Their standard errors.
+        Standard errors of the strengths.
     covariance : float64[k, k]
         Covariance of the strengths; the variance of s_i - s_j is c_ii + c_jj - 2 c_ij.
     comparisons
-        How many the scale comes from.
+        Number of comparisons that the scale comes from.
     """
 
     strengths: NDArray[np.float64]
@@ -66,11 +67,11 @@ class Preference:
     Parameters
     ----------
     value, interval
-        In the unit of the values, mm; None for no interval.
+        Preferred value and its interval, in mm as the values are; None for no interval.
     how
-        What the interval comes from, a clause for a report; empty if there is none.
+        Clause for a report on what the interval comes from; empty if there is no interval.
     note
-        Why there is no interval, and what else to know of it; else empty.
+        Why there is no interval, or what else to know of it; otherwise empty.
     """
 
     value: float
@@ -80,7 +81,7 @@ class Preference:
 
 
 class PositionBias(NamedTuple):
-    """How often the first of a pair was chosen: its share, its interval, p; None for none."""
+    """How often the first of a pair was chosen: share, interval and p, which may be None."""
 
     share_first: float
     interval: Interval | None
@@ -151,26 +152,26 @@ def preferred(
     Parameters
     ----------
     values_mm : float[k]
-        What was compared, in any order, no value twice.
+        Values that were compared, in any order, none of them twice.
     first, second : int[n]
         Which value came first and which second, 0…k - 1.
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
     groups : int[n]
-        Number of the participant of each comparison.
+        Number of each comparison's participant.
     seed
-        Begins the resampling, for one participant: the same seed gives the same interval.
+        Seed of the resampling for one participant: the same seed gives the same interval.
     resamples
-        How many. Those that leave some values uncompared are left out.
+        Number of resamples; those that leave some values uncompared are left out.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
     Unanswerable
-        If there are no comparisons, or no participant's make a scale with a highest value.
+        If there are no comparisons, or nobody's comparisons make a scale with a highest value.
     ValueError
-        If the columns are not those of comparisons of these values.
+        If the columns are no comparisons of these values.
     """
     check_level(level)
     if resamples < 1:
@@ -218,8 +219,8 @@ def preferred(
 def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     """Whether the first of two is chosen more or less often than the second.
 
-    Of one participant: the share of the first, Wilson's interval, and the exact binomial test
-    against a half. Of several: the mean of their own shares, its interval for the population that
+    For one participant: the share of the first, Wilson's interval, and the exact binomial test
+    against a half. For several: the mean of their own shares, its interval for the population that
     they come from, and Student's t-test of the own shares against a half.
 
     Parameters
@@ -227,13 +228,13 @@ def position_bias(chosen: ArrayLike, groups: ArrayLike) -> PositionBias:
     chosen : int[n]
         0 if the first was chosen, 1 if the second.
     groups : int[n]
-        Number of the participant of each choice.
+        Number of each choice's participant.
 
     Returns
     -------
     PositionBias
-        Share of the first, 0…1; its interval and p, None where participants are too few or all
-        alike.
+        Share of the first, 0…1; its interval and p, None where there are too few participants or
+        all are alike.
 
     Raises
     ------
@@ -295,7 +296,7 @@ def _check_all(wins: NDArray[np.int64]) -> None:
 
 
 def _own_peaks(values: NDArray[np.float64], wins: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where the scale of each participant who has one is highest, float64[participants]."""
+    """Value at which each participant's scale is highest, for those who have one; float64[n]."""
     whole = wins[connected(wins)]
     if len(whole):
         strengths = fit(whole)[0]
@@ -324,10 +325,10 @@ def _of_comparisons(
 
 
 def _peaks(values: NDArray[np.float64], strengths: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where each scale is highest, float64[r] of float64[k] ascending and float64[r, k]."""
+    """Value at which each scale is highest: float64[r] of float64[k] rising and float64[r, k]."""
     k = values.size
     level = strengths >= strengths.max(axis=1, keepdims=True) - SAME
-    # Among equals an inner value is taken, so that the parabola has neighbours on both sides.
+    # Of equally high values an inner one is taken, so that the parabola has two neighbours.
     inner = np.r_[0, np.ones(max(0, k - 2), dtype=int), 0][:k]
     top = np.argmax(level * (1 + inner), axis=1)
     at_end = (top == 0) | (top == k - 1)

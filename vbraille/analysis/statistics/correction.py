@@ -29,9 +29,9 @@ _STATSMODELS = {"bonferroni": "bonferroni", "holm": "holm", "fdr": "fdr_bh"}
 
 
 def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDArray[np.float64]:
-    """Adjusted p-values, to be held against the level one would hold a single one against.
+    """Adjusted p-values: each can be held against the level for a single test.
 
-    Holm 1979; Benjamini and Hochberg 1995; by statsmodels.
+    The methods are Holm's (1979) and Benjamini and Hochberg's (1995), as statsmodels has them.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def adjust(p_values: Sequence[float] | NDArray[np.float64], method: str) -> NDAr
     Returns
     -------
     float64[n], 0…1
-        In the order given.
+        Adjusted p-values in the order given.
 
     Raises
     ------

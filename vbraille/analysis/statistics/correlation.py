@@ -22,16 +22,16 @@ _STRAIGHT = 1 - 1e-12
 def correlation_interval(first: ArrayLike, second: ArrayLike, level: float = LEVEL) -> Interval:
     """Interval of Pearson's r, on Fisher's scale (Fisher 1921).
 
-    The standard error of atanh r is the larger of two: Fisher's 1 / √(n - 3), which holds of
-    normal values, and that of the values' own fourth moments (Steiger and Hakstian 1982), which
-    holds of any, if there are many. Durations are skewed, and an answer is right or wrong.
+    The standard error of atanh r is the larger of two: Fisher's 1 / √(n - 3), which is right for
+    normal values, and that of the values' own fourth moments (Steiger and Hakstian 1982), which is
+    right for many values of any kind. Durations are skewed, and an answer is right or wrong.
 
     Parameters
     ----------
     first, second : float[n]
-        Values of the same n things; neither all the same.
+        Values of the same n things; neither may be the same throughout.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------

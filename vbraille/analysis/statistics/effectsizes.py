@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-LARGEST = 1e4  # of t and F: beyond it an effect is not of this world, and its interval neither
+LARGEST = 1e4  # t or F beyond this is not of this world, and its interval neither
 _TRIES = 60
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(120)
 _FAR = 9.0  # standard deviations, beyond which a normal variable is not looked for
@@ -37,9 +37,9 @@ def d_z_interval(t: float, n: int, level: float = LEVEL) -> Interval:
     t
         Student's t of the differences.
     n
-        Participants, 2 or more.
+        Number of participants, 2 or more.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def d_z_interval(t: float, n: int, level: float = LEVEL) -> Interval:
     if abs(t) > LARGEST:
         raise Unanswerable(f"t is beyond {LARGEST:g}")
     tail = (1 - level) / 2
-    # Both ends for a positive t are those for the negative one, turned round.
+    # Where t is negative, the interval is that of -t with its ends turned round.
     ends = [
         _root(lambda delta, p=p: noncentral_t_cdf(abs(t), n - 1, delta) - p, abs(t) - 1, abs(t) + 1)
         for p in (1 - tail, tail)
@@ -68,11 +68,11 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL
     Parameters
     ----------
     ratio
-        F.
+        Value of F.
     df1, df2
         Degrees of freedom of the effect and of its error.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
@@ -94,19 +94,19 @@ def partial_eta2_interval(ratio: float, df1: int, df2: int, level: float = LEVEL
 
 
 def noncentral_t_cdf(t: float, df: int, delta: float) -> float:
-    """P that noncentral t is t or less, t not below 0.
+    """Probability that noncentral t is at most t, for t of 0 or more.
 
-    (Z + δ) / s is, with Z normal and s² chi-square by its degrees of freedom: over the one of
-    them in which the integrand is the smoother. scipy's ``nct`` has no value where δ is negative
-    and t is large, or both are large.
+    With Z normal and s² chi-square over its degrees of freedom, t is (Z + δ) / s. The integral is
+    over whichever of Z and s makes the integrand smoother. scipy's ``nct`` has no value where δ is
+    negative and t is large, or both are large.
 
     Parameters
     ----------
     t, df, delta
-        Value, degrees of freedom, noncentrality.
+        Value of t, degrees of freedom, noncentrality.
     """
     if t >= 1:
-        # s is below 0 for no Z, so that the integrand has a kink where Z is -δ.
+        # No s is below 0, whatever Z is, so that the integrand has a kink where Z is -δ.
         parts = sorted({-_FAR, min(max(-delta, -_FAR), _FAR), _FAR})
         return sum(_integral(_given_z, *ends, t, df, delta) for ends in pairwise(parts))
     ends = (math.sqrt(chi2.isf(p, df) / df) for p in (1 - 1e-13, 1e-13))
@@ -128,12 +128,12 @@ def _integral(density: Callable[..., NDArray], low: float, high: float, *given: 
 
 
 def _root(falling: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function that falls is 0; the bracket widens until it is inside.
+    """Place where a falling function is 0; the bracket widens until it holds that place.
 
     Raises
     ------
     Unanswerable
-        If it is not found.
+        If there is no such place within reach.
     """
     for _ in range(_TRIES):
         at_low, at_high = falling(low), falling(high)

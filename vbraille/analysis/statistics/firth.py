@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 SMALLEST_STEP = 1e-10
 LARGEST_STEP = 1.0  # keeps the first steps of one-sided comparisons from overshooting
-MOST_STEPS = 1000  # convergence is linear; of tens of thousands of sparse tables none took 400
+MOST_STEPS = 1000  # convergence is linear; tens of thousands of sparse tables took fewer than 400
 
 
 def connected(wins: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -37,21 +37,21 @@ def fit(
     Parameters
     ----------
     wins : float64[r, k, k]
-        wins[., i, j] is how often i was chosen over j; every table connected.
+        wins[., i, j] is how often i was chosen over j; every table must be connected.
     most_steps
-        After which it gives up.
+        Number of steps after which the fit is given up.
 
     Returns
     -------
     strengths : float64[r, k]
-        Natural logarithms, of sum 0.
+        Natural logarithms of the strengths, with sum 0.
     covariance : float64[r, k, k]
         Inverse of the information.
 
     Raises
     ------
     RuntimeError
-        If a table has not settled by then.
+        If a table has not settled after so many steps.
     """
     r, k, _ = wins.shape
     strengths, covariance = np.zeros((r, k)), np.empty((r, k, k))
@@ -64,12 +64,12 @@ def fit(
         inverse = _inverse(weight)
         own = np.diagonal(inverse, axis1=1, axis2=2)
         leverage = weight * (own[:, :, None] + own[:, None, :] - 2 * inverse)
-        # Wins that were not expected less losses that were not: without the large
-        # numbers of one-sided comparisons, whose difference would be lost in rounding.
+        # Wins that were not expected less losses that were not. The large numbers of one-sided
+        # comparisons are left out, since their difference would be lost in rounding.
         surprise = (won + leverage / 2) * share.swapaxes(1, 2)
         score = (surprise - surprise.swapaxes(1, 2)).sum(axis=2)
-        # Steps by the information alone would be too long, and never settle, where the
-        # leverage is as large as the comparisons: one for each pair, say.
+        # Where the leverage is as large as the comparisons (one for each pair, say), steps by the
+        # information alone would be too long and never settle.
         step = np.einsum("rij,rj->ri", _inverse(weight + leverage * both), score)
         longest = np.abs(step).max(axis=1)
         step *= (LARGEST_STEP / np.maximum(longest, LARGEST_STEP))[:, None]

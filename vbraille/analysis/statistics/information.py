@@ -40,13 +40,13 @@ def check_counts(counts: ArrayLike) -> NDArray[np.int64]:
 
 
 def _entropy_bits(counts: NDArray[np.int64]) -> float:
-    """Plug-in entropy of counts of any shape; empty cells add nothing."""
+    """Plug-in entropy of counts in an array of any shape; empty cells add nothing."""
     shares = counts[counts > 0] / counts.sum()
     return max(0.0, float(-(shares * np.log2(shares)).sum()))
 
 
 def accuracy(counts: ArrayLike) -> float:
-    """Share of the answers that are what was presented, 0…1.
+    """Share of answers that equal what was presented, 0…1.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def transmitted_bits(counts: ArrayLike) -> float:
     """Transmitted information, in bits per character (Miller and Nicely 1955).
 
     T = H(presented) + H(answered) - H(both), each with the observed shares in
-    place of probabilities. It is too high for few answers: see
+    place of probabilities. With few answers T comes out too high: see
     `transmission`.
 
     Raises

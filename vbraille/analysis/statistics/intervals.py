@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 LEVEL = 0.95
 FEWEST_PARTICIPANTS = 3
-ROUNDING = 1e-12  # values that differ by a smaller share of them are the same
+ROUNDING = 1e-12  # values whose relative difference is smaller are the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class Interval:
     low, high
         Ends of the interval, in the unit of the quantity.
     level
-        Confidence, between 0 and 1.
+        Level of confidence, between 0 and 1.
     """
 
     low: float
@@ -54,9 +54,9 @@ def wilson(correct: int, trials: int, level: float = 0.95) -> Interval:
     Parameters
     ----------
     correct, trials
-        How many of how many.
+        Number of correct trials, and number of all trials.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
@@ -83,17 +83,18 @@ def mean_interval(values: ArrayLike, level: float = LEVEL) -> Interval:
     values : float[n]
         One value of each participant, in any unit, such as seconds.
     level
-        Confidence.
+        Level of confidence.
 
     Returns
     -------
     Interval
-        In the unit of the values.
+        Interval in the unit of the values.
 
     Raises
     ------
     Unanswerable
-        If there are fewer than three values, or all are the same: how people differ is not seen.
+        If there are fewer than three values, or all are the same: then nobody sees how people
+        differ.
     """
     check_level(level)
     row = finite_scores("values", values)
@@ -119,7 +120,7 @@ def mean_duration(values: ArrayLike, level: float = LEVEL) -> Interval:
     values : float[n]
         One mean duration of each participant, in seconds.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
@@ -146,6 +147,6 @@ def mean_duration(values: ArrayLike, level: float = LEVEL) -> Interval:
 
 
 def too_few(participants: int) -> str:
-    """Why there is no interval of so few participants."""
+    """Reason why there is no interval for so few participants."""
     few = ("no participants", "one participant", "two participants")[participants]
     return f"{few}; how people differ is seen of three or more"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-# Differences that vary by less than this share of the scores vary by rounding only.
+# Differences that vary by less than this share of the scores vary only by rounding.
 ROUNDING = 1e-12
 
 
@@ -30,11 +30,11 @@ class PairedTest:
     Parameters
     ----------
     n
-        Participants.
+        Number of participants.
     mean_difference, low, high
         Mean of the differences and its confidence interval, in the unit of the scores.
     level
-        Confidence of the interval.
+        Level of confidence of the interval.
     sd
         Standard deviation of the differences (n - 1 in the denominator).
     t, df, p
@@ -42,10 +42,10 @@ class PairedTest:
     d_z
         Cohen's d of the differences, mean / sd (Cohen 1988, 2.3.5).
     d_low, d_high
-        Confidence interval of d, by noncentral t; None where t is too large for one.
+        Confidence interval of d, by noncentral t; None where t is too large for an interval.
     g_z
         `d_z` with Hedges' correction for few participants; None for two
-        participants, where the correction leaves nothing of it.
+        participants, where the correction would leave nothing.
     """
 
     n: int
@@ -74,8 +74,8 @@ class PairedTest:
 def hedges_correction(df: int) -> float:
     """Factor that makes a standardised mean difference unbiased, below 1.
 
-    J = Γ(df/2) / (√(df/2) · Γ((df - 1)/2)), Hedges 1981, equation 6e: the exact
-    one, not 1 - 3/(4 df - 1).
+    J = Γ(df/2) / (√(df/2) · Γ((df - 1)/2)), Hedges 1981, equation 6e. This is the
+    exact factor, not its approximation 1 - 3/(4 df - 1).
 
     Raises
     ------
@@ -99,7 +99,7 @@ def paired_t(
     first, second : float[n]
         Scores of the same participants, in the same order and unit.
     level
-        Confidence of the interval.
+        Level of confidence of the interval.
 
     Raises
     ------

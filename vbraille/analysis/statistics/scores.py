@@ -9,17 +9,17 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-# Beyond it squares overflow; no score in seconds, millimetres or per cent comes near.
+# Squares of larger scores overflow; no score in seconds, millimetres or per cent comes near.
 LARGEST = 1e100
 
 
 def finite_scores(name: str, scores: ArrayLike) -> NDArray[np.float64]:
-    """Scores as float64[n], if all of them can be reckoned with.
+    """Scores as float64[n], after a check that they can be reckoned with.
 
     Raises
     ------
     ValueError
-        If they are not one row of numbers, or one is not finite or beyond ±1e100.
+        If they are not one row of numbers, or if one is not finite or beyond ±1e100.
     """
     row = np.asarray(scores, dtype=np.float64)
     if row.ndim != 1:

@@ -27,26 +27,27 @@ from vbraille.analysis.statistics.unanswerable import Unanswerable
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-MEANS, SPREADS = 240, 32  # points of the grid
-_FINE, _LARGEST = 0.2, 8.0  # σ is spaced evenly below the first, by equal shares above; its end
-_NOISE, _STEEP = 1.25, 0.45  # of the prior of σ
-_STEPS, _NEAR = 25, 1e-3  # of Newton's method, in log odds; quadratic, so that more is not needed
-_NODES, _MANY, _NODES_OF_MANY = 11, 100, 5  # where there are many right and wrong it is normal
+MEANS, SPREADS = 240, 32  # points of the grid along m and σ
+_FINE, _LARGEST = 0.2, 8.0  # σ is spaced evenly below the first, by equal shares up to the second
+_NOISE, _STEEP = 1.25, 0.45  # constants in the prior of σ
+_STEPS, _NEAR = 25, 1e-3  # Newton's method, in log odds; it is quadratic, so that these suffice
+_NODES, _MANY, _NODES_OF_MANY = 11, 100, 5  # many right and wrong make the integrand normal
 
 
 class Grid(NamedTuple):
-    """Where likelihoods are worked out.
+    """Grid on which likelihoods are worked out.
 
     Parameters
     ----------
     ends : float64[MEANS + 1]
         Ends of the cells of m, ascending from 0 to 1, even in the arcsine of its root.
     spread : float64[SPREADS]
-        σ, in log odds.
+        Values of σ, in log odds.
     centre : float64[MEANS, SPREADS]
-        μ that has the mean share m at σ.
+        Value of μ for which the mean share at σ is m.
     weight : float64[MEANS, SPREADS]
-        Size of a cell times the prior of m at σ, √(dμ/dm): at σ = 0 it is Jeffreys' for a share.
+        Size of a cell times the prior of m at σ, √(dμ/dm). At σ = 0 that is Jeffreys' prior of a
+        share.
     """
 
     ends: NDArray[np.float64]
@@ -63,16 +64,16 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
     shares : float[n]
         Share of right answers, 0…1, for each participant.
     trials : int[n]
-        How many answers each is of.
+        Number of answers that each share is of.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
     Unanswerable
         If there are fewer than three participants.
     ValueError
-        If a share is not in 0…1, or is of no trials.
+        If a share is not in 0…1, or has no trials.
     """
     check_level(level)
     share, number = np.asarray(shares, np.float64), np.asarray(trials, np.float64)
@@ -93,17 +94,17 @@ def mean_share(shares: ArrayLike, trials: ArrayLike, level: float = LEVEL) -> In
 
 @lru_cache(maxsize=512)
 def log_likelihood(correct: float, trials: float) -> NDArray[np.float32]:
-    """Log likelihood of one participant's answers, float32[MEANS, SPREADS], but for a constant.
+    """Log likelihood of one participant's answers up to a constant, float32[MEANS, SPREADS].
 
-    The integral over z is by adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995):
-    the nodes are put where the integrand is, which holds of 1 trial and of 100,000.
+    The integral over z is by adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995): the
+    nodes are put where the integrand is, which suits 1 trial as well as 100,000.
 
     Parameters
     ----------
     correct
-        Right answers; not whole where a share is a mean of several.
+        Number of right answers; not whole where a share is a mean of several.
     trials
-        Answers.
+        Number of answers.
     """
     grid = grid_of_means()
     mu, precision = grid.centre, grid.spread**-2.0
@@ -135,20 +136,21 @@ def quantiles(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Ends of the intervals of many studies at once.
 
-    The prior of σ is (σ² + 1.25 / trials)^-0.45. Where σ is large beside what chance does to log
-    odds of so many trials (variance 4 / trials at a share of a half) it is almost 1 / σ, that of a
-    scale of which nothing is known, which gives a normal mean Student's interval; where σ is small,
-    it is even. Both numbers are by simulation: of those tried they cover best where there are
-    three participants, who leave much to the prior. With six or more they hardly matter.
+    The prior of σ is (σ² + 1.25 / trials)^-0.45. Chance alone scatters log odds of so many trials
+    by a variance of 4 / trials at a share of a half. Where σ is large beside that, the prior is
+    almost 1 / σ, the prior of a scale of which nothing is known, which gives a normal mean
+    Student's interval. Where σ is small, the prior is even. Both numbers were found by simulation:
+    of those tried they cover best where there are three participants, who leave much to the prior.
+    With six or more participants they hardly matter.
 
     Parameters
     ----------
     likelihoods : float[studies, MEANS, SPREADS]
-        Sum of the participants' log likelihoods.
+        Sums of the participants' log likelihoods.
     trials
-        Mean of their numbers of trials.
+        Mean of the participants' numbers of trials.
     level
-        Confidence.
+        Level of confidence.
 
     Returns
     -------
@@ -166,7 +168,7 @@ def quantiles(
 
 @cache
 def grid_of_means() -> Grid:
-    """The grid, made once."""
+    """Grid that all calls share; it is made once."""
     ends = np.sin(np.pi / 2 * np.linspace(0.0, 1.0, MEANS + 1)) ** 2
     mean = (np.sin(np.pi / 2 * (np.arange(MEANS) + 0.5) / MEANS) ** 2)[:, None]
     even = (np.arange(SPREADS) + 0.5) / SPREADS * np.arcsinh(_LARGEST / _FINE)
@@ -185,7 +187,7 @@ def grid_of_means() -> Grid:
             slope[:, column] = (p * q) @ normal
             off = np.log(m / rest) - wanted[:, 0]
             centre[:, column] -= off * m * rest / slope[:, column]
-    size = np.diff(ends)[:, None] * np.cosh(even)  # dm dσ, but for a factor
+    size = np.diff(ends)[:, None] * np.cosh(even)  # dm dσ up to a factor
     return Grid(ends, spread, centre, size / np.sqrt(slope))
 
 
@@ -196,7 +198,7 @@ def _log_density(
     precision: NDArray[np.float64],
     at: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Logarithm of what is integrated, at log odds `at`."""
+    """Logarithm of the integrand at log odds `at`."""
     softplus = np.maximum(at, 0.0) + np.log1p(np.exp(-np.abs(at)))
     return correct * at - trials * softplus - precision * (at - mu) ** 2 / 2
 
@@ -204,7 +206,7 @@ def _log_density(
 def _inverse(
     sums: NDArray[np.float64], ends: NDArray[np.float64], share: float
 ) -> NDArray[np.float64]:
-    """Where each row of sums, from 0 to 1 over the ends of cells, reaches a share."""
+    """Place where each row of sums, rising from 0 to 1 over the ends of cells, reaches a share."""
     at = np.argmax(sums >= share, axis=1)
     rows = np.arange(len(sums))
     below, above = sums[rows, at - 1], sums[rows, at]

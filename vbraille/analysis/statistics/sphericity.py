@@ -16,26 +16,26 @@ if TYPE_CHECKING:
 # The exact distribution of W is summed in parts of so many points, up to so many parts: three
 # contrasts need some 50,000 points, more contrasts fewer.
 _PART, _PARTS = 4096, 64
-_LEFT = 1e-11  # what a whole part must add less than, for the sum to end
+_LEFT = 1e-11  # the sum ends once a whole part adds less than this
 
 
 @dataclass(frozen=True, slots=True)
 class Sphericity:
-    """What is known of it. What has no value is None, and `note` says why.
+    """What is known of sphericity. A value that cannot be found is None, and `note` says why.
 
     Parameters
     ----------
     epsilon
-        Greenhouse and Geisser's.
+        Greenhouse and Geisser's epsilon.
     huynh_feldt
         Huynh and Feldt's epsilon: that of Greenhouse and Geisser is too small where sphericity
         nearly holds and participants are few.
     w, chi2, df
         Mauchly's W, the statistic that is about chi-square, and its degrees of freedom.
     p
-        Of W, by the expansion that R's ``mauchly.test`` takes.
+        p of W, by the expansion that R's ``mauchly.test`` takes.
     p_exact
-        Of W, by its exact distribution.
+        p of W, by its exact distribution.
     note
         Why something is None; may be empty.
     """
@@ -60,9 +60,9 @@ def sphericity(z: NDArray[np.float64], *, cells: int, one_factor: bool) -> Spher
     Parameters
     ----------
     z : float64[n, d]
-        The contrasts of each participant, not all alike.
+        Contrasts of each participant; they must not all be alike.
     cells
-        Cells that the whole design has, all its factors crossed.
+        Number of cells of the whole design, in which all factors are crossed.
     one_factor
         Whether the effect is a main effect.
     """
@@ -93,8 +93,8 @@ def sphericity(z: NDArray[np.float64], *, cells: int, one_factor: bool) -> Spher
 
 
 def huynh_feldt(epsilon: float, n: int, d: int) -> float:
-    """Huynh and Feldt's epsilon from Greenhouse and Geisser's, of n participants' d contrasts."""
-    rank = epsilon * d  # 1 … n - 1; at its end the estimate is without bound
+    """Huynh and Feldt's epsilon from Greenhouse and Geisser's; n participants, d contrasts."""
+    rank = epsilon * d  # 1 … n - 1; at its upper end the estimate is without bound
     if n < 3 or n - 1 - rank <= 1e-9:
         return epsilon if n < 3 else 1.0
     return max(epsilon, min(1.0, (n * rank - 2) / (d * (n - 1 - rank))))
@@ -112,9 +112,9 @@ def mauchly_p(log_w: float, n: int, d: int, cells: int) -> tuple[float, int, flo
     log_w
         Natural logarithm of W.
     n, d
-        Participants and contrasts, d below n.
+        Numbers of participants and contrasts, d below n.
     cells
-        Cells that the whole design has, all its factors crossed.
+        Number of cells of the whole design, in which all factors are crossed.
     """
     df = d * (d + 1) // 2 - 1
     scale = n - 1 - (2 * d**2 + d + 2) / (6 * d)  # ρ times n - 1
@@ -126,7 +126,7 @@ def mauchly_p(log_w: float, n: int, d: int, cells: int) -> tuple[float, int, flo
 
 
 def mauchly_exact_p(log_w: float, n: int, d: int) -> float:
-    """P that W is as small as this or smaller, if sphericity holds.
+    """Probability that W is this small or smaller, if sphericity holds.
 
     The moments of W (Mauchly 1940; Anderson 2003, 10.7.3) are those of a product of
     independent beta variables with a_j = (n - 1 - j)/2 and b_j = j/2 + j/d, j = 1 … d - 1.
@@ -136,14 +136,14 @@ def mauchly_exact_p(log_w: float, n: int, d: int) -> float:
     Parameters
     ----------
     log_w, n, d
-        As of `mauchly_p`.
+        What they are in `mauchly_p`.
     """
     if d == 2:  # one beta variable, whose b is 1
         return math.exp(log_w * (n - 2) / 2)
     j = np.arange(1, d)
     a, b = (n - 1 - j) / 2, j / 2 + j / d
     at = -min(1.0, a.min() / 2)  # between the poles at 0 and at -a
-    step = -2 * math.pi * at / 30  # leaves e⁻³⁰ of aliasing
+    step = -2 * math.pi * at / 30  # leaves an aliasing error of e⁻³⁰
     whole = (loggamma(a + b) - loggamma(a)).sum()
     total = 0.0
     for part in range(_PARTS):

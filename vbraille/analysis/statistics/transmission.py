@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-FEWEST_ANSWERS = 20  # to a character, on average
-WIDEST_BITS = 0.5  # of an interval beside which a number still says something
+FEWEST_ANSWERS = 20  # answers to a character, on average
+WIDEST_BITS = 0.5  # beyond this width of its interval a number says nothing any more
 _DRAWS, _FEWEST_DRAWS, _MOST_CELLS = 1000, 100, 20_000_000
 _CHUNK_CELLS = 2_000_000
-_TABLES = 400  # of a test of independence
-_ROUNDING = 1e-9  # bits
+_TABLES = 400  # tables in a test of independence
+_ROUNDING = 1e-9  # in bits
 _RIGHT = np.sin(np.pi / 2 * (np.arange(60) + 0.5) / 60)[:, None] ** 2
-_ALIKE = np.geomspace(0.5, 300.0, 24)  # answers that a character's own share of errors weighs
+_ALIKE = np.geomspace(0.5, 300.0, 24)  # answers that the errors of all characters count for
 _SHARED = np.geomspace(0.3, 3000.0, 40)
 
 
@@ -53,18 +53,18 @@ class Transmission(NamedTuple):
 def transmission(counts: ArrayLike, *, seed: int, level: float = LEVEL) -> Transmission:
     """Information transmitted, in bits a character, given what was presented.
 
-    The interval's lower end is 0 where answers are not told apart from such as do not depend on
-    what was presented, by a permutation test of their mutual information. It is an interval for
-    these people's answers taken together, each as if it came alone.
+    The interval's lower end is 0 where a permutation test of mutual information cannot tell the
+    answers from answers that do not depend on what was presented. The interval is for these
+    people's answers taken together, each as if it were independent of the others.
 
     Parameters
     ----------
     counts : int[rows, columns]
-        As in `information`.
+        Counts as in `information`.
     seed
-        Begins the draws: the same seed gives the same numbers.
+        Seed of the random draws: the same seed gives the same numbers.
     level
-        Confidence.
+        Level of confidence.
 
     Raises
     ------
@@ -102,11 +102,11 @@ def transmission(counts: ArrayLike, *, seed: int, level: float = LEVEL) -> Trans
 def _drawn_bits(
     table: NDArray[np.int64], own: NDArray[np.int64], rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Information of shares that are likely, float64[draws].
+    """Information of shares drawn from those that are likely, float64[draws].
 
-    A row's shares are known from few answers, so that the mean of all rows is scattered by
-    them, once in the answers and once more in the draws; its entropy is too low by that. It is
-    put right by twice what the scatter of the draws takes away (Miller 1955, for any scatter).
+    A row's shares are known from few answers, and scatter the mean of all rows: once in the
+    answers and once more in the draws. This makes the entropy of the mean too low, which is put
+    right by twice what the scatter of the draws takes away (Miller 1955, for any scatter).
     """
     weight = table.sum(axis=1) / table.sum()
     inner = np.zeros(0)
@@ -140,7 +140,7 @@ def _drawn_shares(
     step = max(1, _CHUNK_CELLS // table.size)
     for first in range(0, draws, step):
         some = slice(first, first + step)
-        # Cells of which no draw comes, such as those of right answers, stay 0.
+        # Cells without any draw, such as those of right answers, stay 0.
         shares = rng.standard_gamma(shared[some, None, None] * around + errors)
         sums = np.maximum(shares.sum(axis=2, keepdims=True), np.finfo(float).tiny)
         shares *= (1 - accuracy[some, :, None]) / sums
@@ -178,18 +178,18 @@ def _concentrations(
 
 
 def _choose(likely: NDArray[np.float64], draws: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Indices drawn by their log likelihoods."""
+    """Indices drawn with probabilities that are given by log likelihoods."""
     weight = np.exp(likely - likely.max())
     return rng.choice(likely.size, draws, p=weight / weight.sum())
 
 
 def _chance_alone(table: NDArray[np.int64], rng: np.random.Generator) -> float:
-    """How often answers shuffled over what was presented seem to transmit as much."""
+    """Share of shuffles of the answers that seem to transmit as much information."""
     tables = int(np.clip(_MOST_CELLS // table.size, _FEWEST_DRAWS, _TABLES))
     columns = table.sum(axis=0)
     kept = table[:, columns > 0]
     made = random_table(kept.sum(axis=1), kept.sum(axis=0))
-    # With the same sums, more information is a joint entropy that is lower.
+    # With the same row and column sums, more information means a lower joint entropy.
     most = float(_entropies(kept.ravel() / kept.sum())) + _ROUNDING
     as_much = sum(
         float(_entropies(made.rvs(random_state=rng).ravel() / kept.sum())) <= most

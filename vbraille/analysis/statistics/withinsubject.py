@@ -22,23 +22,23 @@ Cell: TypeAlias = "tuple[str, ...]"
 """A level of each factor, in the factors' order."""
 
 MOST_FACTORS = 4
-MOST_CELLS = 2000  # a hundred times what a session holds; contrasts grow with its square
+MOST_CELLS = 2000  # a hundred times what a session holds; contrasts grow with the square of this
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WithinSubject:
-    """A score of every participant in every cell.
+    """Scores of all complete participants in all cells.
 
     Parameters
     ----------
     cube : float64[participants, levels of the first factor, …]
-        The scores.
+        Scores by participant and level of each factor.
     participants
-        The participants, in order of appearance.
+        Participants in order of appearance.
     dropped
-        Who is left out, each with the missing cells.
+        Participants who are left out, each with the missing cells.
     averaged
-        Who had several scores in a cell, each with the number of such cells.
+        Participants who had several scores in a cell, each with the number of such cells.
     """
 
     cube: NDArray[np.float64]
@@ -58,17 +58,17 @@ def arrange(
 ) -> WithinSubject:
     """Arrange scores: repeated cells averaged, participants with a missing cell left out.
 
-    A level that appears with missing scores only is a level all the same: no
-    participant is complete then, and nothing is compared behind the reader's back.
+    A level for which all scores are missing is still a level: then no participant is complete,
+    and nothing is compared behind the reader's back.
 
     Parameters
     ----------
     participants : str[n]
-        The participant of each score.
+        Participant of each score.
     factors
         One to four names, each with the level of every row, str[n].
     scores : float[n]
-        NaN where one is missing.
+        Scores; NaN where one is missing.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def arrange(
 def _check(
     participants: Sequence[str], factors: Mapping[str, Sequence[str]], row: NDArray[np.float64]
 ) -> None:
-    """Refuse columns that are not those of one table of scores."""
+    """Raise ValueError for columns that do not make one table of scores."""
     if not 1 <= len(factors) <= MOST_FACTORS:
         raise ValueError(f"{len(factors)} factors; one to {MOST_FACTORS} are needed")
     columns = {"participants": participants, **{f"factor {n!r}": c for n, c in factors.items()}}
@@ -135,7 +135,7 @@ def _too_few(
     dropped: tuple[tuple[str, tuple[Cell, ...]], ...],
     cells: list[Cell],
 ) -> str:
-    """Why there is nobody, or nobody else, to compare."""
+    """Reason why there is nobody, or nobody else, to compare."""
     who = f"one participant, '{complete[0]}'," if complete else "no participant"
     lacking = dict(dropped)
     nobody = [c for c in cells if not complete and all(c in gap for gap in lacking.values())]

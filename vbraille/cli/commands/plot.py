@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.pictures import FigureTable
 
-_LINES = 6  # of a page, unless told otherwise
+_LINES = 6  # lines of a page, unless told otherwise
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _new_name(kind: str) -> Path:
-    """Name of a picture that nobody has named: the first of its kind that is not there yet."""
+    """Name for a picture without a name: the first of its kind that does not exist yet."""
     names = (
         f"vbraille-{kind}{number}.png" for number in chain([""], map("-{}".format, numbers(2)))
     )
@@ -87,7 +87,7 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
 
 
 def _letter(arguments: argparse.Namespace) -> dict:
-    """Cells of the letter asked for, if one is."""
+    """Cells of the letter that was asked for; empty if none was."""
     if arguments.letter is None:
         return {}
     if not arguments.letter.strip():

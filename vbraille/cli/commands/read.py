@@ -49,8 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
-    parse_hand(hand, seed)  # it is refused before anything is opened
-    # What the options ask for: a simulated device is just so, a real one is what it is.
+    parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
+    # Display that the options ask for: a simulated device is like it, a real device is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
     wanted = asked.on(asked.style.geometry, rate_hz)
     if arguments.model is not None or is_simulated(arguments.device):
@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 class _Reading:
-    """One reading: what happens between a device that is read on and a keyboard."""
+    """One reading, with its device and its keyboard."""
 
     def __init__(
         self, page: Page, device: OpenDevice, keyboard: Keyboard, suspension: Suspension
@@ -183,7 +183,7 @@ class _Reading:
 
 
 def _echo(chosen: str | None) -> Echo:
-    """What to say of each line; at a terminal, speech must not read the book aloud."""
+    """How much is said of each line; at a terminal, speech must not read the book aloud."""
     if chosen is not None:
         return Echo(chosen)
     return Echo.NONE if sys.stdout.isatty() else Echo.BOTH

@@ -120,11 +120,11 @@ class _Stretch(NamedTuple):
     Parameters
     ----------
     lines
-        One, or those of a page.
+        The line, or all lines of a page.
     x_mm : float64[n]
-        Along them.
+        Places along the lines.
     y_mm : float64[n] or None
-        Down the page; None of a carriage that goes along its line only.
+        Places down the page; None for a carriage that only goes along its line.
     """
 
     lines: list[Line]
@@ -133,7 +133,7 @@ class _Stretch(NamedTuple):
 
 
 def _lines_per_page(height_mm: float | None, pitch_mm: float) -> int:
-    """How many lines a carriage of so high a workspace comes to the middle of; 0 for one axis."""
+    """Number of lines whose middle a carriage of this workspace reaches; 0 for one axis."""
     if height_mm is None:
         return 0
     if not pitch_mm / 2 <= height_mm <= _MOST_HEIGHT_MM:
@@ -145,7 +145,7 @@ def _lines_per_page(height_mm: float | None, pitch_mm: float) -> int:
 
 
 def _walk(page: Page, hand: Hand | Recorded, rate_hz: float, pages: int) -> Iterator[_Stretch]:
-    """What is shown one after the other, with the way of the hand: lines, or pages of so many."""
+    """Stretches in order with the way of the hand: lines, or pages of ``pages`` lines."""
     if pages:
         return _walk_pages(page, hand, rate_hz, pages)
     return _walk_lines(page, hand, rate_hz)
@@ -170,7 +170,7 @@ def _walk_pages(
             y_mm = np.interp(at_s, motion.t_s, motion.y_mm)
         yield _Stretch(lines, x_mm, y_mm)
         if isinstance(hand, Recorded):
-            return  # it has recorded no more
+            return  # the hand has recorded no more
 
 
 def _walk_lines(page: Page, hand: Hand | Recorded, rate_hz: float) -> Iterator[_Stretch]:
@@ -200,7 +200,7 @@ def _fastest(x_mm: NDArray[np.float64], rate_hz: float) -> float:
 
 
 class _Estimate:
-    """What a long recording will take: said once, when a small part of it is done."""
+    """Estimate of what a long recording will take, said once when a small part is done."""
 
     def __init__(self, rate_hz: float) -> None:
         self._rate_hz = rate_hz
@@ -230,7 +230,7 @@ class _Estimate:
 
 
 class _Progress:
-    """How far it is: a bar at a terminal, or a line for every tenth."""
+    """Progress of the work: a bar at a terminal, or a line for every tenth."""
 
     def __init__(self, *, plain: bool) -> None:
         self._bar: tqdm | None = None

@@ -103,14 +103,14 @@ def _conduct(session: Session, answers: Answers) -> int:
 
 
 def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Conditions of a session that were given."""
+    """Conditions of a session that were given as options."""
     names = ("device", "hand", "answers", "sound")
     given = {name: getattr(arguments, name) for name in names}
     return {name: value for name, value in given.items() if value is not None}
 
 
 def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What a plan is drawn from, and what stands instead of the display's own tuning."""
+    """Seed of a plan, and the values in place of the display's own tuning."""
     return {name: getattr(arguments, name) for name in ("seed", "order", "texture", "contrast")}
 
 
@@ -203,7 +203,7 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
     Raises
     ------
     InputError
-        If it is, or nobody is there who could be asked.
+        If the participant is one of those, or nobody is there who could be asked.
     """
     found = nearly_same(room, participant)
     if found is None:
@@ -225,7 +225,7 @@ def _ask_who(room: Path, participant: str, answers: Answers) -> None:
 
 
 def _ask_fields(protocol: Protocol, given: dict[str, str], typed: Typed) -> dict[str, str]:
-    """What the protocol asks about the participant: as given, else typed."""
+    """Answers to what the protocol asks about the participant: as given, otherwise as typed."""
     return {
         field.name: given[field.name] if field.name in given else _ask(field, typed)
         for field in protocol.fields

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print a line a table; of a language also which is taken if none is named."""
+    """Print a line for each table; for a language also the table that is taken by default."""
     if arguments.language is None:
         for table in list_tables():
             print(_describe(table))

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Pairs(argparse.Action):
-    """Options NAME=VALUE, gathered."""
+    """Options NAME=VALUE, gathered in a dictionary."""
 
     def __call__(
         self,
@@ -20,7 +20,7 @@ class Pairs(argparse.Action):
         values: str | Sequence[object] | None,
         _option: str | None = None,
     ) -> None:
-        """Add one to those before."""
+        """Add a pair to those before."""
         name, equals, value = str(values).partition("=")
         if not equals or not name:
             raise argparse.ArgumentError(self, f"{values!r} is not NAME=VALUE")
@@ -47,7 +47,7 @@ def number(text: str) -> float:
 
 
 def checksum(text: str) -> str:
-    """A SHA-256, or so many of its first digits that no other has them."""
+    """A SHA-256, or enough of its first digits to tell it from others."""
     if not re.fullmatch(r"[0-9a-fA-F]{16,64}", text):
         raise argparse.ArgumentTypeError(
             f"{text!r} is no SHA-256; give its 64 digits, 0 to 9 and a to f, or the first 16"

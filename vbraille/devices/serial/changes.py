@@ -29,16 +29,16 @@ PLACING: Final = {
 
 
 def differences(was: Display, now: Display) -> tuple[Difference, ...]:
-    """What of a device is another than a page and a loop were made for; nothing of its name.
+    """Fields of a device in which it differs from what a page and a loop were made for.
 
-    A count is no part of it: places are in millimetres.
+    The name does not count, and neither does the resolution: places are in millimetres.
     """
     both = ((name, getattr(was, name), getattr(now, name)) for name in _OF_DISPLAY)
     return tuple(Difference(name, old, new) for name, old, new in both if old != new)
 
 
 def changes(was: Info, now: Info) -> Changed | None:
-    """What of a device that can be read on is otherwise than in the conversation before."""
+    """What has changed in a device that can be read on, since the conversation before."""
     what = [
         Difference("name", was.name, now.name),
         Difference("counts_per_m", was.counts_per_m, now.counts_per_m),
@@ -60,5 +60,5 @@ def changes(was: Info, now: Info) -> Changed | None:
 
 
 def _others(was: bytes, now: bytes) -> int:
-    """How many actuators have another value."""
+    """Number of actuators that have another value."""
     return sum(old != new for old, new in zip(was, now, strict=True))

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
 
-# Frames without anything to feel for so long, and there is nothing to show: no gap between words.
+# If frames have had nothing to feel for so long, nothing is shown: gaps between words are shorter.
 IDLE_MS: Final = 5000
 _NS_PER_MS: Final = 1_000_000
 _REST: Final = encode(Rest())
@@ -52,11 +52,11 @@ class Conversation(Listening):
     Parameters
     ----------
     now_ns
-        Time of a clock that does not go back.
+        Time by a clock that does not go back.
     rate_hz
-        FRAMEs a second that are going to be wanted; None is as many as the device is made for.
+        FRAMEs a second that will be wanted; None for as many as the device is made for.
 
-    What it knows, and may be looked at, is told by `Listening`.
+    Its attributes, which may be looked at, are described in `Listening`.
     """
 
     def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
@@ -66,28 +66,28 @@ class Conversation(Listening):
 
     @property
     def steady(self) -> bool:
-        """Whether FRAMEs hold the actuators, nothing but them is due, and all is well."""
+        """Whether FRAMEs hold the actuators, nothing else is due, and all is well."""
         return self.stage is Stage.LIVE and not (self.delivery.rest_due or self.drop_unsent)
 
     def take_events(self, now_ns: int) -> list[Event]:
-        """What happened since the last call, each kind once a second."""
+        """Events since the last call, each kind once a second at most."""
         return list(self._notices.take(now_ns))
 
     def lose(self, now_ns: int) -> None:
-        """Take it that the port is gone."""
+        """Note that the port is gone."""
         if self._go(Cause.UNPLUGGED):
             self._tell_away(Unplugged(), now_ns)
 
     def find(self, now_ns: int) -> None:
-        """The port is back; nothing of what was said before goes on."""
+        """Note that the port is back; nothing that was said before goes on."""
         if self._go(Cause.PLUGGED_IN):
             self.decoder.feed(DELIMITER)  # what was begun will not be ended
             self._hello_ns = now_ns
 
     def mind_stall(self, now_ns: int) -> bool:
-        """Whether the host was stopped for so long that the device may rest; it does then.
+        """Have the device rest if the host was stopped for so long that it may rest; tell whether.
 
-        What waits to be read is old then, and must all be read at once.
+        What waits to be read is old in that case, and must all be read at once.
         """
         if self.stage not in TALKING or not self.delivery.stalled(now_ns):
             return False
@@ -104,9 +104,9 @@ class Conversation(Listening):
         Parameters
         ----------
         frame : float64[rows, columns]
-            Where the actuators are to be, in [0, 1].
+            Deflections that the actuators are to have, in [0, 1].
         now_ns
-            When.
+            Time of the call, by the same clock.
         """
         self._now_ns = now_ns
         self.frames.acknowledged_ns = self.frames.sent_ns = None
@@ -135,29 +135,29 @@ class Conversation(Listening):
         self._frame_due = True
 
     def rest(self, now_ns: int) -> None:
-        """Have the device told to rest; it ramps there, where a FRAME of rest would be a jump."""
+        """Have the device told to rest: it ramps there, where a FRAME of rest would be a jump."""
         self._now_ns = now_ns
         if self._go(Cause.REST_WANTED):
             self.delivery.stop(tell=True)
 
     def set_zero(self, now_ns: int) -> None:
-        """Take it that the carriage is at the left stop now: the reader says so."""
+        """Take the carriage's place for the left stop: the reader says that it is there."""
         self.place.set_zero()
         self._mind_placing(now_ns)
 
     def close(self, now_ns: int) -> None:
-        """Take leave: the device is told to rest, if it is there to be told."""
+        """End the conversation: the device is told to rest, if it is there to be told."""
         self._now_ns = now_ns
         there = self.stage not in UNTOLD
         if self._go(Cause.CLOSED):
             self._leaving, self._frame_due = there, False
 
-    # What goes out.
+    # Messages that go out.
 
     def due(self) -> bytes | None:
-        """The message that is to go out next, whole; None if none is due.
+        """Next message that is to go out, whole; None if none is due.
 
-        What became of it is told by `sent` or `refused` before the next call.
+        Call `sent` or `refused` before the next call, to tell what became of the message.
         """
         if self._frame_due:
             self._offer = _Wish.FRAME
@@ -175,7 +175,7 @@ class Conversation(Listening):
         return self.info is not None and self.delivery.rest_due
 
     def sent(self) -> None:
-        """Take it that the message given last goes out now."""
+        """Note that the message given last goes out now."""
         now_ns, frames = self._now_ns, self.frames
         if self._offer is _Wish.FRAME:
             self._frame_due = False
@@ -193,9 +193,9 @@ class Conversation(Listening):
             self._go(Cause.ASKED)
 
     def refused(self) -> bool:
-        """There was no room for the message given last; whether it was a FRAME, which is lost.
+        """Note that there was no room for the message given last; tell whether a FRAME was lost.
 
-        Any other is due again with the next time that something comes in.
+        Any other message is due again when something comes in the next time.
         """
         self._frame_due = False
         return self._offer is _Wish.FRAME

@@ -24,49 +24,49 @@ _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
 
 
 class Delivery:
-    """What is known of FRAMEs and rest in one conversation, which begins at rest.
+    """Knowledge of FRAMEs and rest in one conversation, which begins at rest.
 
     Parameters
     ----------
     rate_hz
-        How often the device sends STATE: its ramp ends with a period.
+        STATEs a second that the device sends; its ramp ends with a period.
 
     Attributes
     ----------
     rest_due : bool
         Whether the device must be told to rest: it may not know yet, or not have heard.
     sent_ns : int or None
-        When the last FRAME was sent; None if none was since the device was to rest.
+        Time at which the last FRAME was sent; None if none was since the device was to rest.
     """
 
     def __init__(self, rate_hz: int) -> None:
         self.rest_due = False
         self.sent_ns: int | None = None
-        self._sent = 0  # sequence of that FRAME
+        self._sent = 0  # sequence of the FRAME sent last
         self._ramp_us = RAMP_MS * 1000 + -(-_US_PER_S // rate_hz)
         self._resting_us: int | None = None  # since when it says so, by its own clock
         self._resting_sequence = 0
-        self._held_us: int | None = None  # since when a FRAME holds it that should not, likewise
+        self._held_us: int | None = None  # since when a FRAME wrongly holds it, likewise
         self._told_ns: int | None = None
-        self._offered: int | None = None  # first FRAME of rest sent since
+        self._offered: int | None = None  # sequence of the first FRAME of rest sent since
 
     def sent(self, sequence: int, now_ns: int, *, holding: bool) -> None:
-        """A FRAME was sent: one of rest, if FRAMEs are not holding the actuators."""
+        """Note that a FRAME was sent: one of rest, if FRAMEs are not holding the actuators."""
         if not holding and self._offered is None:
             self._offered = sequence
         self._sent, self.sent_ns = sequence, now_ns
 
     def told(self, now_ns: int) -> None:
-        """Take it that REST was sent."""
+        """Note that REST was sent."""
         self.rest_due, self._told_ns = False, now_ns
 
     def stop(self, *, tell: bool) -> None:
-        """Begin to wait for the device to be at rest; if it should not be, it is told so."""
+        """Begin to wait until the device is at rest; with `tell`, have it told to rest."""
         self.rest_due = tell
         self._resting_us = self._held_us = self._told_ns = self._offered = self.sent_ns = None
 
     def give_time(self, now_ns: int) -> None:
-        """Have the device's watchdog see to the rest before the device is told to."""
+        """Leave going to rest to the device's watchdog for a while, before telling the device."""
         self._told_ns = now_ns + WATCHDOG_MS * _NS_PER_MS
 
     def stalled(self, now_ns: int) -> bool:
@@ -74,7 +74,7 @@ class Delivery:
         return self.sent_ns is not None and now_ns - self.sent_ns >= _STALL_NS
 
     def judge(self, state: State, now_ns: int) -> Cause:
-        """What a STATE says of a device that is not known to be held by FRAMEs."""
+        """Cause that a STATE gives if the device is not known to be held by FRAMEs."""
         if state.resting:
             return self._rest_on(state)
         if self._has_taken(state.frame_sequence):
@@ -91,13 +91,13 @@ class Delivery:
         return Cause.RESTED if rested_us >= self._ramp_us else Cause.RAMPS
 
     def _has_taken(self, sequence: int) -> bool:
-        """Whether it is a FRAME of rest, sent since it is at rest, that holds it."""
+        """Whether the FRAME that holds the device is one of rest, sent since it went to rest."""
         if self._offered is None:
             return False
         return (sequence - self._offered) & _U16 <= (self._sent - self._offered) & _U16
 
     def _mind_held(self, time_us: int, now_ns: int) -> Cause:
-        """A FRAME holds it: REST is under way, or was lost, or an old FRAME came after it."""
+        """Cause if a FRAME holds it: REST is under way or lost, or an old FRAME came after it."""
         self._resting_us = None
         if self._held_us is None:
             self._held_us = time_us
@@ -108,22 +108,22 @@ class Delivery:
 
 
 class Trips:
-    """How often a device's watchdog tripped, by its reports and its STATEs, each trip once.
+    """Count of a watchdog's trips, by its reports and by STATEs, each trip once.
 
     Attributes
     ----------
     count : int
-        Since its first WATCHDOG.
+        Number of trips since the first WATCHDOG.
     disbelieved : int
-        Reports that tell of more trips than there was time for.
+        Number of reports that tell of more trips than there was time for.
     """
 
     def __init__(self) -> None:
         self.count = self.disbelieved = 0
         self._reported_ns = 0
         self._reported: int | None = None
-        self._counted = False  # the trip that STATEs tell of
-        self._unreported = 0  # trips that were counted by STATEs alone
+        self._counted = False  # whether the trip that STATEs tell of was counted
+        self._unreported = 0  # trips that only STATEs have told of
 
     @property
     def tripped(self) -> bool:
@@ -131,12 +131,12 @@ class Trips:
         return self._counted
 
     def restart(self) -> None:
-        """Take the next report for the first one: a conversation begins."""
+        """Take the next report for the first one, since a conversation begins."""
         self._reported_ns, self._reported = 0, None
         self._counted, self._unreported = False, 0
 
     def take_report(self, watchdog: Watchdog, now_ns: int) -> bool:
-        """Take a report; whether it tells of trips that can be believed."""
+        """Take a report; tell whether it has new trips that can be believed."""
         tripped = 0 if self._reported is None else (watchdog.trips - self._reported) & _U32
         # A trip takes a frame, and then its time without one; a device's clock may go a bit fast.
         elapsed_ms = (now_ns - self._reported_ns) // _NS_PER_MS
@@ -153,7 +153,7 @@ class Trips:
         return True
 
     def take_state(self, *, tripped: bool) -> None:
-        """Count a trip that a STATE tells of, whose report was lost."""
+        """Note whether a STATE tells of a trip; count the trip if its report was lost."""
         if tripped and not self._counted:
             self.count += 1
             self._unreported += 1

@@ -19,31 +19,31 @@ _NS_PER_S = 1e9
 
 
 class Drive:
-    """What the actuators are told; the formula of the protocol's page, section Levels.
+    """Levels for the actuators, by the formula in section Levels of the protocol's page.
 
     Parameters
     ----------
     info
-        The INFO that began the conversation.
+        INFO that began the conversation.
     now_ns
-        When: the actuators are at rest.
+        Present time, at which the actuators are at rest.
     rate_hz
-        FRAMEs a second that the host is to send.
+        FRAMEs a second that the host will send.
 
     Attributes
     ----------
     last, wanted : float64[rows, columns]
-        Deflections of the FRAME that was sent last, and of the one made last.
+        Deflections of the FRAME that was sent last, and of the FRAME made last.
     last_ns : int
-        When the last one was sent, or the actuators were at rest.
+        Time when a FRAME was sent last, or when the actuators were last at rest.
     limited : bool
         Whether the device limits how fast its actuators may be moved.
     slew_per_ns, period_ns : float
-        The most swings a nanosecond that they may be moved by, and the time between FRAMEs.
+        Largest number of swings a nanosecond that actuators may make, and the time between FRAMEs.
     swing, rest_level : float64[rows, columns], int64[rows, columns]
-        Levels from rest to full swing, and at rest.
+        Number of levels from rest to full swing, and the level at rest.
     top_level, bits : int
-        The highest level, and how many bits a level takes.
+        Highest level, and the number of bits in a level.
     packed : uint8[bytes]
         Levels of the FRAME made last, as they go over the line.
     """
@@ -70,15 +70,15 @@ class Drive:
         self.fill(np.zeros(shape), now_ns)
 
     def fill(self, deflections: NDArray[np.float64], now_ns: int) -> bool:
-        """Make a FRAME on the way to deflections; whether there is anything to feel in it.
+        """Make a FRAME on the way to deflections; tell whether there is anything to feel in it.
 
         Parameters
         ----------
         deflections : float64[rows, columns]
-            Where the actuators are to be, in [0, 1].
+            Deflections that the actuators are to have, in [0, 1].
         now_ns
-            When; the slew limit is by the time since the frame before. After a longer time than
-            a period it is by a period: an actuator that stood still must not make up for it.
+            Present time. The slew limit is by the time since the frame before, but by one period at
+            most: an actuator that stood still must not make up for it.
         """
         step = math.inf
         if self.limited:
@@ -96,15 +96,15 @@ class Drive:
         )
 
     def frame(self, sequence: int) -> bytes:
-        """FRAME made last, as it goes over the line, with its sequence."""
+        """FRAME made last, with a sequence, as it goes over the line."""
         return enframe(frame_head(sequence) + self.packed.tobytes())
 
     def sent(self, now_ns: int) -> None:
-        """The FRAME made last has gone out: the actuators go there."""
+        """Note that the FRAME made last has gone out, so that the actuators go there."""
         self.last, self.wanted = self.wanted, self.last
         self.last_ns = now_ns
 
     def rested(self, now_ns: int) -> None:
-        """Take it that the actuators go to rest by themselves."""
+        """Note that the actuators go to rest by themselves."""
         self.last.fill(0.0)
         self.last_ns = now_ns

@@ -19,10 +19,10 @@ HELLO: Final = DELIMITER + encode(Hello())
 
 
 def misfit(info: Info) -> str:
-    """Why a device cannot be read on, with the fields and their values; empty if it can."""
+    """Reason why a device cannot be read on, with fields and values; empty if it can."""
     if info.encoder is Encoder.INCREMENTAL:
         return ""
-    # Where the carriage is when the conversation begins is told by one count alone.
+    # One count alone tells where the carriage is when the conversation begins.
     counts, told = info.travel_um * info.counts_per_m // 1_000_000, 1 << (info.count_bits - 1)
     if counts < told:
         return ""
@@ -34,7 +34,7 @@ def misfit(info: Info) -> str:
 
 
 def info_of(info: Info) -> Display:
-    """What a device says of itself, in mm."""
+    """Display of a device, in mm, from what it says of itself."""
     return Display(
         name=info.name,
         rows=info.rows,
@@ -57,7 +57,7 @@ _ENCODERS: Final = {
 
 
 def particulars_of(info: Info) -> Particulars:
-    """What a device says of itself that reading does not ask for."""
+    """Particulars of a device, which reading does not ask for, from what it says of itself."""
 
     def where(chosen: Iterable[bool]) -> tuple[tuple[int, int], ...]:
         return tuple(divmod(at, info.columns) for at, is_one in enumerate(chosen) if is_one)

@@ -23,24 +23,24 @@ if TYPE_CHECKING:
     from vbraille.devices.serial.drive import Drive
     from vbraille.display import Display
 
-# What comes in some ticks is some hundred bytes; there is room for a stall.
+# Some ticks bring some hundred bytes; this leaves room for a stall.
 RECEIVED_BYTES: Final = 8192
 _NS_PER_MS: Final = 1_000_000
 
 
 class Lending:
-    """What is lent, in memory that stays the same from one time to the next.
+    """What a conversation lends, in memory that is the same each time.
 
     Attributes
     ----------
     talk : `vbraille.devices.serial.steady.CONVERSATION`[1]
-        The conversation's numbers.
+        Numbers of the conversation.
     received : uint8[RECEIVED_BYTES]
-        What was received and not consumed, at its beginning.
+        Bytes that were received and not consumed, at the beginning of the array.
     work, out : uint8[bytes]
-        Room to work in, and for a FRAME as it goes over the line.
+        Room to work in, and room for a FRAME as it goes over the line.
     actuators : Actuators
-        What FRAMEs are made with; there once something was lent.
+        How FRAMEs are made; set once something was lent.
     """
 
     actuators: Actuators
@@ -54,13 +54,13 @@ class Lending:
         self._body = self._packed = self.out
 
     def lend(self, conversation: Conversation) -> int | None:
-        """Take a conversation's numbers.
+        """Take over the numbers of a conversation.
 
         Returns
         -------
         int or None
-            Bytes that `received` begins with, for a frame of which a part has come; None if the
-            conversation is not one for compiled code now.
+            Number of bytes that `received` begins with, if a part of a frame has come; None if the
+            conversation is in a state that compiled code does not handle.
         """
         states, frames, place, time = (
             conversation.states,
@@ -103,7 +103,7 @@ class Lending:
         return len(begun)
 
     def give_back(self, conversation: Conversation) -> None:
-        """Have the conversation know what was heard and said meanwhile, but for bytes left over."""
+        """Let the conversation know what was heard and said meanwhile, except bytes left over."""
         talk, drive = self.talk[0], conversation.drive
         states, frames, time = conversation.states, conversation.frames, conversation.time
         states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])
@@ -120,7 +120,7 @@ class Lending:
         drive.last_ns = int(talk["moved_ns"])
 
     def _fit(self, drive: Drive) -> None:
-        """Have room for the FRAMEs of a conversation."""
+        """Make room for the FRAMEs of a conversation."""
         head = np.frombuffer(frame_head(0), np.uint8)
         body_bytes = head.size + drive.packed.size
         self._body = np.zeros(body_bytes + CRC_BYTES, np.uint8)
@@ -131,9 +131,9 @@ class Lending:
 
 
 def example(display: Display) -> Lent:
-    """What a device of no consequence would lend: for compiled code to be loaded before a real one.
+    """Example of what a device lends, to load compiled code with before a real device is open.
 
-    Nothing may be done with it: its descriptor is none.
+    Nothing can be done with it, since its descriptor is that of no line.
     """
     shape = display.shape
     zeros = np.zeros(shape)

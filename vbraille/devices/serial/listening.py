@@ -58,18 +58,18 @@ _BUTTONS: Final = 8
 
 @dataclass(slots=True)
 class States:
-    """What is known of the STATEs that came.
+    """Knowledge of the STATEs that came.
 
     Parameters
     ----------
     heard_ns
-        When the last one came.
+        Time at which the last STATE came.
     sequence
         Sequence of the last STATE; None before the first of a conversation.
     missed
-        How many never came.
+        Number of STATEs that never came.
     buttons
-        The buttons as the last one told them, a bit each; None before the first of all.
+        Bits of the buttons in the last STATE; None before the first of all.
     """
 
     heard_ns: int
@@ -80,18 +80,19 @@ class States:
 
 @dataclass(slots=True)
 class Frames:
-    """What is known of the FRAMEs that were sent.
+    """Knowledge of the FRAMEs that were sent.
 
     Parameters
     ----------
     felt_ns
-        When one last had anything to feel.
+        Time at which a FRAME last had anything to feel.
     sequence
         Sequence of the last FRAME.
     sent_ns
-        When the last one was sent, if it is not acknowledged yet.
+        Time at which the last FRAME was sent, if it is not acknowledged yet.
     acknowledged_ns
-        How long after the last one was wanted the device said that it has it; None if it did not.
+        How long after the last FRAME was wanted the device said that it has it; None if it did
+        not.
     """
 
     felt_ns: int
@@ -101,37 +102,37 @@ class Frames:
 
 
 class Listening:
-    """The half of a conversation that hears: a base of `Conversation`, and nothing by itself.
+    """Half of a conversation that hears: a base of `Conversation`, not to be used by itself.
 
     Parameters
     ----------
     now_ns
-        Time of a clock that does not go back.
+        Time by a clock that does not go back.
     rate_hz
-        FRAMEs a second that are going to be wanted; None is as many as the device is made for.
+        FRAMEs a second that will be wanted; None for as many as the device is made for.
 
     Attributes
     ----------
     stage : Stage
-        Where it is.
+        Stage of the conversation.
     display, info, particulars : Display, Info, Particulars, or None
         What the device said of itself first, and what it says in this conversation; None before.
     failure : Fault, Stranger or None
         Why the device cannot go on, or why none was found at the start.
     heard, speaks : bool
-        Whether any bytes have come, and any message of a device's, since the start.
+        Whether any bytes have come since the start, and any message from a device.
     drop_unsent : bool
-        Whether what lies about unsent must be dropped now; whoever drops it sets this to False.
+        Whether bytes that wait to be sent must be dropped now; whoever drops them sets it to False.
     taking : bool
-        Whether FRAMEs hold the actuators, or would if there were anything to feel. A device that
-        is away is silent, which says enough.
+        Whether FRAMEs hold the actuators, or would if there were anything to feel. It is True for
+        a device that is away: that the device is silent says enough.
     rested : int
         How often the actuators went to rest otherwise than by FRAMEs, so that all must fade in.
     reconnections : int
         How often the device was greeted again.
     decoder, states, frames, trips, delivery, place, time, drive
-        What is known of the bytes that come, the STATEs, the FRAMEs, the watchdog, rest, the
-        carriage, the device's clock, and the actuators. `drive` is there once `info` is.
+        What is known of received bytes, STATEs, FRAMEs, the watchdog, rest, the carriage, the
+        device's clock, and the actuators. `drive` is set once `info` is.
     """
 
     drive: Drive
@@ -156,11 +157,11 @@ class Listening:
         self._rate_hz = rate_hz
         self._notices = Notices()
         self._placing = Placing.DONE
-        self._away = False  # since an event said so, until another says that it is back
+        self._away = False  # from an event that says so to one that it is back
         self._begun_ns = self._now_ns = self._hello_ns = now_ns
 
     def hear(self, chunk: bytes, now_ns: int) -> Pose | None:
-        """Take what has come by now, perhaps nothing; the newest place that it tells."""
+        """Take the bytes that have come, perhaps none; give the newest place that they tell."""
         self._now_ns = now_ns
         pose = None
         if chunk:
@@ -179,7 +180,7 @@ class Listening:
         return pose
 
     def _go(self, cause: Cause) -> bool:
-        """Go where a cause leads; whether it leads anywhere from here."""
+        """Go to the stage that a cause leads to; tell whether it leads to one from here."""
         stage = TRANSITIONS[self.stage].get(cause)
         if stage is None:
             return False
@@ -191,11 +192,11 @@ class Listening:
 
     @property
     def _name(self) -> str:
-        """The name of the device that reading began on; empty before."""
+        """Name of the device that reading began on; empty before."""
         return self.display.name if self.display is not None else ""
 
     def _take(self, message: Heard, now_ns: int) -> None:
-        """Take a message that is no STATE."""
+        """Take a message other than STATE."""
         self.speaks = self.speaks or isinstance(message, Watchdog | Error)
         if isinstance(message, Info):
             if self.stage is Stage.ASKED:
@@ -203,7 +204,7 @@ class Listening:
         elif isinstance(message, OtherVersion):
             self._turn_away(Stranger(self._name, version=message.version), now_ns)
         elif self.stage not in TALKING:
-            pass  # of an earlier conversation
+            pass  # it belongs to an earlier conversation
         elif isinstance(message, Watchdog):
             if self.trips.take_report(message, now_ns) and self.stage is Stage.LIVE:
                 self._fall(Cause.FELL, now_ns)
@@ -222,7 +223,7 @@ class Listening:
         if self._away:
             self._away = False
             self._tell(Back(), now_ns)
-        if state.faulty:  # its ERROR, which says why, was lost
+        if state.faulty:  # the ERROR that says why was lost
             self._fail(Fault(self._name), now_ns)
             return None
         if states.sequence is not None:
@@ -251,7 +252,7 @@ class Listening:
         return None if x_mm is None else Pose(time_ns, x_mm)
 
     def _mind_buttons(self, buttons: int, now_ns: int) -> None:
-        """Tell which buttons are otherwise than before; none by the first STATE of all."""
+        """Tell which buttons have changed; the first STATE of all changes none."""
         before, self.states.buttons = self.states.buttons, buttons
         changed = 0 if before is None else before ^ buttons
         for bit in range(_BUTTONS):
@@ -298,7 +299,7 @@ class Listening:
         self._rest_frame = np.zeros((info.rows, info.columns))
 
     def _turn_away(self, stranger: Stranger, now_ns: int) -> None:
-        """Say nothing more to what is there now, which is not what reading began on."""
+        """Say nothing more to a device that is not the one that reading began on."""
         if not self._go(Cause.TURNED_AWAY):
             return
         self._away = True
@@ -313,7 +314,7 @@ class Listening:
             self._tell(fault, now_ns)
 
     def _pass(self, now_ns: int) -> None:
-        """Count how long nothing has come, and do what is due then."""
+        """Check how long nothing has come, and do what is due then."""
         if self.display is None:
             if now_ns - self._begun_ns >= ANSWER_MS * _NS_PER_MS:
                 self._go(Cause.NO_ANSWER)
@@ -328,7 +329,7 @@ class Listening:
             self._hello_ns = now_ns
 
     def _fall(self, cause: Cause, now_ns: int) -> None:
-        """Take it that the device went to rest, or may have."""
+        """Note that the device went to rest, or may have."""
         self._go(cause)
         self._stop(tell=False)
         self.frames.felt_ns = now_ns
@@ -336,7 +337,7 @@ class Listening:
         self._tell(WatchdogTripped(self.trips.count), now_ns)
 
     def _stop(self, *, tell: bool) -> None:
-        """Have no FRAME sent until the device is at rest, and nothing that lies about unsent."""
+        """Send no FRAME until the device is at rest, and drop what waits to be sent."""
         self.delivery.stop(tell=tell)
         self.drop_unsent = True
 

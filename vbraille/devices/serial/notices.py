@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
 
 EVERY_NS: Final = 1_000_000_000
-# Kinds that are told apart at a time; what has more to say than that says it in one voice.
+# So many kinds are told apart at a time; further ones share a kind.
 _MOST_KINDS = 16
 _OTHERS = "others"
-# Events that wait to be taken; a button that bounces for ever must not fill the memory.
+# So many events wait to be taken; a button that bounces for ever must not fill the memory.
 _MOST_DUE = 256
 
 
 @dataclass(slots=True)
 class _NoticeKind:
-    """What is known of one kind of event: when it was told last, and what came since."""
+    """State of one kind of event: when it was told last, and what came since."""
 
     told_ns: int
     event: Event
@@ -30,8 +30,8 @@ class _NoticeKind:
 class Notices:
     """Events for the reader, who must not have to hear the same a thousand times a second.
 
-    The first of a kind is told at once. Those that follow within the second are counted, and
-    when it is over the last of them is told, with how many there were.
+    The first event of a kind is told at once. Those that follow within a second are counted; when
+    the second is over, the last of them is told with their number.
     """
 
     def __init__(self) -> None:
@@ -40,17 +40,17 @@ class Notices:
         self._holding = False
 
     def add(self, event: Event, now_ns: int, kind: Hashable = None) -> None:
-        """Have something to tell.
+        """Add an event that is to be told.
 
         Parameters
         ----------
         event
-            What.
+            The event.
         now_ns
-            Time of a clock that does not go back.
+            Time by a clock that does not go back.
         kind
-            Which events are throttled together; the event's own kind if this is None. An event
-            that has none is told as often as it happens.
+            Key of events that are throttled together; None for the event's own kind. An event
+            without a kind is told as often as it happens.
         """
         kind = kind or event.kind
         if kind is None:
@@ -64,14 +64,14 @@ class Notices:
             self._kinds[kind] = _NoticeKind(now_ns, event)
             self._tell(event)
             return
-        # What was held last is told last: of "silent" and "back" the later one is true.
+        # The event held last is told last: of "silent" and "back" the later one is true.
         self._kinds[kind] = self._kinds.pop(kind)
         known.event = event
         known.held += 1
         self._holding = True
 
     def take(self, now_ns: int) -> Sequence[Event]:
-        """What is to be told by now, in order; it is not told again."""
+        """Events that are to be told by now, in order; each is given once."""
         if self._holding:
             self._release(now_ns)
         due, self._due = self._due, []
@@ -82,7 +82,7 @@ class Notices:
             self._due.append(event)
 
     def _forget(self, now_ns: int) -> None:
-        """Forget kinds that may be told at once again."""
+        """Forget kinds of which the next event may be told at once."""
         self._kinds = {
             name: kind
             for name, kind in self._kinds.items()
@@ -90,7 +90,7 @@ class Notices:
         }
 
     def _release(self, now_ns: int) -> None:
-        """Let go of what was held for a second."""
+        """Release events that were held for a second."""
         self._holding = False
         for kind in self._kinds.values():
             if not kind.held:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Info
     from vbraille.display import Display
 
-# A start bit and a stop bit with each byte.
+# Each byte has a start bit and a stop bit.
 _BITS_PER_BYTE = 10
 _FRAME_HEAD_BYTES = 3
 _LISTEN_S = 0.005
@@ -46,20 +46,20 @@ def open_serial(
     Parameters
     ----------
     address
-        ``PATH[?baud=N]``, or a URL of pyserial's.
+        ``PATH[?baud=N]``, or a URL that pyserial knows.
     wanted
-        What the page was laid out for; None if any device will do.
+        Display that the page was laid out for; None if any device will do.
     now_ns, pause
-        The host's clock, and how to wait for so many seconds.
+        Clock of the host, and function that waits for a number of seconds.
     look_s
-        How often a port that is gone is looked for.
+        Time between attempts to find a port that is gone, in seconds.
 
     Raises
     ------
     InputError
         If there is no such port, or the baud rate is too slow.
     DeviceError
-        If it cannot be opened, or no device of our protocol answers.
+        If the port cannot be opened, or no device that speaks our protocol answers.
     """
     return begin(SerialPort(parse_address(address), look_s=look_s), wanted, now_ns, pause)
 
@@ -70,14 +70,14 @@ def begin(
     now_ns: Callable[[], int],
     pause: Callable[[float], None],
 ) -> SerialDevice:
-    """Begin to talk with what answers at a port, which is closed if that fails.
+    """Begin to talk with the device at a port; if that fails, close the port.
 
     Raises
     ------
     InputError
         If the baud rate is too slow.
     DeviceError
-        If no device of our protocol answers.
+        If no device that speaks our protocol answers.
     """
     rate_hz = None if wanted is None else wanted.rate_hz
     try:
@@ -87,7 +87,7 @@ def begin(
             _check_often_enough(info, rate_hz)
             _check_baud(port.address, info, rate_hz)
         return SerialDevice(port, conversation, now_ns, pause)
-    except BaseException:  # a signal's, too
+    except BaseException:  # a signal's exception, too
         port.close(pause)
         raise
 
@@ -103,7 +103,7 @@ def greet(
     Raises
     ------
     DeviceError
-        If none answers, or it cannot be read on.
+        If no device answers, or the device cannot be read on.
     """
     while conversation.info is None:
         send_due(port, conversation)
@@ -149,12 +149,12 @@ def _no_answer(conversation: Conversation, address: Address) -> DeviceError:
 
 
 def _check_often_enough(info: Info, rate_hz: float) -> None:
-    """See that frames come often enough for the device's watchdog.
+    """Check that frames come often enough for the device's watchdog.
 
     Raises
     ------
     InputError
-        If they do not.
+        If they come too rarely.
     """
     if rate_hz < LOWEST_RATE_HZ:
         raise InputError(
@@ -164,12 +164,12 @@ def _check_often_enough(info: Info, rate_hz: float) -> None:
 
 
 def _check_baud(address: Address, info: Info, rate_hz: float) -> None:
-    """See that the line carries so many frames a second.
+    """Check that the line carries a rate of frames.
 
     Raises
     ------
     InputError
-        If it does not, with the baud rate or the frame rate that would do.
+        If it does not; the message names the baud rate or the frame rate that would do.
     """
     if not address.limits:
         return

@@ -13,25 +13,25 @@ if TYPE_CHECKING:
 
 
 class Place:
-    """Place of a carriage in one conversation; the equations of the protocol's page.
+    """Place of a carriage in one conversation, by the equations of the protocol's page.
 
     Parameters
     ----------
     info
-        The INFO that began the conversation.
+        INFO that began the conversation.
 
     Attributes
     ----------
     placing : Placing
         What is waited for before the place is known.
     known : bool
-        Whether a STATE has told it.
+        Whether a STATE has told the place.
     count, zero : int or None
-        The count that does not wrap, and the one at the left stop; None before they are known.
+        Count without wraps, and the count at the left stop; None before they are known.
     bits : int
-        Width of the counter that is sent.
+        Number of bits in the counter that is sent.
     home_mm, mm_per_count : float
-        The place at the left stop, and how far a count is.
+        Place at the left stop, and length of a count.
     """
 
     def __init__(self, info: Info) -> None:
@@ -41,7 +41,7 @@ class Place:
         # At the left stop the whole array stands before the line.
         self.home_mm = -(info.columns - 1) * info.column_pitch_nm / 2e6
         self.mm_per_count = info.count_sign * 1000 / info.counts_per_m
-        self.count: int | None = None  # the one that does not wrap
+        self.count: int | None = None  # the count without wraps
         self.zero: int | None = None if self._encoder is Encoder.INCREMENTAL else self._stop
         self.known = False
         self.placing = {
@@ -70,25 +70,25 @@ class Place:
         return self.home_mm + self.mm_per_count * (self.count - self.zero)
 
     def set_zero(self) -> None:
-        """Take it that the carriage is at the left stop, where only the reader can tell."""
+        """Take the carriage's place for the left stop, where only the reader can tell."""
         if self._encoder is Encoder.INCREMENTAL and self.count is not None:
             self.zero = self.count
             self.known, self.placing = True, Placing.DONE
 
 
 class DeviceTime:
-    """A device's clock without its wraps; it goes on over a restart of the device.
+    """A device's clock without its wraps; it goes on when the device restarts.
 
     Attributes
     ----------
     us : int or None
-        The device's time without its wraps; None before the first of a conversation.
+        Time by the device's clock without wraps; None before the first time of a conversation.
     offset_ns : int
-        What is added to it.
+        Time that is added, so that the clock goes on.
     last_ns : int
-        The last time that was given.
+        Last time that was given.
     host_ns : int or None
-        When that was, by the host's clock; None before the first.
+        When that was, by the host's clock; None before the first time.
     """
 
     def __init__(self) -> None:
@@ -98,11 +98,11 @@ class DeviceTime:
         self.host_ns: int | None = None
 
     def restart(self) -> None:
-        """Take the device's next time for a fresh one: a conversation begins."""
+        """Take the device's next time for a fresh one, since a conversation begins."""
         self.us = None
 
     def ns(self, time_us: int, now_ns: int) -> int:
-        """Time of a STATE that came now; never before the one before."""
+        """Time of a STATE that came now; never earlier than the time before."""
         if self.us is None:
             self.us = time_us
             if self.host_ns is not None:

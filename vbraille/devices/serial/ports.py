@@ -29,20 +29,20 @@ if TYPE_CHECKING:
 
 BAUD: Final = 921_600
 _LOWEST_BAUD, _HIGHEST_BAUD = 300, 12_000_000
-# What a port that may be opened by its group only usually belongs to.
+# Group that owns a port where only a group may open it, in the usual case.
 _GROUP = "dialout"
 
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where a port is, and how it is to be opened.
+    """Address of a port, and how the port is to be opened.
 
     Parameters
     ----------
     url
-        A path, or a URL of pyserial's.
+        A path, or a URL that pyserial knows.
     baud
-        Symbols a second; None if it was not given.
+        Symbols a second; None if the rate was not given.
     """
 
     url: str
@@ -57,8 +57,8 @@ class Address:
     def limits(self) -> bool:
         """Whether the baud rate says how much the line carries.
 
-        It does on a UART. It has no meaning with USB CDC, sockets and
-        pseudo-terminals, unless somebody gives one.
+        On a UART it does. With USB CDC, sockets and pseudo-terminals it has no meaning unless
+        somebody gives one.
         """
         if self.baud is not None:
             return True
@@ -68,16 +68,16 @@ class Address:
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """By what a device on USB is known, wherever it is plugged in.
+    """What identifies a device on USB, wherever it is plugged in.
 
     Parameters
     ----------
     vendor, product
         Numbers of its make (VID and PID).
     serial_number
-        The number of this very device.
+        Serial number of this very device.
     interface
-        Which of the device's ports it is, if that has several; else empty.
+        Which of the device's ports it is, if the device has several; otherwise empty.
     """
 
     vendor: int
@@ -87,12 +87,12 @@ class Identity:
 
 
 def parse_address(text: str) -> Address:
-    """Take our own options off an address.
+    """Address of a text, with our own options taken off it.
 
     Raises
     ------
     InputError
-        If there is no port in it, or an option is unknown or out of range.
+        If the text names no port, or an option is unknown or out of range.
     """
     url, _, query = text.partition("?")
     if not url:
@@ -103,7 +103,7 @@ def parse_address(text: str) -> Address:
         if name == "baud":
             baud = _parse_baud(value)
         elif "://" in url:
-            others.append(option)  # pyserial's
+            others.append(option)  # an option for pyserial
         else:
             raise InputError(f"there is no option {name!r} of a serial port; there is baud")
     return Address(url + ("?" + "&".join(others) if others else ""), baud)
@@ -123,16 +123,16 @@ def open_serial_port(address: Address, url: str | None = None) -> serial.SerialB
     Parameters
     ----------
     address
-        How.
+        Address of the port, with its options.
     url
-        Where it is now, if elsewhere.
+        URL of the port if it has moved from its address.
 
     Raises
     ------
     InputError
         If there is no port.
     DeviceError
-        If it cannot be opened.
+        If the port cannot be opened.
     """
     url = url or address.url
     if not address.is_path:
@@ -151,7 +151,7 @@ def open_serial_port(address: Address, url: str | None = None) -> serial.SerialB
         if isinstance(port, serial.Serial):
             port.set_low_latency_mode(True)
     except (OSError, ValueError, NotImplementedError):
-        pass  # a driver without it, or a pseudo-terminal
+        pass  # the driver has no lock, or the port is a pseudo-terminal
     except BaseException:
         port.close()
         raise
@@ -159,7 +159,7 @@ def open_serial_port(address: Address, url: str | None = None) -> serial.SerialB
 
 
 def explain(fault: Exception, url: str) -> VbrailleError:
-    """Say in a sentence why a port could not be opened, and what to do."""
+    """Sentence on why a port could not be opened, and on what to do."""
     number = getattr(fault, "errno", None)
     if number in (errno.ENOENT, errno.ENXIO, errno.ENODEV, errno.ENOTDIR):
         return InputError(f"there is no port {url}; {_there_is()}")
@@ -185,7 +185,7 @@ def _there_is() -> str:
 
 
 def identify(address: Address, list_ports: ListPorts = list_ports.comports) -> Identity | None:
-    """Identity of what is at an address; None for all but paths to USB devices with a number."""
+    """Identity of the device at an address; None unless a path to a USB device with a number."""
     if not address.is_path:
         return None
     path = os.path.realpath(address.url)
@@ -195,10 +195,10 @@ def identify(address: Address, list_ports: ListPorts = list_ports.comports) -> I
 def find_again(
     address: Address, identity: Identity | None, list_ports: ListPorts = list_ports.comports
 ) -> str | None:
-    """Where to open a device that went away; None while it is away.
+    """URL at which to open a device that went away; None while it is away.
 
-    A device with an identity is looked for by it alone: another may be at its
-    old path. One without is expected where it was, or where the link points now.
+    A device with an identity is looked for by that alone, since another device may be at its
+    old path. A device without one is expected where it was, or where the link points now.
     """
     if identity is None:
         return address.url

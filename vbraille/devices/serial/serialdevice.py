@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.pose import Pose
 
-# Reads that empty a line: what a stopped host has not read is some kB at most.
+# Number of reads that empty a line: a stopped host has left some kB unread at most.
 _MOST_READS: Final = 64
 
 
 def send_due(port: SerialPort, conversation: Conversation) -> int:
-    """Send what is due, as far as there is room; how many FRAMEs had none."""
+    """Send messages that are due, as far as there is room; count the FRAMEs that had none."""
     if conversation.drop_unsent:
         port.drop_unsent()
         conversation.drop_unsent = False
@@ -53,7 +53,7 @@ class SerialDevice(Device):
     conversation
         The conversation with the device, which has answered.
     now_ns, pause
-        The host's clock, and how to wait for so many seconds.
+        Clock of the host, and function that waits for a number of seconds.
     """
 
     acknowledges = True
@@ -74,30 +74,30 @@ class SerialDevice(Device):
         self._losses = port.losses
         self._unsent = 0
         self._lending = Lending()
-        self._left_over = b""  # came while the conversation was lent
+        self._left_over = b""  # bytes that came while the conversation was lent
         self._copy()
 
     @property
     def display(self) -> Display:
-        """What the device said of itself first."""
+        """Display that the device described first."""
         return self._display
 
     def rest(self) -> None:
-        """Tell the device to rest; it ramps there, where a FRAME of rest would be a jump."""
+        """Tell the device to rest: it ramps there, where a FRAME of rest would be a jump."""
         self.conversation.rest(self._now_ns())
         self._send_due()
 
     def set_zero(self) -> None:
-        """Take it that the carriage is at the left stop now: the reader says so."""
+        """Take the carriage's place for the left stop: the reader says that it is there."""
         self.conversation.set_zero(self._now_ns())
         self._copy()
 
     def take_events(self) -> Sequence[Event]:
-        """What there is to tell since the last call, each kind once a second."""
+        """Events since the last call, each kind once a second at most."""
         return self.conversation.take_events(self._now_ns())
 
     def counts(self) -> Mapping[str, int]:
-        """What went wrong so far."""
+        """Counts of what went wrong so far, by name."""
         conversation = self.conversation
         return {
             "frames not sent": self._unsent + self.port.lost,
@@ -109,7 +109,7 @@ class SerialDevice(Device):
         }
 
     def read(self) -> Pose | None:
-        """Newest sample since the last call, or None; never waits.
+        """Newest sample since the last call, or None; this never waits.
 
         Raises
         ------
@@ -139,7 +139,7 @@ class SerialDevice(Device):
         return pose
 
     def lend(self) -> Lent | None:
-        """What the engine needs to do steady ticks by itself; None if the line is none for that."""
+        """What the engine needs to do steady ticks by itself; None if the line does not suit."""
         descriptor = self.port.bare_descriptor
         if descriptor is None or self._left_over:
             return None
@@ -158,7 +158,7 @@ class SerialDevice(Device):
         )
 
     def take_back(self, lent: Lent, received: int, unsent: int, torn: bytes) -> None:
-        """Go on with what was lent: `read` takes first what has come and was not taken."""
+        """Take back what was lent: `read` then begins with the bytes that were not taken."""
         self._lending.give_back(self.conversation)
         left_over = lent.received[:received].tobytes()
         if DELIMITER in left_over:
@@ -179,7 +179,7 @@ class SerialDevice(Device):
         self._copy()
 
     def _copy(self) -> None:
-        """Have the values that `Device` promises be those of the conversation."""
+        """Copy the values that `Device` promises from the conversation."""
         conversation = self.conversation
         self.rested = conversation.rested
         self.taking = conversation.taking

@@ -29,23 +29,23 @@ if TYPE_CHECKING:
     from vbraille.devices.serial.ports import Address
 
 _MOST_BYTES = 65_536
-# How long the threads of a handler wait, at most, before they look whether they are to end.
+# Longest time that the threads of a handler wait before they look whether they are to end.
 _PATIENCE_S = 0.1
 _JOIN_S = 1.0
 
 
 class SerialLine(Protocol):
-    """An open port; OSError if it is gone."""
+    """An open port; its methods raise OSError if the port is gone."""
 
     lost: int
     """Frames that were taken, and then did not go out."""
 
     def read(self) -> bytes:
-        """Give what has come; never waits."""
+        """Give the bytes that have come; this never waits."""
         ...
 
     def write(self, frame: bytes) -> bool:
-        """Send a frame whole, or not at all; whether it was taken. Never waits."""
+        """Send a frame whole, or not at all; tell whether it was taken. This never waits."""
         ...
 
     @property
@@ -54,19 +54,19 @@ class SerialLine(Protocol):
         ...
 
     def keep(self, rest: bytes) -> None:
-        """Send the rest of a frame, of which a part went out by the descriptor, before the next."""
+        """Keep the rest of a frame, of which a part went out by the descriptor, to send it next."""
         ...
 
     def drop_unsent(self) -> None:
-        """Take back what has not gone out yet; a frame of which a part has is ended by the next."""
+        """Drop what has not gone out yet; the next frame ends one of which a part has gone out."""
         ...
 
     def drained(self) -> bool:
-        """Whether all that was taken has gone out."""
+        """Whether all frames that were taken have gone out."""
         ...
 
     def close(self) -> None:
-        """Let the port go; it may wait."""
+        """Close the port; this may wait."""
         ...
 
 
@@ -78,10 +78,10 @@ class DescriptorLine:
     def __init__(self, port: serial.SerialBase, descriptor: int) -> None:
         self._port = port
         self._descriptor = descriptor
-        self._left = b""  # of a frame that was sent in part
+        self._left = b""  # rest of a frame that was sent in part
 
     def read(self) -> bytes:
-        """Give what has come, by one read."""
+        """Give the bytes that have come, by one read."""
         try:
             chunk = os.read(self._descriptor, _MOST_BYTES)
         except BlockingIOError:
@@ -91,7 +91,7 @@ class DescriptorLine:
         return chunk
 
     def write(self, frame: bytes) -> bool:
-        """Send by one write what is left of the frame before, and this one behind it."""
+        """Send, by one write, what is left of the frame before and then this frame."""
         left = len(self._left)
         chunk = self._left + frame if left else frame
         try:
@@ -101,7 +101,7 @@ class DescriptorLine:
         if written > left:
             self._left = chunk[written:]
             return True
-        # Not a byte of this one went out: later it would be late.
+        # Not a byte of this frame went out; later it would be late.
         self._left = self._left[written:]
         return False
 
@@ -111,11 +111,11 @@ class DescriptorLine:
         return None if self._left else self._descriptor
 
     def keep(self, rest: bytes) -> None:
-        """Send the rest of a frame before the next."""
+        """Keep the rest of a frame, to send it before the next."""
         self._left = rest
 
     def drop_unsent(self) -> None:
-        """Have the driver forget what it has not sent; a socket cannot, and sends it all."""
+        """Have the driver drop what it has not sent; a socket cannot do so, and sends it all."""
         with suppress(OSError, termios.error):
             termios.tcflush(self._descriptor, termios.TCOFLUSH)
             self._left = DELIMITER
@@ -130,7 +130,7 @@ class DescriptorLine:
         return not self._left and not queued[0]
 
     def close(self) -> None:
-        """Let the port go, and what it could not send: closing a terminal waits for that."""
+        """Close the port and drop what it could not send: closing a terminal waits for that."""
         # pyserial forgets to close a socket that the peer has shut down.
         socket = getattr(self._port, "_socket", None)
         with suppress(OSError, termios.error):
@@ -143,7 +143,7 @@ class DescriptorLine:
 
 
 class ThreadedLine:
-    """A handler without a descriptor, whose reads and writes may wait: a thread for each."""
+    """A handler without a descriptor, whose reads and writes may wait: each has a thread."""
 
     def __init__(self, port: serial.SerialBase) -> None:
         port.timeout = port.write_timeout = _PATIENCE_S
@@ -152,7 +152,7 @@ class ThreadedLine:
         self._ending = self._busy = self._torn = False
         self._fault: Exception | None = None
         self._come: deque[bytes] = deque()
-        # A letter box for one frame; the bell rings when there is one. Neither makes anybody wait.
+        # Box for one frame, and a bell that rings when there is one. Neither makes anybody wait.
         self._box: deque[bytes] = deque()
         self._bell: SimpleQueue[None] = SimpleQueue()
         self._threads = [
@@ -163,14 +163,14 @@ class ThreadedLine:
             thread.start()
 
     def read(self) -> bytes:
-        """Give what the thread has read."""
+        """Give the bytes that the thread has read."""
         if self._come:
             return b"".join(self._come.popleft() for _ in range(len(self._come)))
         self._check()
         return b""
 
     def write(self, frame: bytes) -> bool:
-        """Leave a frame for the thread, in the place of one that still lies there."""
+        """Leave a frame for the thread, in place of a frame that still lies there."""
         self._check()
         with suppress(IndexError):
             self._box.popleft()
@@ -186,17 +186,17 @@ class ThreadedLine:
         """Do nothing: no part of a frame goes out but by the thread."""
 
     def drop_unsent(self) -> None:
-        """Forget the frame that waits for the thread."""
+        """Drop the frame that waits for the thread."""
         with suppress(IndexError):
             self._box.popleft()
             self.lost += 1
 
     def drained(self) -> bool:
-        """Whether the thread has written what there was."""
+        """Whether the thread has written all frames."""
         return not self._box and not self._busy
 
     def close(self) -> None:
-        """End the threads, then let the handler go."""
+        """End the threads, then close the handler."""
         self._ending = True
         for thread in self._threads:
             thread.join(_JOIN_S)
@@ -211,7 +211,7 @@ class ThreadedLine:
         try:
             while not self._ending and self._fault is None:
                 work()
-        except Exception as fault:  # a handler raises what it likes once its line is gone
+        except Exception as fault:  # a handler may raise anything once its line is gone
             self._fault = fault
 
     def _receive(self) -> None:
@@ -229,7 +229,7 @@ class ThreadedLine:
         except (Empty, IndexError):
             pass
         except serial.SerialTimeoutException:
-            # Nobody knows how much of it went out: the next must end it to be whole itself.
+            # Nobody knows how much of it went out: the next frame must end it to be whole itself.
             self._torn = True
             self.lost += 1
         finally:
@@ -237,7 +237,7 @@ class ThreadedLine:
 
 
 def open_line(address: Address, url: str | None = None) -> SerialLine:
-    """Open a port as the line that suits it; raises what `open_serial_port` does."""
+    """Open a port as the line that suits it; this raises what `open_serial_port` raises."""
     port = open_serial_port(address, url)
     try:
         descriptor = _descriptor(port)
@@ -248,9 +248,9 @@ def open_line(address: Address, url: str | None = None) -> SerialLine:
 
 
 def _descriptor(port: serial.SerialBase) -> int | None:
-    """Descriptor to read and write; None if there is none, or the handler wants to see it done."""
+    """Descriptor to read and write by; None if there is none, or the handler must see all bytes."""
     if isinstance(port, serial.Serial) and type(port).write is not serial.Serial.write:
-        return None  # spy://
+        return None  # as the handler of spy:// must
     try:
         descriptor = port.fileno()
         return None if os.get_blocking(descriptor) else descriptor

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from vbraille.devices.serial.ports import Address, ListPorts
     from vbraille.devices.serial.seriallines import SerialLine
 
-# How often a port that is gone is looked for.
+# Time between attempts to find a port that is gone.
 LOOK_S: Final = 0.1
-# How long what was written last may take to go out before the port is closed.
+# Longest time that the last bytes may take to go out before the port is closed.
 DRAIN_MS: Final = 50
 _JOIN_S = 1.0
 _NICENESS = 10
@@ -37,18 +37,18 @@ class SerialPort:
     Parameters
     ----------
     address
-        Where it is.
+        Address of the port.
     list_ports
-        What is plugged in.
+        Function that lists the ports that are plugged in.
     look_s
-        How often a port that is gone is looked for.
+        Time between attempts to find a port that is gone, in seconds.
 
     Attributes
     ----------
     gone : bool
-        Whether it is; seen by `read` and `write`, ended by `read`.
+        Whether the port is gone; `read` and `write` notice it, `read` ends it.
     losses : int
-        How often it went.
+        How often the port was lost.
     """
 
     def __init__(
@@ -69,11 +69,11 @@ class SerialPort:
 
     @property
     def lost(self) -> int:
-        """Frames that were taken, and then did not go out."""
+        """Number of frames that were taken and then did not go out."""
         return self._lost_before + self._line.lost
 
     def read(self) -> bytes:
-        """What has come; nothing while the port is gone. Never waits."""
+        """Bytes that have come; none while the port is gone. This never waits."""
         if self._finder is not None:
             line = self._finder.found
             if line is None:
@@ -90,7 +90,7 @@ class SerialPort:
             return b""
 
     def write(self, frame: bytes) -> bool:
-        """Send a frame whole, or not at all; whether it was taken. Never waits."""
+        """Send a frame whole, or not at all; tell whether it was taken. This never waits."""
         if self.gone:
             return False
         try:
@@ -105,17 +105,17 @@ class SerialPort:
         return None if self._finder is not None else self._line.bare_descriptor
 
     def keep(self, rest: bytes) -> None:
-        """Send the rest of a frame, of which a part went out by the descriptor, before the next."""
+        """Keep the rest of a frame, of which a part went out by the descriptor, to send it next."""
         if not self.gone:
             self._line.keep(rest)
 
     def drop_unsent(self) -> None:
-        """Take back what has not gone out yet, as far as the system lets us."""
+        """Drop what has not gone out yet, as far as the system lets us."""
         if not self.gone:
             self._line.drop_unsent()
 
     def close(self, pause: Callable[[float], None] = time.sleep) -> None:
-        """Let the port go once all is out, or time is up; whoever looks for it stops."""
+        """Close the port once all is out, or time is up; nobody looks for it after that."""
         if self._finder is not None:
             self._finder.stop()
             return
@@ -125,7 +125,7 @@ class SerialPort:
                     break
                 pause(0.001)
         except (OSError, termios.error):
-            pass  # gone
+            pass  # the port is gone
         finally:
             self._line.close()
 
@@ -142,7 +142,7 @@ class SerialPort:
 
 
 class _Finder(threading.Thread):
-    """Close a line that is gone, and look for it till it is back; what is slow is done here."""
+    """Thread that closes a line that is gone and looks for it till it is back: both may be slow."""
 
     def __init__(
         self, gone: SerialLine, find: Callable[[], SerialLine | None], look_s: float
@@ -156,7 +156,7 @@ class _Finder(threading.Thread):
         self._handing = threading.Lock()
 
     def run(self) -> None:
-        """Look until it is found or not wanted any more."""
+        """Look for the port until it is found or not wanted any more."""
         _step_back()
         self._gone.close()
         while not self._stopped.wait(self._look_s):
@@ -167,12 +167,12 @@ class _Finder(threading.Thread):
                     return
 
     def stop(self) -> None:
-        """Look for no port any more, and close one that was found."""
+        """Stop looking for the port, and close a port that was found."""
         with self._handing:
             self._stopped.set()
             if self.found is not None:
                 self.found.close()
-        # It may be busy with connecting, for seconds; it then closes what it gets.
+        # The thread may be connecting, for seconds; it then closes the port that it gets.
         self.join(_JOIN_S)
 
     def _hand_over(self, line: SerialLine) -> None:
@@ -184,7 +184,7 @@ class _Finder(threading.Thread):
 
 
 def _step_back() -> None:
-    """Let this thread run only when nobody else wants to; a thread begins as its parent is."""
+    """Let this thread run only when no other wants to; it begins with its parent's priority."""
     with suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     with suppress(OSError, AttributeError):

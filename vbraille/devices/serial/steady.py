@@ -30,7 +30,7 @@ from vbraille.devices.wire.messages import (
 from vbraille.devices.wire.wirekernels import delimiter, enframe, number, put_number, unframe
 
 SOMETHING_ELSE = -1
-# Stands for a time that is not there.
+# Value that stands for a time that is unknown.
 NEVER = -1
 # Room for the longest frame that is looked at here: a STATE to which a later version has appended.
 WORK_BYTES = 256
@@ -91,7 +91,7 @@ _SILENCE_NS = SILENCE_MS * _NS_PER_MS
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def _unwrap(count, last, bits):
-    """The continuous count of a counter that wraps: `unwrap` of the codec, compiled."""
+    """Continuous count of a counter that wraps: `unwrap` of the codec, compiled."""
     half = 1 << (bits - 1)
     return last + ((count - last + half) & (2 * half - 1)) - half
 
@@ -115,11 +115,11 @@ def take(received, size, now_ns, talk, work):
     Parameters
     ----------
     received : uint8[bytes]
-        What was received and not consumed so far, at its beginning.
+        Bytes that were received and not consumed so far, at the beginning of the array.
     size : int64
-        Bytes of it.
+        Number of these bytes.
     now_ns : int64
-        When, by the host's clock.
+        Time, by the host's clock.
     talk : record of CONVERSATION
         The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
     work : uint8[WORK_BYTES]
@@ -128,10 +128,11 @@ def take(received, size, now_ns, talk, work):
     Returns
     -------
     consumed : int64
-        Bytes that were consumed: all to the last delimiter. The rest is kept and given again, with
-        what comes after it. SOMETHING_ELSE if these bytes, or their absence, are not for here.
+        Number of bytes that were consumed: all up to the last delimiter. The rest is kept and given
+        again with what comes after it. SOMETHING_ELSE if these bytes, or their absence, are not
+        for compiled code.
     states : int64
-        How many STATEs were in them. Unless it is 0, ``device_ns`` and ``x_mm`` are a new pose.
+        Number of STATEs in these bytes. Unless it is 0, ``device_ns`` and ``x_mm`` are a new pose.
     """
     if stalled(talk, now_ns):
         return SOMETHING_ELSE, 0
@@ -184,32 +185,32 @@ def take(received, size, now_ns, talk, work):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def make(deflections, now_ns, talk, actuators, out):
-    """Make the next FRAME; `sent` tells that it has gone out.
+    """Make the next FRAME; call `sent` when it has gone out.
 
     Parameters
     ----------
     deflections : float64[rows, columns]
-        Where the actuators are to be, in [0, 1].
+        Deflections that the actuators are to have, in [0, 1].
     now_ns : int64
-        When, by the host's clock.
+        Time, by the host's clock.
     talk : record of CONVERSATION
         The conversation's numbers; they are changed, unless the answer is SOMETHING_ELSE.
     actuators : Actuators
-        What FRAMEs are made with; its ``wanted`` and ``body`` are changed.
+        How FRAMEs are made; ``wanted`` and ``body`` are changed.
     out : uint8[bytes]
         Room for the frame, as it goes over the line.
 
     Returns
     -------
     int64
-        Bytes of the frame; SOMETHING_ELSE if none is to be sent.
+        Number of bytes in the frame; SOMETHING_ELSE if none is to be sent.
     """
     if stalled(talk, now_ns):
         return SOMETHING_ELSE
     rows, columns = deflections.shape
     for row in range(rows):
         for column in range(columns):
-            # A number that is none is refused, too.
+            # A value that is not a number is refused, too.
             if not 0.0 <= deflections[row, column] <= 1.0:
                 return SOMETHING_ELSE
     step = math.inf
@@ -240,16 +241,16 @@ def make(deflections, now_ns, talk, actuators, out):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def sent(now_ns, talk, actuators):
-    """Take it that the FRAME made last has gone out, or a part of it has that its rest will follow.
+    """Note that the FRAME made last has gone out, or a part of it whose rest will follow.
 
     Parameters
     ----------
     now_ns : int64
-        When it was made, by the host's clock.
+        Time at which the FRAME was made, by the host's clock.
     talk : record of CONVERSATION
         The conversation's numbers.
     actuators : Actuators
-        They go where that FRAME says.
+        How FRAMEs are made; the actuators go where the FRAME says.
     """
     talk.sequence = (talk.sequence + 1) & _FRAME_MASK
     talk.sent_ns = talk.owed_ns = talk.moved_ns = now_ns

@@ -40,12 +40,12 @@ _CLASSES: Final = ("Serial", "PosixPollSerial", "VTIMESerial")
 
 
 def check_url(url: str) -> None:
-    """See that a URL can be one before it is opened.
+    """Check that a URL can be one, before it is opened.
 
     Raises
     ------
     InputError
-        If it cannot, with what is wrong in it and an example.
+        If it cannot; the message says what is wrong in it, and gives an example.
     """
     scheme = url.partition("://")[0].lower()
     if scheme not in _EXAMPLES:
@@ -128,7 +128,7 @@ _CHECKS: Final[dict[str, Callable[[str, str], Iterator[str]]]] = {
 
 
 def explain_url(fault: BaseException, url: str) -> VbrailleError:
-    """Say in a sentence why a URL that can be one was not opened, and what to do."""
+    """Sentence on why a valid URL was not opened, and on what to do."""
     scheme = url.partition("://")[0].lower()
     if scheme == "hwgrep":
         return InputError(
@@ -157,7 +157,7 @@ def explain_url(fault: BaseException, url: str) -> VbrailleError:
 
 
 def _causes(fault: BaseException | None) -> Iterator[BaseException]:
-    """What an exception came of, itself first: pyserial puts its own around those of the system."""
+    """An exception and its causes: pyserial puts its own around those of the system."""
     while fault is not None:
         yield fault
         fault = fault.__cause__ or fault.__context__

@@ -41,7 +41,7 @@ CRC_RESIDUE: Final = 0x2144DF1C
 
 
 class Drop(StrEnum):
-    """Why bytes came to nothing."""
+    """Reasons why bytes could not be used."""
 
     BAD_COBS = "bad COBS"
     BAD_CRC = "bad CRC"
@@ -53,7 +53,7 @@ class Drop(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class OtherVersion:
-    """A device has answered that speaks another version; the rest of its INFO cannot be read."""
+    """Answer of a device that speaks another version; the rest of its INFO cannot be read."""
 
     version: int
 
@@ -69,13 +69,13 @@ class BodyCodec:
         names = [name for name, _ in fields_of(message)]
         self.code = code
         self.message = message
-        # The fixed fields that it begins with are packed in one call.
+        # The fixed fields at the beginning are packed in one call.
         self._head = names[: len(head)]
         self._struct = struct.Struct("<B" + "".join(field.code for field in head))
         self._meanings = [(i, field.meanings) for i, field in enumerate(head) if field.meanings]
         self._to_wire = [(i, to_wire(meanings)) for i, meanings in self._meanings]
         self._rest = fields_of(message)[len(head) :]
-        # A message whose numbers may be all that their bytes can say is made without a look at
+        # A message whose numbers may be all that their bytes can hold is made without a check of
         # their ranges: STATE comes a thousand times a second.
         if not self._rest and all(field.takes_all for field in head):
             self._setters = [getattr(message, name).__set__ for name in names]
@@ -88,7 +88,7 @@ class BodyCodec:
         Raises
         ------
         ValueError
-            If a number is not an integer; its range it has checked itself.
+            If a value is not an integer; the message has checked its range.
         """
         values = [getattr(message, name) for name in self._head]
         for i, raw in self._to_wire:
@@ -106,7 +106,7 @@ class BodyCodec:
         return self._struct.pack(self.code, *values)
 
     def decode(self, body: bytes) -> Message:
-        """Give the message of a body; bytes that a later version appended are left alone.
+        """Give the message of a body; bytes that a later version appended are ignored.
 
         Raises
         ------
@@ -144,7 +144,7 @@ def encode(message: Message) -> bytes:
 
 
 def frame_head(sequence: int) -> bytes:
-    """Body of a FRAME but for its levels: for those who send a thousand a second."""
+    """Body of a FRAME without its levels, for those who send a thousand a second."""
     return _FRAME.pack_head(sequence)
 
 
@@ -154,7 +154,7 @@ def enframe(body: bytes) -> bytes:
 
 
 def line_bytes(body_bytes: int) -> int:
-    """Most bytes on the line of a body of so many bytes."""
+    """Largest number of bytes that a body of so many bytes takes on the line."""
     stuffed = cobs.max_encoded_length(body_bytes + CRC_BYTES)
     return stuffed + len(DELIMITER)
 
@@ -169,15 +169,15 @@ class Decoder:
     Parameters
     ----------
     levels
-        What a device expects in a FRAME. A FRAME with other levels is dropped;
-        without this, FRAMEs of any length are taken.
+        Levels that a device expects in a FRAME: a FRAME with other levels is dropped. None takes
+        FRAMEs of any length.
 
     Attributes
     ----------
     dropped : dict[Drop, int]
-        Frames that came to nothing, by kind.
+        Number of frames that could not be used, by reason.
     bad_info : str
-        Why the last INFO that was whole was dropped, with its field and value; empty if none was.
+        Why the last INFO that came whole was dropped, with field and value; empty if none was.
     """
 
     def __init__(self, levels: Levels | None = None) -> None:
@@ -206,9 +206,9 @@ class Decoder:
         return events
 
     def take_begun(self) -> bytes | None:
-        """The part of a frame that has come, which is forgotten; None while one is skipped.
+        """Part of a frame that has come, which is forgotten; None while a frame is skipped.
 
-        Whoever takes it feeds it again, or what has become of it.
+        Whoever takes it feeds it again, or feeds what has become of it.
         """
         if self._skipping:
             return None
@@ -217,7 +217,7 @@ class Decoder:
         return begun
 
     def _end(self, piece: bytes) -> bytes:
-        """Whole frame that ends with a piece; nothing if it was too long."""
+        """Whole frame that ends with a piece; empty if the frame was too long."""
         self._hold(piece)
         frame = b"" if self._skipping else bytes(self._held)
         self._held.clear()
@@ -269,16 +269,16 @@ class Levels:
     Parameters
     ----------
     actuators
-        Rows · columns.
+        Number of actuators, rows · columns.
     top_level
         Highest level, 1 to 65535: 1023 for 10 bits.
 
     Attributes
     ----------
     bits : int
-        How many bits a level takes.
+        Number of bits in a level.
     packed_bytes : int
-        How many bytes all levels take; bits left over in the last one are 0.
+        Number of bytes that all levels take; bits left over in the last byte are 0.
     """
 
     def __init__(self, actuators: int, top_level: int) -> None:
@@ -297,12 +297,13 @@ class Levels:
         Parameters
         ----------
         levels : integer[actuators] or integer[rows, columns]
-            Row 0 (far from the reader) first, column 0 (the left one) first in it.
+            Row 0 (far from the reader) comes first, and in each row column 0 (the left one).
 
         Raises
         ------
         ValueError
-            If they are too many or too few, no integers, or not 0 to `top_level`.
+            If there are too many or too few levels, or if they are no integers from 0 to
+            `top_level`.
         """
         if levels.size != self.actuators or levels.dtype.kind not in "iu":
             raise ValueError(
@@ -319,12 +320,12 @@ class Levels:
         return np.packbits(bits.reshape(-1)).tobytes()
 
     def unpack(self, packed: bytes) -> NDArray[np.uint16]:
-        """Levels as they were packed; uint16[actuators].
+        """Levels that were packed; uint16[actuators].
 
         Raises
         ------
         WrongLengthError
-            If they are too many or too few.
+            If there are too many or too few bytes.
         ValueError
             If a level is above `top_level`.
         """
@@ -339,30 +340,30 @@ class Levels:
         return levels
 
     def check(self, packed: bytes) -> None:
-        """Raise what `unpack` raises, without unpacking where every level is a possible one."""
+        """Raise what `unpack` raises; nothing is unpacked if every level is a possible one."""
         if len(packed) != self.packed_bytes or self.top_level != (1 << self.bits) - 1:
             self.unpack(packed)
 
 
 def _highest(levels: NDArray[np.integer]) -> int:
-    # As levels.max(), in half its time.
+    # The same as levels.max(), in half its time.
     return np.maximum.reduce(levels, axis=None)
 
 
 def unwrap(count: int, last: int, bits: int) -> int:
     """Continuous count of a counter that wraps.
 
-    Of all numbers that the counter would show as `count`, the one nearest to
-    `last`; of two as near, the lower. It serves encoder counts, the device's
+    The result is, among all numbers that the counter would show as `count`, the one nearest to
+    `last`; if two are equally near, the lower. This serves encoder counts, the device's
     time (32 bits) and sequences (16 bits) alike.
 
     Parameters
     ----------
     count
-        What the counter shows; bits above its width are ignored.
+        Value that the counter shows; bits above its width are ignored.
     last
-        Continuous count at the reading before, any integer. The counter must have
-        moved by less than half its range since.
+        Continuous count at the reading before, any integer. Since then the counter must have
+        moved by less than half its range.
     bits
         Width of the counter, at least 1.
     """

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class WrongLengthError(ValueError):
-    """There are fewer bytes than there must be, or more than there may be."""
+    """Error of bytes that are fewer than they must be, or more than they may be."""
 
 
 class Field(Protocol):
@@ -32,22 +32,22 @@ class Field(Protocol):
         ...
 
     def unpack(self, body: bytes, at: int, earlier: dict[str, Any]) -> tuple[Any, int]:
-        """Give the value that begins at a place of a body, not checked yet, and the place after it.
+        """Give the value that begins at a place of a body, unchecked, and the place after it.
 
-        WrongLengthError if the body ends before the value does. `earlier` are the fields before it.
+        WrongLengthError if the body ends within the value. `earlier` are the fields before it.
         """
         ...
 
 
 class Fixed:
-    """A field of one `struct` code, the least significant byte first.
+    """A field that is packed by one `struct` code, the least significant byte first.
 
     Attributes
     ----------
     code
-        The code of `struct`.
+        Code that `struct` has for the field.
     takes_all
-        Whether everything that its bytes can say is in range.
+        Whether every value that the bytes can hold is in range.
     """
 
     __slots__ = ()
@@ -56,12 +56,12 @@ class Fixed:
 
     @property
     def meanings(self) -> dict[int, Any]:
-        """What numbers on the wire mean that are something else in the message."""
+        """Meanings of those numbers on the wire that mean something else in the message."""
         return {}
 
     @property
     def layout(self) -> Struct:
-        """The layout of the field by itself."""
+        """Layout of the field by itself."""
         return Struct("<" + self.code)
 
     def pack(self, value: Any) -> bytes:
@@ -78,32 +78,32 @@ class Fixed:
 
 
 def to_wire(meanings: dict[int, Any]) -> dict[Any, int]:
-    """Turn `Fixed.meanings` round: what is on the wire for what is in the message."""
+    """Inverse of `Fixed.meanings`: numbers on the wire by what the message has."""
     return {value: raw for raw, value in meanings.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class Number(Fixed):
-    """An integer from `low` to `high`; None, too, where `none` stands for it on the wire."""
+    """An integer from `low` to `high`; it may be None if `none` stands for that on the wire."""
 
     code: str
     low: int
     high: int
     unit: str = ""
-    none: int | None = None  # out of the range
+    none: int | None = None  # a number out of the range
 
     @property
     def takes_all(self) -> bool:
-        """Whether everything that its bytes can say is in range."""
+        """Whether every value that the bytes can hold is in range."""
         return self.high - self.low + 1 + len(self.meanings) == 256**self.layout.size
 
     @property
     def meanings(self) -> dict[int, Any]:
-        """`none` means None."""
+        """Meaning of the number `none`, which is None."""
         return {} if self.none is None else {self.none: None}
 
     def check(self, name: str, value: int | None, _message: Any) -> None:
-        """See that the value is from `low` to `high`, or None if that can be told."""
+        """Check that the value is from `low` to `high`, or None where that can be told."""
         if value is None and self.none is not None:
             return
         if value is None or not self.low <= value <= self.high:
@@ -120,11 +120,11 @@ class OneOf(Fixed):
 
     @property
     def meanings(self) -> dict[int, Any]:
-        """Each number means its member; another one stays a number, for `check` to name."""
+        """Each number means its member; an unknown one stays a number, so that `check` names it."""
         return {int(choice): choice for choice in self.of}
 
     def check(self, name: str, value: int, _message: Any) -> None:
-        """See that the value is one of the numbers."""
+        """Check that the value is one of the numbers."""
         if value not in list(self.of):
             names = ", ".join(f"{choice.value} ({choice.name})" for choice in self.of)
             raise ValueError(f"{name} is {value}; it must be one of {names}")
@@ -134,22 +134,22 @@ class OneOf(Fixed):
 class ShortText:
     """A byte with a length in bytes, then so many bytes of printable UTF-8.
 
-    Bytes that are no UTF-8 and characters that are not printable are read as U+FFFD:
-    what a device has to say must not be lost for them.
+    Bytes that are no UTF-8 and characters that are not printable are read as U+FFFD, so that
+    the rest of what a device says is not lost.
     """
 
     fewest: int
     most: int = 0xFF
 
     def check(self, name: str, value: str, _message: Any) -> None:
-        """See that the text is printable, and of the length allowed."""
+        """Check that the text is printable, and of a length that is allowed."""
         if not value.isprintable() or (self.fewest and not value.strip()):
             raise ValueError(f"{name} is {value!r}; it must be printable, and not blank")
         if not self.fewest <= len(value.encode()) <= self.most:
             raise ValueError(f"{name} is {value!r}; it must be {self.fewest} to {self.most} bytes")
 
     def pack(self, value: str) -> bytes:
-        """Give its length and the text."""
+        """Give the length of the text, then the text."""
         text = value.encode()
         return bytes((len(text),)) + text
 
@@ -170,7 +170,7 @@ class PerActuator:
     pack = bytes
 
     def check(self, name: str, value: bytes, message: Any) -> None:
-        """See that there are as many as actuators, each up to `high`."""
+        """Check that there is a byte for each actuator, from 0 to `high`."""
         actuators = message.rows * message.columns
         if len(value) != actuators:
             raise WrongLengthError(
@@ -180,20 +180,20 @@ class PerActuator:
             raise ValueError(f"{name} are up to {max(value)}; they must be 0 to {self.high}")
 
     def unpack(self, body: bytes, at: int, earlier: dict[str, Any]) -> tuple[bytes, int]:
-        """Give as many bytes as the rows and columns before it say, or those that are left."""
+        """Give as many bytes as the earlier rows and columns tell, or as many as are left."""
         end = at + earlier["rows"] * earlier["columns"]
         return body[at:end], end
 
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """All the bytes to the message's end, 1 to `most`: nothing can be appended after them."""
+    """All bytes up to the message's end, 1 to `most`; no field can come after them."""
 
     most: int
     pack = bytes
 
     def check(self, name: str, value: bytes, _message: Any) -> None:
-        """See that there are 1 to `most` bytes."""
+        """Check that there are 1 to `most` bytes."""
         if not 1 <= len(value) <= self.most:
             raise WrongLengthError(f"{name} are {len(value)} bytes; they must be 1 to {self.most}")
 
@@ -203,7 +203,7 @@ class Packed:
 
 
 class Message:
-    """A message that has checked itself: ValueError naming the field and its range."""
+    """A message, which checks itself: ValueError names the field and its range."""
 
     __slots__ = ()
 
@@ -230,12 +230,12 @@ def head_of(message: type[Message]) -> list[Fixed]:
 
 
 def places_of(message: type[Message]) -> tuple[tuple[int, int, bool], ...]:
-    """Where the numbers are that a message begins with: first byte, bytes, whether it is signed.
+    """Places of the numbers that a message begins with: first byte, width, whether it is signed.
 
-    From the first field on whose width is not fixed, nobody can say.
+    The list ends at the first field whose width is not fixed, since later places may vary.
     """
     places = []
-    at = 1  # after the type
+    at = 1  # the first byte is the type
     for field in head_of(message):
         width = field.layout.size
         places.append((at, width, field.code.islower()))

@@ -12,26 +12,26 @@ from vbraille.caching import keep_compiled
 
 @njit(cache=keep_compiled(), error_model="numpy")
 def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
-    """Fill a FRAME's packed levels; whether there is anything to feel in it.
+    """Fill in the packed levels of a FRAME; tell whether there is anything to feel in it.
 
     Parameters
     ----------
     deflections, last, wanted : float64[rows, columns]
-        Where the actuators are to be; where the FRAME before left them; where this
-        one leaves them, to fill.
+        Deflections that the actuators are to have, those of the FRAME before, and those of this
+        FRAME, which are filled in.
     step : float64
-        The furthest that one may move from ``last``; infinite for no limit.
+        Largest difference that an actuator may move by from ``last``; infinite for no limit.
     swing : float64[rows, columns]
-        Levels of a full swing, before it is inverted.
+        Number of levels in a full swing, before it is inverted.
     rest : int64[rows, columns]
-        0, or ``top`` where the actuator is inverted.
+        Level at rest: 0, or ``top`` where the actuator is inverted.
     top, bits : int64
-        Highest level, and the bits that it takes.
+        Highest level, and the number of bits in a level.
     out : uint8[bytes]
-        Levels, most significant bit first.
+        Packed levels, most significant bit first.
     """
     rows, columns = deflections.shape
-    held = 0  # bits that do not make a byte yet
+    held = 0  # bits that do not fill a byte yet
     count = 0
     at = 0
     felt = False

@@ -38,19 +38,19 @@ _SLICES = _slices()
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def crc32(source, start, end):
-    """CRC-32 of ``source[start:end]``, as of zlib.
+    """CRC-32 of ``source[start:end]``, the same as zlib's.
 
     Parameters
     ----------
     source : uint8[bytes]
-        The bytes, with others around them.
+        Bytes, with others around them.
     start, end : int64
-        Which of them it is of; both are in the array.
+        First index, and one past the last; both are in the array.
 
     Returns
     -------
     int64
-        0 to 2³² - 1.
+        CRC from 0 to 2³² - 1.
     """
     rest = 0xFFFFFFFF
     at = start
@@ -76,19 +76,19 @@ def crc32(source, start, end):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def cobs_encode(source, start, end, out, at):
-    """Write COBS of ``source[start:end]`` from ``out[at]`` on.
+    """Write COBS of ``source[start:end]``, beginning at ``out[at]``.
 
     Returns
     -------
     int64
-        The index in ``out`` after the last byte written; TOO_SMALL, with nothing written, if the
+        Index in ``out`` after the last byte written; TOO_SMALL, with nothing written, if the
         longest COBS of so many bytes would not fit.
     """
     size = end - start
     blocks = max(1, (size + _LONGEST_RUN - 1) // _LONGEST_RUN)
     if size < 0 or at < 0 or at + size + blocks > out.size:
         return TOO_SMALL
-    head = at  # where the length of the block goes
+    head = at  # place of the block's length
     at += 1
     for place in range(start, end):
         byte = source[place]
@@ -106,13 +106,13 @@ def cobs_encode(source, start, end, out, at):
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def cobs_decode(source, start, end, out):
-    """Write what was encoded as ``source[start:end]`` to the beginning of ``out``.
+    """Decode the COBS in ``source[start:end]``, and write the result to the beginning of ``out``.
 
     Returns
     -------
     int64
-        How many bytes it is; BAD_COBS if it was never encoded, TOO_SMALL if ``out`` is smaller
-        than the source. ``out`` is then undefined.
+        Number of bytes decoded; BAD_COBS if the source is no COBS, TOO_SMALL if ``out`` is smaller
+        than the source. In both cases ``out`` is undefined.
     """
     if end - start > out.size:
         return TOO_SMALL
@@ -152,16 +152,16 @@ def unframe(source, start, end, body):
     Parameters
     ----------
     source : uint8[bytes]
-        What was received.
+        Bytes that were received.
     start, end : int64
-        A frame in it, without its delimiter.
+        First index of a frame, and one past its last without the delimiter.
     body : uint8[bytes]
         Room for the body, at least as long as the frame.
 
     Returns
     -------
     int64
-        Bytes of the body without its CRC, 1 or more; BAD_COBS, BAD_CRC, or TOO_SMALL.
+        Number of bytes in the body without its CRC, 1 or more; or BAD_COBS, BAD_CRC, TOO_SMALL.
     """
     size = cobs_decode(source, start, end, body)
     if size < 0:
@@ -183,16 +183,16 @@ def enframe(body, size, out, at):
     body : uint8[bytes]
         The body, and room for the four bytes of its CRC, which are written.
     size : int64
-        Bytes of the body without its CRC.
+        Number of bytes in the body without its CRC.
     out : uint8[bytes]
-        Room for `vbraille.devices.wire.codec.line_bytes` of the body from ``at`` on.
+        Room for `vbraille.devices.wire.codec.line_bytes` of the body, from ``at`` on.
     at : int64
-        Where the frame begins.
+        Index in ``out`` at which the frame begins.
 
     Returns
     -------
     int64
-        The index in ``out`` after the delimiter; TOO_SMALL, with no frame written, if the body or
+        Index in ``out`` after the delimiter; TOO_SMALL, with no frame written, if the body or
         ``out`` has no room.
     """
     if size < 0 or size + _CRC_BYTES > body.size:
@@ -210,7 +210,7 @@ def enframe(body, size, out, at):
 def number(source, at, width, signed):
     """Integer of ``width`` bytes from ``source[at]`` on, least significant first, as int64.
 
-    A message's numbers are where `vbraille.devices.wire.fields.places_of` says, in this order.
+    `vbraille.devices.wire.fields.places_of` gives the arguments for a message's numbers.
     """
     value = 0
     for place in range(width):

@@ -23,7 +23,7 @@ NONE = -1
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """What each actuator row shows.
+    """Which dots each row of actuators shows.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Mapping:
 
     @property
     def rows(self) -> int:
-        """How many actuator rows the method needs."""
+        """Number of actuator rows that the method needs."""
         return len(self.left)
 
     def idle(self) -> NDArray[np.float64]:

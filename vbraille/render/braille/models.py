@@ -15,11 +15,11 @@ from vbraille.render.braille.tuning import Tuning
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
 
-# How far the pitch of an array may differ from a model's, as a share, and still be that model.
+# Difference that is allowed between the pitches of an array and of a model, as a share.
 PITCH_TOLERANCE = 0.01
 # A simulated device has 10 bits, and 5 µm a count: at full texture that is 4 % of the swing.
 _LEVELS, _COUNTS_PER_MM, _RATE_HZ = 1024, 200.0, 1000.0
-# Rows of a mapping that shows all the dot rows of a cell one actuator row apart.
+# Number of rows in a mapping that shows all dot rows of a cell one actuator row apart.
 _LEAST_ROWS = 3
 
 
@@ -30,13 +30,13 @@ class Model:
     Parameters
     ----------
     name
-        What options call it; empty for a display that has no such name.
+        Name in options; empty for a display that has none there.
     title
-        What people call the display.
+        Name in sentences.
     display
-        The hardware.
+        Display that it is.
     style
-        How braille is shown on it.
+        Style in which braille is shown on the display.
     """
 
     name: str

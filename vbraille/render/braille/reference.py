@@ -69,13 +69,13 @@ def deflections(
     Parameters
     ----------
     x_mm : float64[n]
-        Places along the line.
+        Places of the given point of the array, along the line.
     masks : uint8[cells]
-        Dot masks of the line.
+        Dot masks of the line's cells.
     style, display
-        How it is shown, and on what.
+        Style in which the line is shown, and the display that it is shown on.
     anchor_mm
-        How far right of the left column the point is whose places are given; None is the centre.
+        How far right of the left column that point is; None for the array's centre.
 
     Returns
     -------

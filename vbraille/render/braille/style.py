@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.profiles import Profile
     from vbraille.render.program import Program
 
-# How far apart on a page going to the next line and coming back are, in line pitches.
+# Hysteresis between going to the next line of a page and coming back, in line pitches.
 HYSTERESIS = 0.25
 
 
@@ -34,16 +34,16 @@ class BrailleStyle:
     Parameters
     ----------
     profile
-        How a dot swings the actuators.
+        Profile by which a dot swings the actuators.
     mapping
-        Which dots each actuator row shows.
+        Mapping from dots to rows of actuators.
     geometry
-        Where the dots are.
+        Distances of the dots.
     tuning
-        Texture and contrast.
+        Texture and contrast of the dots.
     first_row
-        Row of the display at which the mapping begins; None puts the mapping into the middle. Rows
-        that the mapping does not name rest.
+        Row of the display at which the mapping begins; None puts the mapping into the middle.
+        Rows outside the mapping rest.
     """
 
     profile: Profile
@@ -53,12 +53,12 @@ class BrailleStyle:
     first_row: int | None = None
 
     def replace(self, **changes: Any) -> Self:
-        """The same style, but for what is given.
+        """Make a style that differs from this one in the given fields.
 
         Parameters
         ----------
         changes
-            Fields of the style, or of its `Tuning`: texture, contrast, cycles.
+            Fields of the style, or of its `Tuning` (texture, contrast, cycles), with new values.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class BrailleStyle:
         Raises
         ------
         ValueError
-            If the display has too few.
+            If the display has too few rows.
         """
         first = self.first_row
         if first is None:
@@ -103,7 +103,7 @@ class BrailleStyle:
         masks : uint8[cells]
             Dot masks; bit 0 is dot 1.
         display
-            What it is shown on.
+            Display that the line is shown on.
 
         Raises
         ------
@@ -126,9 +126,9 @@ class BrailleStyle:
         lines : sequence of uint8[cells]
             Dot masks of each line; they need not be of one length.
         display
-            What it is shown on.
+            Display that the page is shown on.
         hysteresis
-            How far apart in y going to the next line and coming back are, in line pitches, 0 to 1.
+            Distance in y between going to the next line and coming back, in line pitches, 0 to 1.
 
         Raises
         ------
@@ -146,7 +146,7 @@ class BrailleStyle:
         return program
 
     def room(self, display: Display, cells: int, lines: int = 1) -> int:
-        """Tell how many bytes a program of so many lines and cells takes, at least 1 of each."""
+        """Tell how many bytes a program of so many lines and cells takes; each is at least 1."""
         numbers = work.IDLE + 2 * display.rows
         return numbers * 8 + (lines + 2) * 2 * (cells + 2) * 2
 

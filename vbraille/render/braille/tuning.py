@@ -13,7 +13,7 @@ MOST_TEXTURE_CYCLES = 11
 
 @dataclass(frozen=True, slots=True)
 class Tuning:
-    """Texture and contrast.
+    """Texture and contrast of braille, which a reader may change while reading.
 
     Parameters
     ----------

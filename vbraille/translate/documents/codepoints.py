@@ -10,10 +10,10 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-# Cells; a carriage that goes ten metres crosses fewer than this.
+# In cells; a carriage that goes ten metres crosses fewer than this.
 LONGEST_BLANK = 4_096
 TEXT, BLANK, NEWLINE, BREAK, DROPPED = range(5)
-_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all above
+_KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all code points above
 _KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = BLANK
 _KINDS[[0x0A, 0x0B, 0x0D, 0x85, 0x2028]] = NEWLINE
 _KINDS[[0x0C, 0x2029]] = BREAK
@@ -31,7 +31,7 @@ class Stretch:
     begins : int64[runs]
         Index of the first character of each run that nothing is left out of; from 0, growing.
     places : int64[runs]
-        Where that character stands in the document, counted in characters from its first.
+        Place of that character in the document, counted in characters from the first.
     """
 
     codes: NDArray[np.uint32]
@@ -40,12 +40,12 @@ class Stretch:
 
     @classmethod
     def whole(cls, codes: NDArray[np.uint32], place: int) -> Stretch:
-        """Characters from a place of the document on, nothing left out."""
+        """Characters from a place of the document on, with none left out."""
         return cls(codes, np.zeros(1, np.int64), np.full(1, place, np.int64))
 
     @classmethod
     def joined(cls, parts: list[Stretch]) -> Stretch:
-        """Put stretches that follow each other into one."""
+        """Join stretches that follow each other into one."""
         before = np.cumsum([0, *(len(part) for part in parts[:-1])])
         begins = [part.begins + size for part, size in zip(parts, before, strict=True)]
         return cls(
@@ -55,7 +55,7 @@ class Stretch:
         )
 
     def place(self, index: NDArray[np.intp] | int) -> NDArray[np.int64]:
-        """Places in the document of characters of the stretch, by their indices."""
+        """Places in the document of characters of the stretch, given their indices."""
         run = np.searchsorted(self.begins, index, "right") - 1
         return index + (self.places - self.begins)[run]
 
@@ -66,23 +66,23 @@ class Stretch:
 def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tuple[Stretch, int]:
     """Shorten runs of blanks that are longer than any line of a page.
 
-    What stands where a line breaks is not shown, so that the lines stay the same.
+    Blanks at which a line breaks are not shown, so that the lines stay the same.
 
     Parameters
     ----------
     codes : uint32[n]
         Code points.
     place
-        Where the first of them stands in the document.
+        Place of the first code point in the document.
     before
-        Blanks right before it.
+        Number of blanks right before the first code point.
 
     Returns
     -------
     stretch : Stretch
         The characters with runs of at most `LONGEST_BLANK`.
     after : int
-        Blanks at the end, to be given with the characters that follow.
+        Number of blanks at the end, to be given with the characters that follow.
     """
     blank = kinds_of(codes) == BLANK
     others = np.flatnonzero(~blank)

@@ -38,22 +38,22 @@ CHUNK_BYTES = 65_536
 
 @dataclass(frozen=True, slots=True)
 class _Mark:
-    """Where reading can go on: before a block's first character.
+    """Place at which reading can go on, before a block's first character.
 
     Parameters
     ----------
     block
         Number of the next block, from 0.
     character
-        Its place in the document.
+        Place of the block's first character in the document.
     offset, state
-        A place in the file at or before it, and the decoder's state there.
+        A place in the file at or before that character, and the decoder's state there.
     skip
-        Characters between that place and the block.
+        Number of characters between that place and the block.
     continues
-        Whether the block is a further piece of the one before.
+        Whether the block is a further piece of the block before.
     item
-        Number of the list item that it is a piece of; 0 for none.
+        Number of the list item that the block is a piece of; 0 for none.
     """
 
     block: int
@@ -66,7 +66,7 @@ class _Mark:
 
     @property
     def bytes(self) -> int:
-        """About how many bytes stand before it: a character is one at least."""
+        """Estimated number of bytes before the place: a character takes at least one."""
         return self.offset + self.skip
 
 
@@ -76,21 +76,21 @@ class Document:
     Parameters
     ----------
     stream
-        The bytes; must be able to seek.
+        Bytes of the file; the stream must be able to seek.
     name
-        What to call it in messages.
+        Name of the document in messages.
     encoding
-        Overrides what the bytes say: a name, or how the caller knows them to be written.
+        Encoding that overrides what the bytes say: its name.
     keep_lines
-        Keep the line breaks of the source (verse, code): each line is a
-        block, its blanks kept; a run of empty lines is an empty block.
+        Whether to keep the line breaks of the source (verse, code): each line is then a block
+        with its blanks, and a run of empty lines is an empty block.
 
     Attributes
     ----------
     encoding : Encoding
         How the bytes are read.
     size : int
-        Bytes in all.
+        Number of bytes in all.
 
     Raises
     ------
@@ -130,7 +130,7 @@ class Document:
         self._found = encoding is None
         self._noted = self._grown = False
         start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
-        self._marks: list[_Mark] = [start]  # of each chunk, and of the one to be read next
+        self._marks: list[_Mark] = [start]  # of each chunk, and of the next to read
         self._complete = False
         self._recent: dict[int, list[Block]] = {}
 
@@ -174,12 +174,12 @@ class Document:
         *,
         keep_lines: bool = False,
     ) -> Document:
-        """Take all that a stream gives, such as standard input, which may be longer than memory.
+        """Read all that a stream gives, such as standard input, which may be longer than memory.
 
         Raises
         ------
         InputError
-            If it cannot be read or kept, or is empty, binary, or of an unknown encoding.
+            If the stream cannot be read or kept, or is empty, binary, or of an unknown encoding.
         """
         try:
             kept = _kept(stream)
@@ -193,14 +193,14 @@ class Document:
 
     @classmethod
     def from_text(cls, text: str, *, keep_lines: bool = False) -> Document:
-        """Make a document of a string."""
+        """Document of a string."""
         stream = io.BytesIO(text.encode("utf-32-le", "surrogatepass"))
         return cls(stream, "text", Encoding("utf-32-le"), keep_lines=keep_lines)
 
     def note(self) -> str | None:
-        """What must be said of the file, each thing once after it is found; None if nothing is.
+        """Note on the file, given once after its cause is found; None if there is none.
 
-        It may be that the text is not UTF-8, and where, or that the file has grown since it was
+        Notes say that the text is not UTF-8, and where, or that the file has grown since it was
         opened.
         """
         if self._grown:
@@ -233,7 +233,7 @@ class Document:
         InputError
             If the file cannot be read any more.
         VbrailleError
-            If it is no longer what it was.
+            If the file has changed since it was opened.
         """
         while number >= self._marks[-1].block and not self._complete:
             self._read_chunk(len(self._marks) - 1)
@@ -249,7 +249,7 @@ class Document:
         return blocks[index]
 
     def block_at(self, character: int) -> int | None:
-        """Number of the block that holds a character, or the first after it; None past the end."""
+        """Number of the block that holds a character, or of the next block; None past the end."""
         while character >= self._marks[-1].character and not self._complete:
             self._read_chunk(len(self._marks) - 1)
         chunk = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
@@ -277,7 +277,7 @@ class Document:
         return digest.hexdigest()
 
     def close(self) -> None:
-        """Close the file; it is closed anyhow once the document is forgotten."""
+        """Close the file; it is closed in any case when the document is forgotten."""
         self._stream.close()
 
     def __del__(self) -> None:
@@ -291,14 +291,14 @@ class Document:
             raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
 
     def _end(self) -> int:
-        """Bytes that the file has now."""
+        """Number of bytes that the file has now."""
         try:
             return self._stream.seek(0, io.SEEK_END)
         except OSError as error:
             raise InputError(f"{self.name} cannot be read: {error.strerror or error}") from None
 
     def _read_chunk(self, chunk: int) -> list[Block]:
-        """Read the blocks of a chunk; mark where the next begins if that is not known yet."""
+        """Read the blocks of a chunk, and mark where the next begins if that is not known yet."""
         mark = self._marks[chunk]
         blocks, after = self._parse(mark)
         if chunk == len(self._marks) - 1:
@@ -355,7 +355,7 @@ class Document:
                 return split.blocks, None
             if split.blocks or split.used:
                 break
-            # Twice as much every time: what is not done with is gone over again.
+            # Each time twice as much is read, since an unfinished block is parsed again.
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
@@ -372,16 +372,16 @@ class Document:
 
 
 def _kept(stream: BinaryIO) -> BinaryIO:
-    """A temporary file of all that a stream gives, since a text is gone through more than once."""
+    """Temporary file with all that a stream gives, since a text is read more than once."""
     from tempfile import TemporaryFile
 
     with ExitStack() as opened:
         kept = opened.enter_context(TemporaryFile())
-        # Past Python's buffer, which asks a terminal for more after its end was typed.
+        # Python's buffer is bypassed, which asks a terminal for more after its end was typed.
         while chunk := os.read(stream.fileno(), CHUNK_BYTES):
             kept.write(chunk)
         kept.flush()
-        opened.pop_all()  # it is the caller's now
+        opened.pop_all()  # closing it is left to the caller
     return kept
 
 

@@ -21,7 +21,7 @@ _MARKS = (  # UTF-32 before UTF-16: its little-endian mark begins with the other
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-# The beginnings of files that people mistake for text; none is one that a text may have.
+# Beginnings of files that people mistake for text; no text begins like one of them.
 _MAGIC = {
     b"\x89PNG": "a PNG image",
     b"\xff\xd8\xff": "a JPEG image",
@@ -44,7 +44,7 @@ _MAGIC = {
     b"SQLite format 3\0": "a database",
 }
 _TEXT_CONTROLS = frozenset(b"\b\t\n\v\f\r\x1a\x1b")
-# Text encodings to Python, and yet not what a text file is written in.
+# Encodings that Python has for text, but that no text file is written in.
 _NO_FILE_ENCODINGS = {"idna", "punycode", "unicode-escape", "raw-unicode-escape"}
 # A shorter text says too little to tell DOS and Mac code pages from windows-1252.
 _TELLING_BYTES = 512
@@ -52,14 +52,14 @@ _TELLING_BYTES = 512
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """How a file is read.
+    """How the bytes of a file are read.
 
     Parameters
     ----------
     name
-        Python's name of the codec.
+        Name that Python has for the codec.
     skip
-        Bytes of byte-order mark at the start.
+        Number of bytes in the byte-order mark at the start.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Encoding:
 
 
 def binary_kind(sample: bytes) -> str | None:
-    """What a file is, if its beginning shows that it is no text; None if it may be text."""
+    """Kind of a file whose beginning shows that it is no text; None if it may be text."""
     for magic, kind in _MAGIC.items():
         if sample.startswith(magic):
             return kind
@@ -75,19 +75,19 @@ def binary_kind(sample: bytes) -> str | None:
         return None
     controls = sum(sample.count(c) for c in range(32) if c not in _TEXT_CONTROLS)
     zeros = sample.count(0)
-    few = 1 + len(sample) / 20  # stray ones are no reason to refuse a text
+    few = 1 + len(sample) / 20  # a few stray ones are no reason to refuse a text
     if controls - zeros > few or (zeros > few and _wide(sample) is None):
         return "binary data"
     return None
 
 
 def find_encoding(sample: bytes) -> Encoding:
-    """The encoding of a file that begins with these bytes.
+    """Encoding of a file that begins with these bytes.
 
     Parameters
     ----------
     sample
-        The file's first `SAMPLE_BYTES`, or all of it.
+        First `SAMPLE_BYTES` of the file, or all of a shorter file.
     """
     for mark, name in _MARKS:
         if sample.startswith(mark):
@@ -104,11 +104,11 @@ def find_encoding(sample: bytes) -> Encoding:
 
 
 def _wide(sample: bytes) -> str | None:
-    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; None otherwise.
+    """UTF-16 or UTF-32 if zeros stand where a mostly Western text has them; otherwise None.
 
-    chardet takes such a text for another, or in the wrong order, if it is short.
+    If such a text is short, chardet takes it for another, or in the wrong byte order.
     """
-    if sample.count(0) < 2:  # one may be a stray
+    if sample.count(0) < 2:  # a single one may be a stray
         return None
     zeros = [
         quarter.count(0) / max(len(quarter), 1) for quarter in (sample[n::4] for n in range(4))
@@ -126,7 +126,7 @@ def _wide(sample: bytes) -> str | None:
 
 
 def _mostly_utf8(sample: bytes) -> bool:
-    """Whether a few damaged bytes stand in what is otherwise UTF-8 beyond ASCII."""
+    """Whether the bytes are UTF-8 beyond ASCII except a few damaged ones."""
     text = sample.decode("utf-8", "surrogateescape")
     damaged = sum("\udc80" <= c <= "\udcff" for c in text)
     whole = sum(c > "\x7f" for c in text) - damaged
@@ -144,14 +144,14 @@ def _detect(sample: bytes) -> str:
         name = codecs.lookup(found).name
     except LookupError:
         return "cp1252"
-    # A detector that says ASCII or UTF-8 of what is not is no help.
+    # A detector's ASCII or UTF-8 does not help here: the bytes are neither.
     return "cp1252" if name in {"ascii", "utf-8", "iso8859-1"} else name
 
 
 def named_encoding(name: str, sample: bytes) -> Encoding | None:
-    """Find the encoding that a user names, for a file that begins with these bytes.
+    """Encoding that a user names, for a file that begins with these bytes.
 
-    None if there is no such text encoding.
+    The result is None if there is no such text encoding.
     """
     try:
         codec = codecs.lookup(name)
@@ -182,13 +182,13 @@ class TextDecoder:
     Parameters
     ----------
     encoding
-        Python's name of a codec.
+        Name that Python has for a codec.
 
     Attributes
     ----------
     first_bad : int or None
-        Offset in the file of the first byte that the encoding cannot read. A lone
-        surrogate of UTF-16 or UTF-32 is none: it stays what it is.
+        Offset in the file of the first byte that the encoding cannot read. A lone surrogate of
+        UTF-16 or UTF-32 does not count: it stays what it is.
     """
 
     def __init__(self, encoding: str) -> None:
@@ -197,7 +197,7 @@ class TextDecoder:
         self._decoder = codecs.getincrementaldecoder(encoding)(self._strict)
 
     def decode(self, piece: bytes, offset: int, *, final: bool) -> str:
-        """Text of the next bytes, which stand at this offset of the file."""
+        """Text of the next bytes, which stand at the given offset of the file."""
         state = self.state()
         # The third is for ISO 2022, which cannot keep an escape that never ends for the next piece.
         for errors, last in (
@@ -215,7 +215,7 @@ class TextDecoder:
         raise AssertionError("what keeps every byte fails at none")
 
     def state(self) -> tuple[bytes, int]:
-        """What `restore` takes to go on from here."""
+        """State that `restore` needs to go on from here."""
         return self._decoder.getstate()
 
     def restore(self, state: tuple[bytes, int]) -> None:
@@ -234,7 +234,7 @@ def _keep(error: UnicodeError) -> tuple[str, int]:
             return bad.decode(error.encoding, "surrogatepass"), error.end
         except UnicodeDecodeError:
             pass
-    # The five bytes that windows-1252 leaves open stay the control characters of their number.
+    # The five bytes that windows-1252 leaves open become the control characters of their numbers.
     return "".join(bytes([b]).decode("cp1252", "ignore") or chr(b) for b in bad), error.end
 
 

@@ -31,9 +31,10 @@ def end_before_items(
 ) -> int:
     """Mark that paragraphs end where the next line begins an item of a list.
 
-    A bullet always begins one. A dash does in a list of dashes, and a number in its turn; the
-    first of either stands at a paragraph's start or after a colon, and so may a number 1
-    anywhere: a line of prose, too, can begin with a dash or with a number that ends a sentence.
+    A bullet always begins an item. A dash does so in a list of dashes, and a number if it is the
+    next of its list. The first dash or number of a list stands at a paragraph's start or after a
+    colon; a number 1 may stand anywhere. Otherwise a line of prose can begin with a dash, or with
+    a number that ends a sentence.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def end_before_items(
     Returns
     -------
     int
-        Number of the list item that the last paragraph is, or -2 in a list of dashes; else 0.
+        Number of the list item that the last paragraph is, -2 in a list of dashes, otherwise 0.
     """
     starts = np.concatenate(([-1], np.flatnonzero((newlines > 0) | ends)))
     at = text[starts + 1]

@@ -27,19 +27,19 @@ if TYPE_CHECKING:
 
     from vbraille.translate.documents.codepoints import Stretch
 
-# A longer paragraph is handed on in pieces: no text may grow with the file.
+# A longer paragraph is passed on in pieces: no text may grow with the file.
 PIECE_CHARACTERS = 8_192
 
 _NO_BREAK_SPACES = (0x2007, 0x202F)
 _BYTE_ORDER_MARK = 0xFEFF
 _BACKSPACE, _UNDERLINE = 0x08, 0x5F
-# Accents that Unicode has whole letters with: Latin, Greek, Cyrillic, Arabic and kana ones.
+# Accents for which Unicode has whole letters: Latin, Greek, Cyrillic, Arabic and kana accents.
 _COMBINING = frozenset((*range(0x300, 0x370), *range(0x653, 0x656), 0x3099, 0x309A))
-# Words before which a hyphen stands for the rest of the word before it.
+# Words before which a hyphen stands for the rest of the word before the hyphen.
 _SUSPENDED = {"and", "or", "to", "und", "oder", "bis", "et", "ou"}
-# Characters after a line break that say whether a space belongs there: such a word and one more.
+# Number of characters after a line break that decide on a space: such a word and one more.
 _WORD = 5
-# Characters that must follow a place before it is known what belongs there.
+# Number of characters that must follow a place before it is known what belongs there.
 _LOOK_AHEAD = max(_WORD, LONGEST_MARKER) + 1
 
 
@@ -50,13 +50,13 @@ class Split:
     Parameters
     ----------
     blocks
-        The paragraphs that are complete.
+        Paragraphs that are complete.
     used
-        Characters up to the first that belongs to none of them, or may begin another.
+        Number of characters up to the first that belongs to none of these, or may begin another.
     continues
-        Whether that one goes on with the last paragraph.
+        Whether that character continues the last paragraph.
     item
-        Number of the list item that it is a part of then; 0 for none.
+        Number of the list item that it is part of in that case; 0 for none.
     """
 
     blocks: list[Block]
@@ -78,15 +78,15 @@ def split_paragraphs(
     Parameters
     ----------
     stretch
-        The characters.
+        Characters that are cut.
     continues
-        Whether it goes on with an earlier piece of a paragraph.
+        Whether the stretch continues an earlier piece of a paragraph.
     item
         Number of the list item that this paragraph is; 0 for none.
     final
-        Whether the text ends here; else the last paragraph is left for later.
+        Whether the text ends here; otherwise the last paragraph is left for later.
     keep_lines
-        Make a paragraph of every line instead.
+        Whether every line is a paragraph.
     """
     codes = stretch.codes
     kinds = kinds_of(codes)
@@ -161,10 +161,10 @@ def split_paragraphs(
 
 
 def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Where printers of old were told to underline or to strike twice, which is no text.
+    """Indices of what told old printers to underline or to strike twice, which is no text.
 
-    An underline stands before or after a backspace and a character; one that is struck twice
-    stands on both sides of it.
+    An underline stands before or after a backspace and a character; a character that is struck
+    twice stands on both sides of the backspace.
     """
     backspaces = np.flatnonzero(codes[1:-1] == _BACKSPACE) + 1
     if not backspaces.size:
@@ -180,12 +180,12 @@ def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[
 
 
 def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
-    """How many marked characters stand between each two neighbouring text characters."""
+    """Number of marked characters between each two neighbouring text characters."""
     return np.diff(np.cumsum(marked)[text])
 
 
 def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Text, and the blanks that have text after them on their line."""
+    """Whether each character is text, or a blank that has text after it on its line."""
     places = np.arange(kinds.size)
     text = np.where(kinds == TEXT, places, kinds.size)
     newline = np.where((kinds == NEWLINE) | (kinds == BREAK), places, kinds.size)
@@ -200,10 +200,10 @@ def _joins_words(
     gaps: NDArray[np.intp],
     newlines: NDArray[np.intp],
 ) -> NDArray[np.bool_]:
-    """Whether a line break stands within a word, after its hyphen, so that no space belongs there.
+    """Whether a line break stands within a word, after a hyphen, so that no space belongs there.
 
-    After a soft hyphen always; after a hyphen between letters, but for a
-    hyphen that stands for the rest of a word ("pre- and post-war").
+    This holds after every soft hyphen. It holds after a hyphen between letters, unless the
+    hyphen stands for the rest of a word ("pre- and post-war").
     """
     joins = (codes[text[gaps] + 1] == 0xAD) & (newlines[gaps] == 1)
     hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
@@ -216,7 +216,7 @@ def _joins_words(
 
 
 def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: int) -> Iterator[int]:
-    """Where to cut a paragraph that is too long: after a sentence, else a space, else anywhere."""
+    """Places to cut a paragraph that is too long: after a sentence, else a space, else anywhere."""
     while end - start > PIECE_CHARACTERS:
         window = to_text(codes[kept[start : start + PIECE_CHARACTERS + 1]])
         sentence = max(window.rfind(mark) for mark in (". ", "! ", "? ", "\u2026 "))
@@ -235,7 +235,7 @@ def _cuts(codes: NDArray[np.uint32], kept: NDArray[np.intp], start: int, end: in
 
 
 def _compose(text: Text) -> Text:
-    """Make letters with combining accents one character where Unicode has one.
+    """Compose letters and combining accents to one character where Unicode has one.
 
     Many tables know é and not e followed by U+0301.
     """
