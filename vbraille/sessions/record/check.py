@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace
@@ -129,7 +129,7 @@ def _check_journal(told: JournalContents) -> Iterator[Finding]:
 
 def _check_clock(told: JournalContents) -> Iterator[Finding]:
     """Say where the wall clock was set back; no duration is measured by it."""
-    before: Event | None = None
+    before: JournalEvent | None = None
     for event in told.events:
         if isinstance(event, Lost):
             continue
@@ -252,7 +252,7 @@ def _answered_lines(progress: Progress) -> dict[str, set[int]]:
     return lines
 
 
-def _seconds_between(earlier: Event, later: Event) -> float:
+def _seconds_between(earlier: JournalEvent, later: JournalEvent) -> float:
     """Seconds from one event to another by the wall clock; negative if it went back."""
     first, last = (datetime.fromisoformat(event.wall) for event in (earlier, later))
     return (last - first).total_seconds()

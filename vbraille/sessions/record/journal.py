@@ -26,7 +26,7 @@ from vbraille.sessions.record.events import Session, read, to_json
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vbraille.sessions.record.events import Event
+    from vbraille.sessions.record.events import JournalEvent
 
 NAME = "journal.jsonl"
 TORN = "journal.torn"
@@ -70,7 +70,7 @@ class JournalContents:
         Numbers of all damaged lines, if the journal was salvaged.
     """
 
-    events: list[Event]
+    events: list[JournalEvent]
     good_bytes: int
     crcs: list[int]
     torn: bytes
@@ -95,7 +95,7 @@ class JournalContents:
         return self.session.format
 
 
-def encode(event: Event, crc: int) -> tuple[bytes, int]:
+def encode(event: JournalEvent, crc: int) -> tuple[bytes, int]:
     """Line for an event, and its checksum, given the checksum of the line before."""
     text = json.dumps(to_json(event), ensure_ascii=False, separators=(",", ":"))[:-1]
     body = text.encode("utf-8", "backslashreplace")  # JSON has the same escape for a lone surrogate
@@ -105,7 +105,7 @@ def encode(event: Event, crc: int) -> tuple[bytes, int]:
 
 def decode(journal: bytes) -> JournalContents:
     """Read the events of a journal, up to the first line that is damaged or torn."""
-    events: list[Event] = []
+    events: list[JournalEvent] = []
     crcs: list[int] = []
     good = crc = 0
     while (end := journal.find(b"\n", good)) >= 0:
@@ -226,7 +226,7 @@ class Journal:
             ) from None
         return len(torn)
 
-    def append(self, event: Event) -> Event:
+    def append(self, event: JournalEvent) -> JournalEvent:
         """Add an event, and return it with its number and its times.
 
         If its kind is durable, the event is on the disk when this returns.
@@ -285,7 +285,7 @@ class Journal:
         self.close()
 
 
-def first_lines(session: Session, *events: Event) -> bytes:
+def first_lines(session: Session, *events: JournalEvent) -> bytes:
     """Bytes of a new journal that has these events."""
     lines, crc = [], 0
     for number, event in enumerate((session, *events), 1):
@@ -294,7 +294,7 @@ def first_lines(session: Session, *events: Event) -> bytes:
     return b"".join(lines)
 
 
-def _numbered(event: Event, number: int, form: int) -> Event:
+def _numbered(event: JournalEvent, number: int, form: int) -> JournalEvent:
     """Event with its number, and the present time by the clocks that a format uses."""
     machine_s = up_s() if form > 1 else None
     return msgspec.structs.replace(event, n=number, wall=_now(), up_s=machine_s)
