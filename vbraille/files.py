@@ -155,9 +155,12 @@ def check_free(folder: Path) -> None:
     Raises
     ------
     InputError
-        If there is something already, or it cannot be seen.
+        If there is something already, it cannot be seen, or what it would be in is no directory.
     """
     try:
+        above = next(parent for parent in folder.absolute().parents if parent.exists())
+        if not above.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
         taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
