@@ -155,9 +155,13 @@ def check_free(folder: Path) -> None:
     Raises
     ------
     InputError
-        If something exists at the path, or it cannot be seen whether it does.
+        If something exists at the path, nobody can see whether it does, or what it would stand
+        in is no directory.
     """
     try:
+        above = next(parent for parent in folder.absolute().parents if parent.exists())
+        if not above.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
         taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None

@@ -7,6 +7,7 @@ import pytest
 
 from tests.cli.test_bad_input import refused
 from tests.sessions.sittings import MINI, Session
+from tests.tiers import heavy
 
 TRIALS = "participant,condition,presented,answered\n{}"
 GOOD = TRIALS.format("A,x,ab,ab\nA,y,ab,a?\nB,x,ab,ac\nB,y,cd,cd\n")
@@ -54,12 +55,20 @@ def test_results_as_json(call):
     assert [row["correct"] for row in found["tables"]["legibility"]["rows"]] == [1, 0, 0, 1]
 
 
-def test_a_report_is_written(call, room):
-    said = call("analyse", "good.csv", "--out", "new/report", "--marks", "0,1", "--seed", "7")
+@pytest.mark.parametrize(
+    "data",
+    [
+        "--scores scores.csv",
+        # Which figures there are is tested where they are made; to draw them takes seconds.
+        pytest.param("good.csv --marks 0,1", marks=heavy),
+    ],
+)
+def test_a_report_is_written(call, room, data):
+    said = call("analyse", *data.split(), "--out", "new/report", "--seed", "7")
     assert (said.code, said.out, said.err) == (0, "written: new/report/report.html\n", "")
     page = (room / "new" / "report" / "report.html").read_text()
     assert "random draws with seed 7" in page
-    assert "above 0" in page
+    assert ("above 0" in page) == ("--marks" in data)
 
 
 @pytest.mark.usefixtures("room")

@@ -76,6 +76,7 @@ def test_options_of_text_and_page_reach_it(call, tmp_path, text):
     french.write_text("où")
     assert call("page", french, "--language", "fr").out == "⠀⠀⠕⠾\n"
     assert first("--travel", "60") == ("⠐⠕", "line width: 4 cells, table en-ueb-g2.ctb\n")
+    assert first("--travel", "18")[1] == "line width: 1 cell, table en-ueb-g2.ctb\n"
     assert first("--model", "vbd")[1] == "line width: 28 cells, table en-ueb-g2.ctb\n"
     assert (
         first("--geometry", "standard", "--cell-gap", "10")[1]

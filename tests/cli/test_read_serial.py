@@ -9,7 +9,7 @@ from pathlib import Path
 from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
-from tests.tiers import heavy
+from tests.tiers import by_tier, heavy
 from vbraille import __version__
 
 
@@ -38,9 +38,11 @@ def host_of(terminal):
 
 
 def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path, text):
-    with simulated(tmp_path, "--encoder", "index") as (spec, device):
-        done = program.run("read", text, "--device", spec, "--lines", "1-2")
+    # It is a VBD, and the page is laid out for its actuators.
+    with simulated(tmp_path, "--encoder", "index", "--model", "vbd") as (spec, device):
+        done = program.run("read", text, "--device", spec, "--lines", "1-2", "--dot-row", "2")
         assert done.returncode == 0, done.stderr
+        assert done.stderr == "line width: 28 cells, table en-ueb-g2.ctb\n"
         assert lines(done.stdout) == ["line: 1", "line: 2"]
         assert done.stdout.splitlines()[-1].startswith("summary: lines 2,")
         device.send_signal(signal.SIGTERM)
@@ -88,7 +90,7 @@ def test_a_device_is_shown_its_left_stop_by_a_key_of_a_terminal(call, tmp_path, 
 
 
 def test_a_host_that_dies_is_said_and_begun_again_when_asked(text):
-    arguments = ("--hand", "sweep:5", "--echo", "text")
+    arguments = ("--hand", "sweep:5", "--echo", "text", "--rate", "300")
     with Terminal("read", text, *arguments) as terminal:
         terminal.until("h says the keys")
         os.kill(host_of(terminal), signal.SIGKILL)
@@ -105,7 +107,7 @@ def test_a_host_that_dies_is_said_and_begun_again_when_asked(text):
 
 
 def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
-    process = program.start("read", text, "--hand", "sweep:5", text=True)
+    process = program.start("read", text, "--hand", "sweep:5", "--rate", "300", text=True)
     process.stdout.readline()
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     os.kill(int(children.read_text().split()[0]), signal.SIGKILL)
@@ -116,31 +118,34 @@ def test_without_a_terminal_a_host_that_dies_ends_the_reading(text):
     )
 
 
+_RATE = ("--rate", "2000", "choose --rate 1000 or less")
+# Each costs the start of a process; both are refused in one place.
+REFUSED = (
+    ("--travel", "300", "goes 60 mm and --travel asks for 300 mm; leave --travel out"),
+    *by_tier((), (_RATE,), (_RATE,)),
+)
+
+
 def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text):
     with simulated(tmp_path, "--travel", "60") as (spec, _):
-        done = call("read", text, "--device", spec)
+        done = call("read", text, "--device", spec, "--lines", "1-3")
         assert done.code == 0, done.err
         assert done.err == "line width: 4 cells, table en-ueb-g2.ctb\n"
         said = [line for line in done.out.splitlines() if line.startswith("text: ")]
-        assert " ".join(line.removeprefix("text: ") for line in said[:3]) == "one two three"
+        assert " ".join(line.removeprefix("text: ") for line in said) == "one two three"
         narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
         assert narrower.code == 0, narrower.err
         assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
-        for options, sentence in (
-            (("--travel", "300"), "goes 60 mm and --travel asks for 300 mm; leave --travel out"),
-            (("--rate", "2000"), "choose --rate 1000 or less"),
-        ):
-            done = call("read", text, "--device", spec, *options)
+        for option, value, sentence in REFUSED:
+            done = call("read", text, "--device", spec, option, value)
             assert done.code == 2
             assert sentence in done.err
             assert len(done.err.splitlines()) == 1
 
 
-def test_the_page_is_laid_out_for_the_actuators_that_there_are(call, tmp_path, text):
+@heavy  # the same is tested of devices that no model names
+def test_what_the_actuators_cannot_show_is_one_sentence(call, tmp_path, text):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
-        done = call("read", text, "--device", spec, "--lines", "1", "--dot-row", "2")
-        assert done.code == 0, done.err
-        assert done.err == "line width: 28 cells, table en-ueb-g2.ctb\n"
         other = call("read", text, "--device", spec, "--mapping", "paired")
         assert other.code == 2
         assert other.err == "vbraille: the VBD has one row of actuators; --dot-row chooses dots\n"
@@ -188,6 +193,11 @@ def test_a_line_that_the_carriage_cannot_finish_ends_the_reading_where_nobody_ca
         "vbraille: line 1 cannot be read to its end: the finger turns back at 65 mm each time, and "
         "the line ends at 140 mm; see what is in the carriage's way, or give a shorter --travel"
     ]
+
+
+@heavy  # what is said where a key can bring the next line is tested without a process
+def test_a_line_that_the_carriage_cannot_finish_is_passed_by_a_key(tmp_path, text):
+    driver = drivers.install(tmp_path, "short", "Short", SHORT)
     with Terminal(
         "read", text, "--device", "short:", "--rate", "500", PYTHONPATH=driver["PYTHONPATH"]
     ) as terminal:

@@ -13,6 +13,7 @@ import pytest
 from tests.cli import program
 from tests.render.reader import read_back
 from tests.shown import rendered, twin
+from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.layout.pages import Layout
@@ -198,7 +199,7 @@ def test_a_file_that_is_there_is_replaced_only_if_told_so(old, call, text):
 
 def test_frames_are_compressed_and_read_back_the_same(call, tmp_path, text):
     out = tmp_path / "out.h5"
-    options = ("--hand", "device", "--texture", "0.5", "--lines", "1")
+    options = ("--hand", "sweep:60", "--texture", "0.5", "--lines", "1")
     assert call("render", text, "--out", out, *options).code == 0
     with h5py.File(out) as file:
         grown = [file[name] for name in ("t_s", "x_mm", "line", "frames", "page/cells")]
@@ -208,6 +209,7 @@ def test_frames_are_compressed_and_read_back_the_same(call, tmp_path, text):
         np.testing.assert_array_equal(file["frames"][:], again)
 
 
+@heavy  # it takes a long recording; that it is estimated is seen of those that are stopped
 def test_a_long_recording_is_estimated_before_it_is_written(call, tmp_path, texts):
     # With few actuators, which are soon written.
     arguments = ("render", texts / "english.txt", "--model", "vbd", "--force")
@@ -232,7 +234,8 @@ def files_in(folder):
 
 def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, text):
     out, before = old
-    for size in (4096, len(before) - 1):  # at the first writing, and at the last
+    # At the last writing, and at the first.
+    for size in (len(before) - 1, 4096)[: by_tier(1, 2, 2)]:
         blocks = size // 512
         limited = f'ulimit -f {blocks}; exec "$@"'
         done = subprocess.run(
@@ -250,17 +253,25 @@ def test_a_full_disk_leaves_the_old_file_and_no_part_of_the_new(old, tmp_path, t
 
 
 def half_done(texts, out):
-    """Start a long run, and wait until a part of it is written."""
-    process = program.start(
-        "render", texts / "english.txt", "--out", out, "--force", "--hand=sweep:200", "--plain"
-    )
+    """Start a long run, and wait until it was estimated and a part of it is written."""
+    options = "--force --hand sweep:1000 --plain --model vbd --rate 10000 --dot-width 2"
+    process = program.start("render", texts / "english.txt", "--out", out, *options.split())
+    said = b""
     for line in process.stderr:
-        if line == b"10 percent\n":
+        said += line
+        if b"\n10 percent\n" in said and b"\nestimate: about " in said:
             return process
-    raise AssertionError("the run ended before its tenth")
+    raise AssertionError(said)
 
 
-@pytest.mark.parametrize("signals", [(signal.SIGINT, signal.SIGINT), (signal.SIGHUP,)])
+@pytest.mark.parametrize(
+    "signals",
+    [
+        (signal.SIGINT, signal.SIGINT),
+        # One handler takes all signals; another test here has SIGTERM.
+        pytest.param((signal.SIGHUP,), marks=heavy),
+    ],
+)
 def test_a_signal_leaves_the_old_file_and_no_part_of_the_new(old, texts, tmp_path, signals):
     out, before = old
     with half_done(texts, out) as process:

@@ -21,7 +21,8 @@ def driver(tmp_path) -> dict[str, str]:
 def read(driver, texts: Path, log: Path, fault: str, *options: str):
     done = subprocess.run(
         [sys.executable, "-m", "vbraille", "read", str(texts / "english.txt"), "--lines", "1",
-         "--device", f"logged:{log},{fault}", "--mapping", "sheared", "--texture", "0", *options],
+         "--device", f"logged:{log},{fault}", "--mapping", "sheared", "--texture", "0",
+         "--travel", "80", *options],
         env=driver, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
         timeout=60,
     )  # fmt: skip

@@ -18,6 +18,7 @@ import pytest
 
 from tests.cli.test_render import from_the_file_alone
 from tests.cli.test_session_bad_input import contents
+from tests.tiers import heavy
 from vbraille.braille.cells import Cells
 from vbraille.recording import poses_of
 from vbraille.sessions.planning.plan import Plan
@@ -27,6 +28,7 @@ from vbraille.sessions.record.replay import frames
 from vbraille.sessions.record.traces import LEFT_TRACE, TRACE, read_trace
 
 WRITTEN = Path(__file__).parent.parent / "written-by"
+VERSIONS = sorted(path.parent for path in WRITTEN.glob("*/sessions"))
 SESSIONS = sorted(WRITTEN.glob("*/sessions/*"))
 PLANS = sorted(WRITTEN.glob("*/plans/*.txt"))
 RECORDINGS = sorted(WRITTEN.glob("*/recordings/*.h5"))
@@ -150,13 +152,25 @@ def test_a_session_is_replayed_bit_for_bit(folder):
     assert replayed.hexdigest() == then[folder.name]
 
 
+@pytest.mark.parametrize("folder", VERSIONS, ids=named)
+def test_the_sessions_of_a_version_are_analysed_together(call, folder):
+    check_analysed(call, sorted(folder.glob("sessions/*")))
+
+
+@heavy  # to analyse one takes as long as to analyse all
 @pytest.mark.parametrize("folder", SESSIONS, ids=named)
 def test_a_session_is_analysed(call, folder):
-    answered = sum(row["answered"] != "" for row in table(golden(folder, "csv")))
-    said = call("analyse", folder, "--json")
+    check_analysed(call, [folder])
+
+
+def check_analysed(call, folders):
+    said = call("analyse", *folders, "--json")
     assert (said.code, said.err) == (0, "")
-    assert answered
-    assert folder.name in json.dumps(json.loads(said.out), ensure_ascii=False)
+    about = json.loads(said.out)["about"]
+    for folder in folders:
+        answered = sum(row["answered"] != "" for row in table(golden(folder, "csv")))
+        assert answered
+        assert f", {answered} of " in about[f"Session {folder.name}"]
 
 
 @pytest.mark.parametrize("folder", [f for f in SESSIONS if not ended(f)], ids=named)
