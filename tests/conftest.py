@@ -1,5 +1,6 @@
 """What all tests share: one seed, and hypothesis without chance or clocks."""
 
+import gc
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,17 @@ def pytest_report_header() -> str:
         f"tier of the tests: {TIER.name.lower()}; "
         f"seed: {SEED}; hypothesis derives its own from each test"
     )
+
+
+def pytest_collection(session: pytest.Session) -> None:  # noqa: ARG001 - as hooks are called
+    """Have nobody look for garbage among modules and tests: hardly any of it is."""
+    gc.disable()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:  # noqa: ARG001
+    """Look for garbage again, but never among what was collected: it stays to the end."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -5,11 +5,11 @@ import io
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.analysis.making import all_tables, made, table_of
-from tests.tiers import examples
+from tests.tiers import by_tier
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.trials import Places
@@ -136,7 +136,7 @@ TRIALS = st.lists(
 )
 
 
-@examples(15)
+@settings(max_examples=by_tier(4, 15, 750))  # each makes all tables
 @given(TRIALS)
 def test_of_any_trials_all_tables_are_made_and_what_is_missing_has_a_reason(rows):
     # Tables refuse what is not finite, and what is missing without a note.

@@ -45,7 +45,10 @@ def descriptors():
 
 
 def test_a_life():
-    """Start, a line, a pause, a death, another start, an end: with one process, for its time."""
+    """Start, a line, a pause, a death, another start, an end: with one process, for its time.
+
+    Keys of the terminal do not stop it, and a picture for another array is refused here.
+    """
     before = descriptors()
     with Host("sim:?hand=sweep:100", info(), ROOM) as host:
         line = picture(mapping="sheared")
@@ -60,6 +63,13 @@ def test_a_life():
         line.frame(float(ticks["x_mm"][-1]), want)
         assert want.any()
         np.testing.assert_array_equal(ticks["frame"][-1], want.astype(np.float32))
+
+        for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
+            os.kill(host.process_id, number)  # as keys of the terminal do
+        other = VBD.style.render(np.zeros(1, np.uint8), VBD.display)
+        with pytest.raises(ValueError, match="for 1 × 12 actuators"):
+            host.show(other, 1)
+        until(host, lasting(host.tally.ticks + 100))
 
         host.paused = True
         until(host, lambda new: new.size and not new["frame"][-1].any())
@@ -137,14 +147,6 @@ def test_a_simulated_hand_is_steered_past_the_engine():
         until(host, lambda new: new.size and steering.done_at(int(new["device_ns"][-1])))
 
 
-def test_keys_of_the_terminal_do_not_stop_the_process_that_drives_the_device():
-    with Host("sim:?hand=sweep:100", info(), ROOM) as host:
-        for number in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
-            os.kill(host.process_id, number)
-        ticks = host.tally.ticks
-        until(host, lasting(ticks + 100))
-
-
 _PARENT = """
 import sys, time
 from tests.engine.test_host import ROOM, info, picture
@@ -200,11 +202,3 @@ def test_without_the_right_to_real_time_a_sentence_says_how_to_get_it():
     assert said.startswith("timing: no real-time priority and no locked memory, so that")
     assert "/etc/security/limits.d" in said
     assert said.count("\n") == 1
-
-
-def test_a_picture_for_another_array_is_refused_here_and_the_host_lives():
-    other = VBD.style.render(np.zeros(1, np.uint8), VBD.display)
-    with Host("sim:?hand=sweep:100", info(), ROOM) as host:
-        with pytest.raises(ValueError, match="for 1 × 12 actuators"):
-            host.show(other, 1)
-        until(host, lasting(100))

@@ -26,15 +26,19 @@ from vbraille.simulation.simulated import SimulatedDevice
 """
 
 
+def source_of(body, head="", kind="SimulatedDevice"):
+    """A driver's module, of some lines of a class's body."""
+    lines = "".join(f"    {line}\n" for line in body.splitlines())
+    opener = "def open_other(address, wanted):\n    return Other(wanted)\n"
+    return f"{_HEAD}{head}\nclass Other({kind}):\n{lines}\n{opener}"
+
+
 @pytest.fixture
 def driver(tmp_path, monkeypatch):
     """Install a driver ``other`` of some lines of a class's body; its module's lines."""
 
     def install(body, head="", kind="SimulatedDevice"):
-        source = f"{_HEAD}{head}\nclass Other({kind}):\n" + "".join(
-            f"    {line}\n" for line in body.splitlines()
-        )
-        source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
+        source = source_of(body, head, kind)
         folder = drivers.install(tmp_path, "other", "open_other", source)["PYTHONPATH"]
         monkeypatch.setenv("PYTHONPATH", folder)
         return source.splitlines()
@@ -82,18 +86,19 @@ def test_what_a_driver_raises_is_said_by_the_parent_with_file_and_line(driver, t
 
 
 _PARENT = """
-import sys, time
+import time
 from tests.engine.test_host import ROOM, info
-from vbraille.devices.base import Placing
-from vbraille.devices.events import Changed, Difference, Notice, NotInTime, Stranger
 from vbraille.engine.host import Host
-host = Host("other:", info(), ROOM)
-host.launch()
-print(host.process_id, flush=True)
-host.start()
-while host.tally.ticks < 50:
+hosts = [Host(f"{name}:", info(), ROOM) for name in ("opened", "closed", "read")]
+for host in hosts:
+    host.launch()
+print(*(host.process_id for host in hosts), flush=True)
+for host in hosts[1:]:
+    host.start()
+while min(host.tally.ticks for host in hosts[1:]) < 50:
     time.sleep(0.01)
-    host.poll()
+    for host in hosts[1:]:
+        host.poll()
 print("reading", flush=True)
 time.sleep(600)
 """
@@ -107,37 +112,28 @@ _STUCK = {
 
 
 def test_a_driver_that_waits_for_ever_outlives_a_killed_parent_by_seconds(tmp_path):
-    parents, hosts = [], []
+    for name, body in _STUCK.items():
+        source = source_of(body.format(wait=_WAIT))
+        environment = drivers.install(tmp_path, name, "open_other", source)
+    hosts = []
+    parent = subprocess.Popen(
+        [sys.executable, "-c", _PARENT],
+        env={**environment, "PYTHONPATH": f"{environment['PYTHONPATH']}:."},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     try:
-        for name, body in _STUCK.items():
-            folder = tmp_path / name
-            folder.mkdir()
-            lines = body.format(wait=_WAIT).splitlines()
-            source = f"{_HEAD}\nclass Other(SimulatedDevice):\n" + "".join(
-                f"    {line}\n" for line in lines
-            )
-            source += "\ndef open_other(address, wanted):\n    return Other(wanted)\n"
-            path = drivers.install(folder, "other", "open_other", source)["PYTHONPATH"]
-            parent = subprocess.Popen(
-                [sys.executable, "-c", _PARENT],
-                env={**os.environ, "PYTHONPATH": f"{path}:."},
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-            )
-            parents.append(parent)
-            hosts.append(os.pidfd_open(int(parent.stdout.readline())))
-        for name, parent in zip(_STUCK, parents, strict=True):
-            said = parent.stderr if name == "opened" else parent.stdout
-            assert said.readline() in ("stuck\n", "reading\n")
-        for parent in parents:
-            parent.kill()
+        hosts = [os.pidfd_open(int(number)) for number in parent.stdout.readline().split()]
+        assert len(hosts) == len(_STUCK)
+        assert parent.stderr.readline() == "stuck\n"
+        assert parent.stdout.readline() == "reading\n"
+        parent.kill()
         for host in hosts:
             assert select.select([host], [], [], PATIENCE_S)[0], "the host goes on for ever"
     finally:
-        for parent in parents:
-            parent.kill()
-            parent.communicate()
+        parent.kill()
+        parent.communicate()
         for host in hosts:
             os.close(host)
 
@@ -197,36 +193,28 @@ def test_a_host_that_dies_when_it_starts_is_seen_while_a_child_holds_the_pipe(dr
 FACE = "\U0001f600"
 
 
-def told_by(driver, event):
-    """What comes of an event that a driver tells once, but for what the system refuses."""
-    driver(f"def take_events(self):\n    return [{event}] if self.frames == 99 else []")
+def told_by(driver, *events):
+    """What comes of events that a driver tells once, but for what the system refuses."""
+    told_at_once = ", ".join(events)
+    driver(f"def take_events(self):\n    return [{told_at_once}] if self.frames == 99 else []")
     told = []
     with Host("other:", info(), ROOM) as host:
         until(host, lambda new: told.extend(host.take_events()) or lasting(200)(new))
     return [event for event in told if not isinstance(event, NotInTime)]
 
 
-@pytest.mark.parametrize(
-    ("made", "event"),
-    [
-        (f"events.Notice(3, {FACE!r} * 9999)", Notice(3, FACE * 300)),
-        (
-            f"events.Stranger({FACE!r} * 250, {FACE!r} * 250, fault={FACE!r} * 999)",
-            Stranger(FACE * 60, FACE * 60, fault=FACE * 60),
-        ),
-    ],
-)
-def test_long_texts_come_whole_or_cut(driver, made, event):
-    assert told_by(driver, made) == [event]
-
-
-def test_events_come_as_they_were_told(driver):
-    event = Changed((Difference("name", "a", "b"),), gain=3, placing=Placing.STOP, times=2)
-    made = (
+def test_events_come_as_they_were_told_and_long_texts_whole_or_cut(driver):
+    made = {
         "events.Changed((events.Difference('name', 'a', 'b'),), gain=3, "
-        "placing=events.Placing.STOP, times=2)"
-    )
-    assert told_by(driver, made) == [event]
+        "placing=events.Placing.STOP, times=2)": Changed(
+            (Difference("name", "a", "b"),), gain=3, placing=Placing.STOP, times=2
+        ),
+        f"events.Notice(3, {FACE!r} * 9999)": Notice(3, FACE * 300),
+        f"events.Stranger({FACE!r} * 250, {FACE!r} * 250, fault={FACE!r} * 999)": Stranger(
+            FACE * 60, FACE * 60, fault=FACE * 60
+        ),
+    }
+    assert told_by(driver, *made) == list(made.values())
 
 
 def test_what_is_no_event_ends_the_reading_in_a_sentence(driver):

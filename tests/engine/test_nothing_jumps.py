@@ -8,7 +8,7 @@ from tests.wired import reading
 from vbraille.devices.serial.conversation import Conversation
 from vbraille.simulation.firmware import Controller
 
-BLOCK = 15
+BLOCK = by_tier(6, 15, 15)
 BLOCKS = pytest.mark.parametrize("block", range(by_tier(1, 7, 200)))
 
 

@@ -14,6 +14,7 @@ import pytest
 
 from tests.engine.lendable import Rig, Twin, assert_same_tick, known, sockets, terminal
 from tests.engine.test_loop import picture
+from tests.tiers import by_tier
 from vbraille.devices.events import Notice, Silent, Unplugged
 from vbraille.devices.serial.conversation import IDLE_MS
 from vbraille.devices.wire.codec import Decoder, Levels, encode
@@ -126,7 +127,7 @@ class Wrong:
         return message
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(by_tier(3, 8, 80)))
 def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(seed):
     print(f"seed {seed}")
     rig = Rig()

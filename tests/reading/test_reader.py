@@ -33,11 +33,20 @@ class Bench:
     """A reader with its device, and all that it says."""
 
     def __init__(
-        self, text=TEXT, hand=None, tuning=STRESS2.style.tuning, width=20, book=None, **options
+        self,
+        text=TEXT,
+        hand=None,
+        tuning=STRESS2.style.tuning,
+        width=20,
+        book=None,
+        rate_hz=1000.0,
+        **options,
     ):
         self.clock = ManualClock()
-        self.device = Device(self.clock, hand)
-        self.engine = LocalEngine(self.device, self.clock, poll_ticks=10)
+        self.device = Device(self.clock, hand, rate_hz=rate_hz)
+        self.engine = LocalEngine(
+            self.device, self.clock, rate_hz=rate_hz, poll_ticks=round(rate_hz / 100)
+        )
         self.loop = self.engine.loop
         self.said: list[str] = []
         if book is None:

@@ -3,9 +3,14 @@
 import pytest
 
 from tests.engine.test_loop import straight
-from tests.reading.test_reader import Bench
+from tests.reading import test_reader
 from vbraille.devices.base import Placing
 from vbraille.engine.record import Flag
+
+
+def Bench(**options):  # noqa: N802 - as the one of all tests of readers
+    """A bench of few ticks a second: what is tested here takes many seconds."""
+    return test_reader.Bench(rate_hz=200.0, **options)
 
 
 def waiting(bench):
@@ -22,9 +27,9 @@ def test_a_hand_that_stops_within_a_line_is_told_once_how_the_next_one_comes():
     (said,) = waiting(bench)
     assert said.startswith("waiting: the finger is still at 45 mm, and line 1 ends at ")
     assert said.endswith("read to its end and move back to the left, or Ctrl-C stops")
-    bench.run(30)
+    bench.run(15)
     bench.device.move(straight((0, 40.0), (1, 42.0)))
-    bench.run(30)
+    bench.run(15)
     assert len(waiting(bench)) == 1
     assert bench.reader.hopeless is None
 
@@ -52,7 +57,7 @@ def test_nobody_is_told_who_is_not_waited_for(how):
         bench.device.placing = Placing.MARK
     elif how == "at the end":
         bench.device.move(straight((0, -10.8), (1, 100.0), (2, -10.8)))
-    bench.run(30)
+    bench.run(15)
     assert waiting(bench) == []
 
 
@@ -88,7 +93,7 @@ def test_a_hand_that_turns_back_before_the_end_is_told(places, hopeless):
 def test_a_hand_that_waits_at_the_left_is_no_carriage_in_need():
     bench = Bench(text="one two three")
     bench.device.move(straight((0, -10.8), *((n, -10.8 + 5 * (n % 2)) for n in range(1, 20))))
-    bench.run(25)
+    bench.run(21)
     assert bench.reader.hopeless is None
 
 

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.no_cover
     "name", [pytest.param("legibility", marks=heavy), pytest.param("letters", marks=heavy), "words"]
 )
 def test_without_noise_every_string_of_every_protocol_is_read_right(tmp_path, name):
-    sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:200").sit()
+    sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:400").sit()
     for trial in sat.record.plan.trials:
         assert sat.progress.trials[trial.number].answer == trial.presented, trial
     assert sat.progress.ended
@@ -27,7 +27,7 @@ def test_without_noise_every_string_of_every_protocol_is_read_right(tmp_path, na
 
 @pytest.mark.parametrize("name", ["tuning-width", pytest.param("tuning-spacing", marks=heavy)])
 def test_without_noise_the_nearer_to_nominal_is_chosen_of_every_pair(tmp_path, name):
-    sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:200").sit()
+    sat = Session(tmp_path / "s", builtin_text(name), hand="sweep:400").sit()
     for trial in sat.record.plan.trials:
         off = [abs(stimulus.value - 2.0) for stimulus in trial.stimuli]
         if abs(off[0] - off[1]) > 0.1:
