@@ -198,9 +198,7 @@ def test_answers_and_folders_of_a_session_that_cannot_be_used_are_said(tmp_path)
     ):
         create().run("simulate:0.3")
     session = create()
-    with pytest.raises(
-        vbraille.InputError, match=r"^the answer to trial 1 is 5; it must be a line"
-    ):
+    with pytest.raises(vbraille.InputError, match=r"^the answer to trial 1 is 5; it must be a"):
         session.run(lambda _trial: 5)
     with pytest.raises(
         vbraille.InputError, match="is there already; give a new directory with ‹fo"

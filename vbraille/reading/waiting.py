@@ -181,8 +181,8 @@ class Waiting:
         if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
             self.hopeless = (
                 f"line {self._number} is read and never done: the finger turns at {last[-1]:.1f} "
-                f"mm each time, and the left stop is at {self._home_mm - HOME_MM:.1f} mm; see what is "
-                f"in the carriage's way, or that its driver says -span_mm / 2 at its left stop"
+                f"mm each time, and the left stop is at {self._home_mm - HOME_MM:.1f} mm; see what "
+                f"is in the carriage's way, or that its driver says -span_mm / 2 at its left stop"
             )
 
     def _count_turns(self, x_mm: NDArray[np.float64]) -> None:
