@@ -170,6 +170,27 @@ def test_lines_that_a_text_does_not_have_are_not_shown_and_nothing_is_after_clos
         opened.show("abc")
 
 
+class ZeroAtTheLeftStop(Still):
+    """A device whose carriage a motor moves to and fro, and that says 0 at its left stop."""
+
+    milliseconds = 0
+
+    def read(self):
+        self.milliseconds += 1
+        way_mm = 150.0 - abs(0.06 * self.milliseconds % 300.0 - 150.0)
+        return vbraille.Pose(self.milliseconds * 1_000_000, way_mm)
+
+
+def test_a_device_whose_lines_are_never_done_says_why():
+    said = []
+    with vbraille.open(ZeroAtTheLeftStop(), clock=ManualClock(), say=said.append) as opened:
+        lines = opened.read("abc")
+        assert next(lines).number == 1
+        with pytest.raises(vbraille.DeviceError, match="its driver says -span_mm / 2 at its left"):
+            next(lines)
+    assert "the next line comes at the left stop, which is at -3.8 mm" in said[0]
+
+
 TWO = """
 format = 1
 name = "two"
