@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import vbraille
+from vbraille.testing import ManualClock
 
 PAGE = Path(__file__).parents[1] / "docs" / "api.md"
 OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
@@ -112,3 +113,118 @@ def test_each_name_is_there_and_no_other():
     with pytest.raises(AttributeError, match="no attribute 'rendr_text'"):
         vbraille.rendr_text  # noqa: B018
     assert set(vbraille.__all__) <= set(dir(vbraille))
+
+
+class Still(vbraille.Device):
+    """A device that stands at its left stop."""
+
+    display = vbraille.VBD.display
+
+    def read(self):
+        return vbraille.Pose(0, -self.display.span_mm / 2)
+
+    def _send(self, frame):
+        pass
+
+    def _release(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda: vbraille.VBD.style.replace(texture=2), "texture is 2; it must be 0 to 1"),
+        (lambda: vbraille.VBD.style.replace(texture="x"), "texture is 'x'; it must be a number"),
+        (lambda: vbraille.VBD.style.replace(mapping="sheared"), r"MAPPINGS\['sheared'\]"),
+        (lambda: vbraille.VBD.style.replace(wave=1), "a style has no wave; it has profile, "),
+        (lambda: vbraille.VBD.style.replace(cell_gap_mm=5), "cell_gap_mm is of the geometry"),
+        (lambda: vbraille.render_text("a", display="vbd"), "'vbd'; give vbraille.VBD$"),
+        (lambda: vbraille.render_text("a", display=3), "give vbraille.VBD, vbraille.STRESS2 or"),
+        (lambda: vbraille.render_text("a", style="dots"), "style is 'dots'; give a vbraille.Br"),
+        (lambda: vbraille.render_text(""), "^the text has nothing to read in it; give some$"),
+        (lambda: vbraille.render_text("a", line=0), "^line is 0; it must be 1 or more$"),
+        (lambda: vbraille.open(Still), r"^Still is a class; give a device of it, as in open\(S"),
+        (lambda: vbraille.open(3), "^device is 3; give a spec such as 'sim', or a"),
+        (lambda: vbraille.open("sim", "vbd"), "'vbd'; give vbraille.VBD$"),
+        (lambda: vbraille.analyse([]), "^nothing is given to analyse; give directories"),
+        (lambda: vbraille.analyse("Q1"), "^there is no Q1; give the directory"),
+        (lambda: vbraille.analyse(Path("Q1")), "^there is no Q1; give the directory"),
+    ],
+)
+def test_what_cannot_be_used_is_said_in_one_sentence(call, says):
+    with pytest.raises(vbraille.InputError, match=says):
+        call()
+
+
+def test_lines_that_a_text_does_not_have_are_not_shown_and_nothing_is_after_close():
+    with vbraille.open(Still(), clock=ManualClock()) as opened:
+        for lines, says in (
+            ({"first": 0}, "^first is 0; it must be 1 or more$"),
+            ({"first": 99}, "^the text ends at line 1; line 99 is past that$"),
+            ({"first": 3, "last": 2}, "^last is 2 and first is 3; last must not be before"),
+        ):
+            with pytest.raises(vbraille.InputError, match=says):
+                opened.show("abc", **lines)
+        opened.show("abc", last=99)
+    with pytest.raises(vbraille.DeviceError, match=r"^the device is closed; open it again$"):
+        opened.show("abc")
+
+
+class ZeroAtTheLeftStop(Still):
+    """A device whose carriage a motor moves to and fro, and that says 0 at its left stop."""
+
+    milliseconds = 0
+
+    def read(self):
+        self.milliseconds += 1
+        way_mm = 150.0 - abs(0.06 * self.milliseconds % 300.0 - 150.0)
+        return vbraille.Pose(self.milliseconds * 1_000_000, way_mm)
+
+
+def test_a_device_whose_lines_are_never_done_says_why():
+    said = []
+    with vbraille.open(ZeroAtTheLeftStop(), clock=ManualClock(), say=said.append) as opened:
+        lines = opened.read("abc")
+        assert next(lines).number == 1
+        with pytest.raises(vbraille.DeviceError, match="its driver says -span_mm / 2 at its left"):
+            next(lines)
+    assert "the next line comes at the left stop, which is at -3.8 mm" in said[0]
+
+
+TWO = """
+format = 1
+name = "two"
+title = "Two letters"
+source = "ours"
+model = "vbd"
+[design]
+kind = "combinations"
+characters = ["a", "c"]
+length = 1
+"""
+
+
+def test_answers_and_folders_of_a_session_that_cannot_be_used_are_said(tmp_path):
+    Path(tmp_path, "two.toml").write_text(TWO)
+    fast = vbraille.Conditions(fast=True, hand="sweep:150")
+
+    def create():
+        return vbraille.Session.create(
+            tmp_path / "two.toml", "P01", folder=tmp_path / "P01", seed=1, conditions=fast
+        )
+
+    assert repr(create().progress) == "<Progress: 0 of 2 trials have answers>"
+    with pytest.raises(
+        vbraille.InputError, match=r"^simulate:0\.3 is no file; give typed, simulated:N"
+    ):
+        create().run("simulate:0.3")
+    session = create()
+    with pytest.raises(vbraille.InputError, match=r"^the answer to trial 1 is 5; it must be a"):
+        session.run(lambda _trial: 5)
+    with pytest.raises(
+        vbraille.InputError, match="is there already; give a new directory with ‹fo"
+    ):
+        create()
+    done = vbraille.Session.resume(tmp_path / "P01").run(lambda trial: trial.presented).progress
+    assert (done.done, done.planned, done.ended) == (2, 2, True)
+    assert repr(done) == "<Progress: 2 of 2 trials have answers, ended>"

@@ -38,6 +38,7 @@ def test_a_setting_is_spelled_as_an_option_by_the_command_line_alone():
     message = f"choose another {setting('model')}, or {setting('rate')} 40 or less"
     assert message == "choose another ‹model›, or ‹rate› 40 or less"
     assert spelled(message) == "choose another --model, or --rate 40 or less"
+    assert spelled(f"give a new directory with {setting('folder')}").endswith("with --out")
     assert spelled("a name of ‹two words›") == "a name of ‹two words›"
 
 

@@ -149,8 +149,15 @@ def write_folder(
         raise
 
 
-def check_free(folder: Path) -> None:
+def check_free(folder: Path, name: str = "out") -> None:
     """Check that a new directory can have this name.
+
+    Parameters
+    ----------
+    folder
+        The directory.
+    name
+        What whoever chooses it calls it.
 
     Raises
     ------
@@ -166,7 +173,7 @@ def check_free(folder: Path) -> None:
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
     if taken:
-        raise InputError(f"{folder} is there already; give a new directory with {setting('out')}")
+        raise InputError(f"{folder} is there already; give a new directory with {setting(name)}")
 
 
 def missing(folder: Path) -> list[Path]:

@@ -104,7 +104,7 @@ def test_durations_are_those_of_the_export(sessions):
 
 
 def test_the_order_in_which_things_are_given_is_of_no_matter(sessions, table):
-    paths = [table, *(sessions / name for name in ("read-P10", "compared"))]
+    paths = [table, *(sessions / name for name in ("read-P10", "compared", "read-P2"))]
     texts = {"".join(to_json(analyse(order))) for order in (paths, paths[::-1])}
     assert len(texts) == 1
 

@@ -123,3 +123,37 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
         "the device has taken no frames for 10 s, and line 2 was not felt to its end; switch it "
         "off and on, and read on from there"
     )
+
+
+@pytest.mark.no_cover
+@pytest.mark.parametrize(("places", "hopeless"), [((0, 0.4, 0), True), ((0, 9, 0), False)])
+def test_a_hand_that_never_comes_back_to_the_left_stop_is_told(places, hopeless):
+    bench = Bench(text="one\n\ntwo\n")
+    way = [(0, 0.0), (1, 100.0)]
+    for n, place_mm in enumerate(places):
+        way += [(2 * n + 2, place_mm), (2 * n + 3, 100.0)]
+    bench.device.move(straight(*way))
+    bench.run(2.9)
+    (said,) = waiting(bench)
+    assert said == (
+        "waiting: line 1 is read, and the finger turns right again at 5.4 mm; the next line comes "
+        "at the left stop, which is at -5.4 mm, or Ctrl-C stops"
+    )
+    bench.run(4.5)
+    assert len(waiting(bench)) == 1
+    assert (bench.reader.hopeless is not None) == hopeless
+    if hopeless:
+        assert bench.reader.hopeless.startswith("line 1 is read and never done: the finger turns")
+    assert bench.reader.line_number == 1
+
+
+@pytest.mark.no_cover
+def test_a_hand_that_reads_the_end_of_a_line_again_is_told_nothing():
+    bench = Bench(text="one two three four")
+    way = [(0, -10.8)]
+    for n in range(5):
+        way += [(2 * n + 1, 120.0), (2 * n + 2, 75.0)]
+    bench.device.move(straight(*way))
+    bench.run(9)
+    assert waiting(bench) == []
+    assert bench.reader.hopeless is None

@@ -7,6 +7,7 @@ import pytest
 
 from tests.engine.test_loop import info
 from vbraille.devices import Device, open_device
+from vbraille.errors import InputError
 from vbraille.pose import Pose
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.testing.conformance import (
@@ -14,6 +15,7 @@ from vbraille.testing.conformance import (
     check_bad_frames,
     check_close,
     check_frames,
+    check_left_stop,
     check_members,
     check_samples,
 )
@@ -51,6 +53,22 @@ class Backwards(SimulatedDevice):
     def read(self):
         self.time_ns -= 1
         return Pose(self.time_ns, 0.0)
+
+
+class Pacing(SimulatedDevice):
+    """A motor moves its carriage to and fro, a millimetre a sample."""
+
+    left_mm = None
+
+    def read(self):
+        self.samples = getattr(self, "samples", 0) + 1
+        way_mm = abs((self.samples + 100) % 200 - 100.0)
+        left_mm = -self.display.span_mm / 2 if self.left_mm is None else self.left_mm
+        return Pose(self.samples, left_mm + way_mm)
+
+
+class ZeroAtTheLeftStop(Pacing):
+    left_mm = 0.0
 
 
 class CountsInAProperty(SimulatedDevice):
@@ -101,11 +119,22 @@ class RestedOrNot(SimulatedDevice):
         (OffTheRail, check_samples),
         (Nowhere, check_samples),
         (Backwards, check_samples),
+        (ZeroAtTheLeftStop, check_left_stop),
     ],
 )
 def test_broken_devices_are_caught(broken, check):
     with pytest.raises(AssertionError):
         check(lambda: broken(info()))
+
+
+def test_a_carriage_that_paces_from_its_left_stop_is_right():
+    check_left_stop(lambda: Pacing(info()))
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_a_device_that_is_open_already_is_no_way_to_open_one(check):
+    with pytest.raises(InputError, match="such as the class SimulatedDevice, and not what is open"):
+        check(SimulatedDevice(info()))
 
 
 class Logging(Device):

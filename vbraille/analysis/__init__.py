@@ -20,12 +20,12 @@ numbers alone.
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-    from os import PathLike
 
     from vbraille.analysis.results import Results
 
@@ -33,7 +33,7 @@ __all__ = ["analyse", "analyse_scores"]
 
 
 def analyse(
-    paths: Iterable[str | PathLike[str]],
+    paths: str | PathLike[str] | Iterable[str | PathLike[str]],
     *,
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
@@ -49,7 +49,7 @@ def analyse(
     ----------
     paths
         Directories of sessions, and CSV files with the columns ``participant``, ``condition``,
-        ``presented`` and ``answered``, in any order.
+        ``presented`` and ``answered``, in any order; one may stand by itself.
     exclude
         Participants who are left out, each with the reason.
     protocol
@@ -82,7 +82,8 @@ def analyse(
     from vbraille.analysis.input.study import load_study
 
     options = options_of(correction, factors=factors, marks=marks, seed=seed)
-    study = load_study([Path(p) for p in paths], exclude=exclude, protocol=protocol, sites=sites)
+    given = [paths] if isinstance(paths, str | PathLike) else paths
+    study = load_study([Path(p) for p in given], exclude=exclude, protocol=protocol, sites=sites)
     return analyse_study(study, options)
 
 

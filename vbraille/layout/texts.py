@@ -79,8 +79,10 @@ def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool
     InputError
         If the text has nothing to show.
     """
-    document = Document.from_text(text, keep_lines=keep_lines)
-    layout = Layout(Book(document, table), width)
-    if layout.line(1) is None:
+    layout = None
+    if text:
+        document = Document.from_text(text, keep_lines=keep_lines)
+        layout = Layout(Book(document, table), width)
+    if layout is None or layout.line(1) is None:
         raise InputError("the text has nothing to read in it; give some")
     return layout

@@ -9,6 +9,7 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
+from vbraille.reading.asked import check_asked
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.wording import count
 
@@ -104,6 +105,7 @@ def render_text(
     >>> float(made.frames.max())
     1.0
     """
+    check_asked(display, style)
     model = display if isinstance(display, Model) else model_of(display)
     if style is None:
         geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)
@@ -119,6 +121,8 @@ def render_text(
             f"the text takes {count(layout.count(), 'line')} on the {model.title}; say which with "
             f"line=1, and so on"
         )
+    if line is not None and line < 1:
+        raise InputError(f"line is {line}; it must be 1 or more")
     found = layout.line(line or 1)
     if found is None:
         raise InputError(f"the text ends at line {layout.count()}; line {line} is past that")

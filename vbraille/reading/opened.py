@@ -14,6 +14,7 @@ from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
+from vbraille.reading.asked import check_lines
 from vbraille.reading.reader import Echo, Reader
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
@@ -93,6 +94,7 @@ class OpenDevice:
         self._model: Model | None = None
         self._device = device if isinstance(device, Device) else None
         self._engine: Host | LocalEngine
+        self._closed = False
         # A recorded hand reads no more than it has recorded.
         self._once = isinstance(parse_hand(hand, seed), Recorded)
         self._simulated = isinstance(device, str) and is_simulated(device)
@@ -146,6 +148,7 @@ class OpenDevice:
     def start_again(self) -> None:
         """Drive the device again, after a `vbraille.engine.host.HostDiedError`."""
         self.placing = Placing.DONE
+        self._closed = False
         self._engine.start()
         self.reader.steer()
 
@@ -182,13 +185,18 @@ class OpenDevice:
         Raises
         ------
         InputError
-            If the text, or its table, cannot be used.
+            If the text, or its table, cannot be used, or it has no such lines.
+        DeviceError
+            If the device is closed.
         """
+        if self._closed:
+            raise DeviceError("the device is closed; open it again")
         model = self.model
         if isinstance(text, str):
             width = cells_per_line(model.style.geometry, model.display)
             chosen = choose_table(language, grade, table)
             text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
+        check_lines(text, first, last)
         self._reader = Reader(
             text,
             self._engine,
@@ -341,7 +349,7 @@ class OpenDevice:
 
         Raises
         ------
-        ValueError
+        InputError
             If a value is out of range.
         """
         if self._reader is not None:
@@ -355,6 +363,7 @@ class OpenDevice:
 
     def close(self) -> None:
         """Bring the array to rest, then let the device go. Further calls do nothing."""
+        self._closed = True
         if isinstance(self._engine, Host):
             self._engine.close()
         elif self._device is not None:

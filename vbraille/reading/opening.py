@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from vbraille.devices.base import Device
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.display import check_rate
+from vbraille.errors import InputError
+from vbraille.reading.asked import check_asked
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.render.braille.models import STRESS2, Model, model_of
 from vbraille.simulation.specs import refuse_hand
@@ -14,7 +17,6 @@ from vbraille.simulation.specs import refuse_hand
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.devices.base import Device
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.render.braille.style import BrailleStyle
@@ -74,6 +76,12 @@ def open_device(
     1 Two lines of braille, read by
     2 a hand that sweeps over them
     """
+    if not isinstance(device, str | Device):
+        if isinstance(device, type):
+            name = device.__name__
+            raise InputError(f"{name} is a class; give a device of it, as in open({name}())")
+        raise InputError(f"device is {device!r}; give a spec such as 'sim', or a vbraille.Device")
+    check_asked(display, style)
     if isinstance(device, str):
         refuse_hand(device, hand=hand, seed=seed)
     check_rate(rate_hz)

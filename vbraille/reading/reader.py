@@ -179,7 +179,7 @@ class Reader:
 
         Raises
         ------
-        ValueError
+        InputError
             If a value is out of range.
         """
         self.style = self.style.replace(**turned)

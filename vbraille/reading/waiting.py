@@ -67,6 +67,9 @@ class Waiting:
         self._at_mm = np.nan  # place where the hand is still
         self._farthest_mm = -np.inf  # farthest place since the hand was at the left
         self._turns_mm: list[float] = []
+        self._leftwards = False  # which way it goes once it has been at the end, how far that way
+        self._edge_mm = -np.inf
+        self._backs_mm: list[float] = []
 
     def rest(self) -> None:
         """Note that somebody wants the array to rest, so that what went before does not count."""
@@ -93,7 +96,11 @@ class Waiting:
             self._since_ns, self._at_mm = int(ticks["time_ns"][-1]), float(x_mm[-1])
         elif ticks["time_ns"][-1] - self._since_ns > STILL_S * _NS_PER_S:
             yield from self._once("still", self._still(int(ticks["flags"][-1]), reached=reached))
-        if not reached:
+        if reached:
+            self._count_backs(x_mm)
+            if self._backs_mm:
+                yield from self._once("back", self._turned_back())
+        else:
             self._count_turns(x_mm)
             if len(self._turns_mm) >= TURNS:
                 yield from self._once("turned", self._turned())
@@ -152,6 +159,31 @@ class Waiting:
             f"{self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to the "
             f"left, or {self._otherwise}"
         )
+
+    def _turned_back(self) -> str:
+        return (
+            f"waiting: line {self._number} is read, and the finger turns right again at "
+            f"{self._backs_mm[-1]:.1f} mm; the next line comes at the left stop, which is at "
+            f"{self._home_mm - HOME_MM:.1f} mm, or {self._otherwise}"
+        )
+
+    def _count_backs(self, x_mm: NDArray[np.float64]) -> None:
+        """Keep where a hand turned that has read the line, and does not come to the left stop."""
+        for x in x_mm[~np.isnan(x_mm)].tolist():
+            way_mm = self._edge_mm - x if self._leftwards else x - self._edge_mm
+            if way_mm >= 0:
+                self._edge_mm = x
+            elif way_mm < -LEAST_WAY_MM:
+                if self._leftwards and self._edge_mm < self._end_mm / 2:
+                    self._backs_mm.append(self._edge_mm)
+                self._leftwards, self._edge_mm = not self._leftwards, x
+        last = self._backs_mm[-TURNS:]
+        if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
+            self.hopeless = (
+                f"line {self._number} is read and never done: the finger turns at {last[-1]:.1f} "
+                f"mm each time, and the left stop is at {self._home_mm - HOME_MM:.1f} mm; see what "
+                f"is in the carriage's way, or that its driver says -span_mm / 2 at its left stop"
+            )
 
     def _count_turns(self, x_mm: NDArray[np.float64]) -> None:
         """Keep how far the hand has come, each time that it is back at the left."""

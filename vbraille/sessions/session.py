@@ -172,7 +172,7 @@ class Session:
         session = cls(place, planned, plan, conditions, Progress(plan), engine)
         session.tell(fields or {})
         session._drawn = seed is None
-        check_free(place)
+        check_free(place, "folder")
         return session
 
     @classmethod

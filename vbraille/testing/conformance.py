@@ -12,13 +12,16 @@ A check is given a function that opens a fresh device, and raises AssertionError
 from __future__ import annotations
 
 import math
+import time
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.devices.base import Device
 from vbraille.devices.interface import misfits, wrong_values
 from vbraille.display import Display
-from vbraille.errors import DeviceError
+from vbraille.engine.advance import HOME_MM
+from vbraille.errors import DeviceError, InputError
 from vbraille.pose import Pose
 
 if TYPE_CHECKING:
@@ -26,14 +29,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.devices.base import Device
-
     Open = Callable[[], Device]
+
+# How far a carriage goes before it has turned, and how long and often it is asked where it is.
+_AWAY_MM = 20.0
+_LOOKING_S, _LOOKS = 1.0, 100_000
 
 
 def check_info(open_device: Open) -> None:
     """The device says what it is, and says the same again."""
-    with open_device() as device:
+    with _opened(open_device) as device:
         assert isinstance(device.display, Display), "display must be a Display"
         assert device.display == device.display, "display must stay the same"
         assert device.display.name.strip(), "a device has a name"
@@ -41,7 +46,7 @@ def check_info(open_device: Open) -> None:
 
 def check_members(open_device: Open) -> None:
     """Methods can be called as they will be, what is to be a value is one, and gives its kind."""
-    with open_device() as device:
+    with _opened(open_device) as device:
         for misfit in misfits(device):
             raise AssertionError(misfit)
         for wrong in wrong_values(device):
@@ -50,7 +55,7 @@ def check_members(open_device: Open) -> None:
 
 def check_samples(open_device: Open) -> None:
     """Samples have finite places within the travel, and times that never go back."""
-    with open_device() as device:
+    with _opened(open_device) as device:
         info, last_ns = device.display, None
         for _ in range(100):
             sample = device.read()
@@ -66,9 +71,23 @@ def check_samples(open_device: Open) -> None:
             last_ns = sample.time_ns
 
 
+def check_left_stop(open_device: Open) -> None:
+    """A carriage that turns again and again at its left stop says -span_mm / 2 there.
+
+    It can be told of one that moves by itself, and within a second; any other one is passed.
+    """
+    with _opened(open_device) as device:
+        half_mm = device.display.span_mm / 2
+        left_mm = _turning_place(device)
+    assert left_mm is None or left_mm <= HOME_MM - half_mm, (
+        f"no line would ever be done: the carriage turns at x = {left_mm:.2f} mm, and at its left "
+        f"stop, where the whole array stands before the line, x is -span_mm / 2 = {-half_mm:.2f} mm"
+    )
+
+
 def check_frames(open_device: Open) -> None:
     """Frames from rest to full swing are taken, and left as they were."""
-    with open_device() as device:
+    with _opened(open_device) as device:
         for share in (0.0, 0.25, 1.0):
             frame = _frame(device, share)
             device.write(frame)
@@ -77,7 +96,7 @@ def check_frames(open_device: Open) -> None:
 
 def check_bad_frames(open_device: Open) -> None:
     """A frame that is out of range, no number or of another shape is refused."""
-    with open_device() as device:
+    with _opened(open_device) as device:
         for bad in (-0.001, 1.001, math.nan, math.inf, -math.inf):
             frame = _frame(device, 0.5)
             frame[-1, -1] = bad
@@ -90,7 +109,7 @@ def check_bad_frames(open_device: Open) -> None:
 
 def check_close(open_device: Open) -> None:
     """Closing twice is closing once; nothing is written after it."""
-    device = open_device()
+    device = _opened(open_device)
     device.write(_frame(device, 1.0))
     device.close()
     device.close()
@@ -101,14 +120,49 @@ CHECKS = (
     check_members,
     check_info,
     check_samples,
+    check_left_stop,
     check_frames,
     check_bad_frames,
     check_close,
 )
 
 
+def _opened(open_device: Open) -> Device:
+    """A device that is opened anew; InputError if what is given opens none."""
+    if isinstance(open_device, Device) or not callable(open_device):
+        name = type(open_device).__name__
+        raise InputError(
+            f"a check opens the device by itself; give it what opens one, such as the class "
+            f"{name}, and not what is open already"
+        )
+    return open_device()
+
+
 def _frame(device: Device, share: float) -> NDArray[np.float64]:
     return np.full((device.display.rows, device.display.columns), share)
+
+
+def _turning_place(device: Device) -> float | None:
+    """Where the carriage turned twice, and never was left of it; None if it did not."""
+    least_mm, turns, away = math.inf, 0, False
+    until_s = time.monotonic() + _LOOKING_S
+    for _ in range(_LOOKS):
+        sample = device.read()
+        if time.monotonic() > until_s:
+            break
+        if sample is None:
+            continue
+        if sample.x_mm < least_mm - HOME_MM:
+            least_mm, turns, away = sample.x_mm, 0, False
+        least_mm = min(least_mm, sample.x_mm)
+        if sample.x_mm > least_mm + _AWAY_MM:
+            turns += not away
+            away = True
+        elif sample.x_mm <= least_mm + HOME_MM:
+            away = False
+        if turns > 1:
+            return least_mm
+    return None
 
 
 def _refused(device: Device, frame: NDArray[np.float64], what: str) -> None:

@@ -195,6 +195,8 @@ def _rules(exclude: Mapping[str, str], protocol: str | None) -> list[_Rule]:
 
 def _check_paths(paths: Sequence[Path]) -> None:
     """Raise InputError if there is nothing at a path, or a path is there twice."""
+    if not paths:
+        raise InputError("nothing is given to analyse; give directories of sessions or CSV files")
     seen: set[Path] = set()
     for path in paths:
         if not path.exists():

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from vbraille.braille.geometry import Geometry
+from vbraille.errors import InputError
 from vbraille.render import work
-from vbraille.render.braille.profiles import coefficients
+from vbraille.render.braille.mappings import Mapping
+from vbraille.render.braille.profiles import Profile, coefficients
 from vbraille.render.braille.tuning import Tuning
 from vbraille.render.work import ProgramKind
 
@@ -17,10 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.braille.geometry import Geometry
     from vbraille.display import Display
-    from vbraille.render.braille.mappings import Mapping
-    from vbraille.render.braille.profiles import Profile
     from vbraille.render.program import Program
 
 # Hysteresis between going to the next line of a page and coming back, in line pitches.
@@ -62,8 +63,8 @@ class BrailleStyle:
 
         Raises
         ------
-        ValueError
-            If a value is out of range.
+        InputError
+            If there is no such field, or it cannot have the value.
 
         Examples
         --------
@@ -74,7 +75,15 @@ class BrailleStyle:
         names = {field.name for field in fields(Tuning)}
         turned = {name: value for name, value in changes.items() if name in names}
         others = {name: value for name, value in changes.items() if name not in names}
-        tuning = replace(others.pop("tuning", self.tuning), **turned)
+        for name, value in others.items():
+            _check_field(name, value)
+        for name, value in turned.items():
+            if not isinstance(value, Real):
+                raise InputError(f"{name} is {value!r}; it must be a number")
+        try:
+            tuning = replace(others.pop("tuning", self.tuning), **turned)
+        except ValueError as error:
+            raise InputError(str(error)) from None
         return replace(self, tuning=tuning, **others)
 
     def rows_on(self, display: Display) -> slice:
@@ -183,3 +192,26 @@ class BrailleStyle:
         for row, masks in zip(table[page:], lines, strict=False):
             row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()
         return Program(numbers, table.ravel())
+
+
+# What the fields of a style are, where a program may give something else, and where to find them.
+_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
+    "profile": ((Profile,), "a Profile, such as vbraille.VBD.style.profile"),
+    "mapping": ((Mapping,), "one of vbraille.MAPPINGS, such as vbraille.MAPPINGS['sheared']"),
+    "geometry": ((Geometry,), "a vbraille.Geometry"),
+    "tuning": ((Tuning,), "a vbraille.Tuning"),
+    "first_row": ((Integral, type(None)), "a row, from 0, or None"),
+}
+
+
+def _check_field(name: str, value: object) -> None:
+    """Raise InputError if a style has no such field, or it cannot have such a value."""
+    if name not in _KINDS:
+        tunings = [field.name for field in fields(Tuning)]
+        where = ""
+        if name in {field.name for field in fields(Geometry)}:
+            where = f"; {name} is of the geometry: geometry=replace(style.geometry, {name}=...)"
+        raise InputError(f"a style has no {name}; it has {', '.join((*_KINDS, *tunings))}{where}")
+    kinds, wanted = _KINDS[name]
+    if not isinstance(value, kinds):
+        raise InputError(f"{name} is {value!r}; it must be {wanted}")

@@ -203,6 +203,10 @@ class Progress:
         for event in events:
             self.take(event)
 
+    def __repr__(self) -> str:
+        ended = ", ended" if self.ended else ""
+        return f"<Progress: {self.of_all(self.done)} trials have answers{ended}>"
+
     @property
     def next_trial(self) -> Trial | None:
         """The trial that comes next, or is open; None after the last."""

@@ -251,6 +251,13 @@ def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> An
         except ValueError:
             raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
     else:
+        from difflib import get_close_matches  # takes long to load
+
+        if not Path(spec).exists() and get_close_matches(kind, ("typed", "simulated")):
+            raise InputError(
+                f"{spec} is no file; give typed, simulated:NOISE such as simulated:0.2, or the "
+                f"name of a file"
+            )
         answers = ScriptedAnswers(Path(spec), after)
     answers.name = spec
     return answers

@@ -58,12 +58,17 @@ class GivenAnswers:
         Raises
         ------
         InputError
-            If the line is neither an answer to the trial nor an order.
+            If the line is no text, or neither an answer to the trial nor an order.
         """
         asked = trial.practice, trial.number, attempt
         line = None if asked == self._answered else self._give(trial)
         if line is None:
             return None
+        if not isinstance(line, str):
+            raise InputError(
+                f"the answer to trial {trial.number} is {line!r}; it must be a line of text, such "
+                f"as 'a', or None to stop"
+            )
         try:
             self._answered = asked if _is_answer(self._protocol, trial, line) else None
         except ValueError as error:
