@@ -306,7 +306,7 @@ def test_the_same_input_gives_the_same_bytes(sessions, tmp_path):
         env={**os.environ, "PYTHONHASHSEED": "1"},
     )
     study = load_study(paths)
-    write_report(analyse_study(study, Options()), here(study))
+    write_report(analyse_study(study, Options()), here)
     assert again.wait() == 0
     written = [
         {path.relative_to(out): path.read_bytes() for path in out.rglob("*") if path.is_file()}

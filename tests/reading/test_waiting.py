@@ -128,7 +128,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
 @pytest.mark.no_cover
 @pytest.mark.parametrize(("places", "hopeless"), [((0, 0.4, 0), True), ((0, 9, 0), False)])
 def test_a_hand_that_never_comes_back_to_the_left_stop_is_told(places, hopeless):
-    bench = Bench(text="one\n\ntwo\n")
+    bench = test_reader.Bench(text="one\n\ntwo\n")  # a place is told to 0.1 mm
     way = [(0, 0.0), (1, 100.0)]
     for n, place_mm in enumerate(places):
         way += [(2 * n + 2, place_mm), (2 * n + 3, 100.0)]
