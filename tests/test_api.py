@@ -25,7 +25,7 @@ TOLD = (
     "vbraille.reading.opening",
     "vbraille.render.braille.style",
     "vbraille.sessions.session",
-    "vbraille.testing.simulated",
+    "vbraille.testing.standins",
     "vbraille.wording",
 )
 HEAVY = ("numpy", "numba", "pandas", "scipy", "matplotlib", "h5py", "louis", "typing", "argparse")

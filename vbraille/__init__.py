@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import render_text as render_text
     from vbraille.reading.opened import OpenDevice as OpenDevice
-    from vbraille.reading.opening import open_device as open  # noqa: A004
+    from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import STRESS2 as STRESS2
     from vbraille.render.braille.models import VBD as VBD
@@ -58,7 +58,7 @@ _PLACES = {
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
-    "open": "vbraille.reading.opening:open_device",
+    "open": "vbraille.reading.opening:open_to_read",
     "render_text": "vbraille.reading.frames",
 }
 __all__ = [

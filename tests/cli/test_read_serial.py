@@ -256,11 +256,14 @@ def test_device_info_and_check(call, tmp_path):
         r"clock: \d\.\d{3} s pass on it in a second, 0.98 to 1.02 s are allowed",
         r"place: [\d.]+ to [\d.]+ mm from the left stop, of 300 mm; 2 mm beyond .*",
         r"round trip: median \d+\.\d\d ms, .*",
-        r"bad CRC: 0",
+        r"bad CRC: \d+",
         r"watchdog: tripped \d of 3 times, median [\d.]+ ms after the last frame, .* 71 ms are .*",
     ):
         assert re.search(f"^{measured}$", checked.stdout, re.MULTILINE), checked.stdout
-    # The machine at hand may stall: what the verdict is, is not tested; that there is one, is.
+    # The machine at hand may stall, and a terminal's buffer then drops bytes: only a line that lost
+    # nothing must be a clean one. What the verdict is, is not tested; that there is one, is.
+    if "states missed: 0" in said:
+        assert "bad CRC: 0" in said
     assert said[-1].startswith(("verdict: fit to be read on", "verdict: not fit to be read on: "))
     assert checked.returncode == (0 if said[-1] == "verdict: fit to be read on" else 1)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.input.trials import UNREAD, count, times
+from vbraille.analysis.input.trials import UNREAD, times
 from vbraille.analysis.schemas import NOTE, Kind, to_print
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

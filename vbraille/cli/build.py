@@ -10,7 +10,7 @@ from vbraille.braille.geometry import PRESETS
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
-from vbraille.layout.texts import cells_per_line
+from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.layout.unknown import Unknown
 from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import (
@@ -19,7 +19,6 @@ from vbraille.translate import (
     CellsSource,
     Document,
     Undefined,
-    find_table,
     six_dot_table,
 )
 from vbraille.wording import spelled
@@ -137,20 +136,8 @@ def build_lengths(
 
 
 def build_table(arguments: argparse.Namespace) -> BrailleTable:
-    """Table for the text.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-    """
-    undefined = Undefined(arguments.undefined)
-    if arguments.table is None:
-        language = "en" if arguments.language is None else arguments.language
-        return BrailleTable(find_table(language, arguments.grade), undefined)
-    if arguments.language is not None or arguments.grade is not None:
-        raise InputError("a table has its language and grade; give either --table or those")
-    return BrailleTable(arguments.table, undefined)
+    """Table for the text; InputError if there is no such table."""
+    return choose_table(arguments.language, arguments.grade, arguments.table, arguments.undefined)
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.translate import Book, BrailleTable, Document, Undefined, find_table
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
@@ -55,7 +56,9 @@ def choose_table(
     if table is None:
         return BrailleTable(find_table("en" if language is None else language, grade), how)
     if language is not None or grade is not None:
-        raise InputError("a table has its language and grade; give either a table or those")
+        raise InputError(
+            f"a table has its language and grade; give either {setting('table')} or those"
+        )
     return BrailleTable(table, how)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import BrailleStyle
 
 
-def open_device(
+def open_to_read(
     device: str | Device,
     display: Model | Display | None = None,
     *,

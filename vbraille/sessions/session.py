@@ -23,7 +23,7 @@ from vbraille.sessions.running.answers import (
     parse_answers,
     seed_of,
 )
-from vbraille.sessions.running.scripts import GivenAnswers, check_script
+from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.simulation.specs import device_spec, refuse_hand, steering_of
 from vbraille.wording import setting
 

@@ -9,7 +9,7 @@ from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Defect, Faults
 from vbraille.simulation.specs import parse_hand
 from vbraille.testing.conformance import CHECKS
-from vbraille.testing.simulated import simulated_controller, simulated_device
+from vbraille.testing.standins import simulated_controller, simulated_device
 
 __all__ = [
     "CHECKS",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.input.trials import UNREAD, count, times
+from vbraille.analysis.input.trials import UNREAD, times
 from vbraille.analysis.results import ReportFigure
 from vbraille.analysis.schemas import OTHER
 from vbraille.pictures.charts import Matrix
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable

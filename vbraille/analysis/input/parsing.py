@@ -19,8 +19,9 @@ from vbraille.analysis.input.fieldvalues import (
     parse_whole,
 )
 from vbraille.analysis.input.sets import numbered, string_sets, tell_sessions_apart
-from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, count, factor, name_string
+from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, factor, name_string
 from vbraille.errors import InputError
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

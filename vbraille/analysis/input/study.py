@@ -13,9 +13,10 @@ from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.sittings import read_sitting
 from vbraille.analysis.input.sources import check_copies, distinct_names, named, of_site, told_apart
-from vbraille.analysis.input.trials import LeftOut, chosen, count, natural
+from vbraille.analysis.input.trials import LeftOut, chosen, natural
 from vbraille.errors import InputError
 from vbraille.version import __version__
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

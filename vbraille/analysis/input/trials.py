@@ -188,11 +188,6 @@ def name_string(text: str) -> str:
     return ", ".join([name_cell(mask) for mask in masks_of(text)])
 
 
-def count(number: int, noun: str) -> str:
-    """A number with a noun: "1 trial", "2 trials"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
 def times(number: int) -> str:
     """Words for how often: "once", "2 times"."""
     return "once" if number == 1 else f"{number} times"

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.analysis.input.trials import UNREAD_MASK, count, groups
+from vbraille.analysis.input.trials import UNREAD_MASK, groups
 from vbraille.analysis.measures.legibility import unequal_notes
 from vbraille.analysis.schemas import Column, Kind, Schema
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     import pandas as pd

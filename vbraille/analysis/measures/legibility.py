@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.input.trials import Places, count, groups
+from vbraille.analysis.input.trials import Places, groups
 from vbraille.analysis.measures.averages import mean_or_none
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.intervals import wilson
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     import pandas as pd

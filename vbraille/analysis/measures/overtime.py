@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from vbraille.analysis.input.trials import count, groups
+from vbraille.analysis.input.trials import groups
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

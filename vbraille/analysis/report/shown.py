@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vbraille.analysis.input.trials import count
 from vbraille.analysis.schemas import NOTE, Kind, to_print
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
         check_free(folder)
     results = _analysed(arguments)
     if folder is not None:
-        from vbraille.analysis.report.files import write_report
+        from vbraille.analysis.report.written import write_report
 
         write_report(results, folder)
     if arguments.json:

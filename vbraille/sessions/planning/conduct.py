@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from vbraille.errors import check_range
 from vbraille.sessions.planning.tomlfile import Table
 
 # Form of the names of conditions and fields, which become columns of tables and parts of file
@@ -38,18 +39,6 @@ def check_line(what: str, text: str) -> None:
         raise ValueError(
             f"{what} has {len(text.strip())} characters; it must have 1 to {LONGEST_LINE}"
         )
-
-
-def check_range(what: str, value: float | None, low: float, high: float, unit: str = "") -> None:
-    """Check a number that may be left out.
-
-    Raises
-    ------
-    ValueError
-        If the number is out of range.
-    """
-    if value is not None and not low <= value <= high:
-        raise ValueError(f"{what} is {value:g}{unit}; it must be {low:g} to {high:g}{unit}")
 
 
 class TrialPace(Table, frozen=True):

@@ -7,7 +7,7 @@ from itertools import permutations, product
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.braille.spelling import LETTERS, name_dots
-from vbraille.sessions.planning.conduct import check_range
+from vbraille.errors import check_range
 from vbraille.sessions.planning.spellings import Mask, Masks
 from vbraille.sessions.planning.tomlfile import Table
 

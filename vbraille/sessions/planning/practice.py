@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 from vbraille.braille.spelling import to_braille
-from vbraille.sessions.planning.conduct import check_range
+from vbraille.errors import check_range
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Combinations, Design, Item
 from vbraille.sessions.planning.spellings import Masks
 from vbraille.sessions.planning.tomlfile import Table

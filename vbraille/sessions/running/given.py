@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.answers import PROGRAM, ScriptedAnswers
-from vbraille.sessions.running.console import find_order
+from vbraille.sessions.running.console import find_order, read_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -101,9 +101,6 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
 
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
     """Whether a line is an answer and no order; ValueError if it does not suit its trial."""
-    # This import stands here because numba takes long to load; the host starts meanwhile.
-    from vbraille.sessions.running.console import read_line
-
     found = find_order(line)
     answers = found is None or found[0].word == "answer"
     if answers:

@@ -7,7 +7,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.running.answers import PROGRAM, Answers, parse_answers
-from vbraille.sessions.running.scripts import GivenAnswers
+from vbraille.sessions.running.given import GivenAnswers
 from vbraille.sessions.session import Session
 
 PROTOCOL = parse_protocol(MINI, "test")
