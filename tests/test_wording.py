@@ -7,7 +7,7 @@ import pytest
 import vbraille
 from vbraille import errors, wording
 from vbraille.braille import dots
-from vbraille.wording import printable, setting, spelled
+from vbraille.wording import count, printable, setting, spelled
 
 
 @pytest.mark.parametrize("module", [wording, errors, dots], ids=lambda module: module.__name__)
@@ -50,3 +50,7 @@ def test_nothing_below_the_command_line_names_an_option(room):
     for path in files:
         for number, line in enumerate(path.read_text().splitlines(), 1):
             assert not option.search(line), f"{path}, line {number}"
+
+
+def test_things_are_counted_in_words():
+    assert [count(n, "trial") for n in (0, 1, 2)] == ["0 trials", "1 trial", "2 trials"]

@@ -9,7 +9,6 @@ from vbraille.analysis.input.trials import (
     Places,
     chosen,
     comparable,
-    count,
     factor,
     masks_of,
     name_cell,
@@ -73,10 +72,6 @@ def test_strings_have_names(text, name):
 def test_a_place_not_read_has_a_mask_of_its_own():
     assert masks_of("⠉?⠀") == [0b1001, UNREAD_MASK, 0]
     assert UNREAD_MASK > 0xFF
-
-
-def test_things_are_counted_in_words():
-    assert [count(n, "trial") for n in (0, 1, 2)] == ["0 trials", "1 trial", "2 trials"]
 
 
 def test_some_of_the_trials():
