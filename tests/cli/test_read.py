@@ -9,7 +9,7 @@ from tests.cli import program
 from tests.tiers import heavy
 from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands import commands_of
+from vbraille.reading.commands.table import commands_of
 from vbraille.translate import Book, BrailleTable, Document
 
 SUMMARY = (

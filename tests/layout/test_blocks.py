@@ -12,7 +12,9 @@ from vbraille.translate import BlockKind, Book, BrailleTable
 KINDS = [
     (kind, level)
     for kind in BlockKind
-    for level in ((1, 2, 3) if kind in (BlockKind.HEADING, BlockKind.ITEM) else (0,))
+    for level in (
+        (1, 2, 3) if kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.QUOTE) else (0,)
+    )
 ]
 
 

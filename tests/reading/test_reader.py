@@ -9,7 +9,7 @@ from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.layout.pages import Layout
-from vbraille.reading.commands import press
+from vbraille.reading.commands.table import press
 from vbraille.reading.echo import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning

@@ -201,7 +201,7 @@ def _add_log(command: argparse.ArgumentParser) -> None:
 
 def _keys() -> str:
     """Lines on what the keys do at a terminal, one for each key."""
-    from vbraille.reading.commands import COMMANDS as KEYS
+    from vbraille.reading.commands.table import COMMANDS as KEYS
 
     width = max(len(command.spoken_keys) for command in KEYS)
     lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in KEYS]

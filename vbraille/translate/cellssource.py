@@ -9,7 +9,7 @@ from vbraille.braille.cells import Cells, masks_of
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
-    from vbraille.translate.source import Block, Source
+    from vbraille.translate.source import Block, Index, Source
 
 
 class CellsSource:
@@ -25,11 +25,39 @@ class CellsSource:
 
     def __init__(self, source: Source) -> None:
         self._source = source
+        self.in_cells = True
 
     @property
     def name(self) -> str:
         """Name of the source in messages."""
         return self._source.name
+
+    @property
+    def title(self) -> str:
+        """Title of the book, as the source has it; empty if it has none."""
+        return self._source.title
+
+    @property
+    def language(self) -> str:
+        """Tag of the source's language; empty if it does not say."""
+        return self._source.language
+
+    @property
+    def complete(self) -> bool:
+        """Whether all blocks are known."""
+        return self._source.complete
+
+    def anchor(self, name: str) -> int | None:
+        """Place of the first character of the block with an anchor; None if there is none."""
+        return self._source.anchor(name)
+
+    def index(self) -> Index:
+        """Tell what is known so far of where blocks are."""
+        return self._source.index()
+
+    def adopt(self, index: Index) -> None:
+        """Take over what was known of the same file at another time."""
+        self._source.adopt(index)
 
     def block(self, number: int) -> Block | None:
         """Block of a number, from 0, with its cells; None past the end.

@@ -22,7 +22,7 @@ from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
-from vbraille.reading.commands import press
+from vbraille.reading.commands.table import press
 from vbraille.reading.context import Context
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice

@@ -27,10 +27,13 @@ from vbraille.translate.documents.encodings import (
     named_encoding,
 )
 from vbraille.translate.documents.paragraphs import split_paragraphs
+from vbraille.translate.source import Index
 from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from vbraille.translate.source import Block
 
 CHUNK_BYTES = 65_536
@@ -133,6 +136,34 @@ class Document:
         self._marks: list[_Mark] = [start]  # of each chunk, and of the next to read
         self._complete = False
         self._recent: dict[int, list[Block]] = {}
+        self.title = self.language = ""
+        self.in_cells = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether all blocks are known, so that the end of the text is."""
+        return self._complete
+
+    def anchor(self, name: str) -> int | None:  # noqa: ARG002
+        """Tell that plain text has no anchors."""
+        return None
+
+    def index(self) -> Index:
+        """Tell where the chunks that were read begin."""
+        rows = tuple(
+            (m.block, m.character, m.offset, *m.state, m.skip, int(m.continues), m.item)
+            for m in self._marks
+        )
+        return Index(*self._fits(), rows, self._complete)
+
+    def adopt(self, index: Index) -> None:
+        """Take over where chunks begin, if the index is of this file and knows more."""
+        if (index.form, index.fits) == self._fits() and len(index.rows) > len(self._marks):
+            self._marks = [_mark_of(row) for row in index.rows]
+            self._complete = index.complete
+
+    def _fits(self) -> tuple[str, tuple[str | int, ...]]:
+        return "Document 1", (self.size, self.encoding.name, self.encoding.skip, self.keep_lines)
 
     @classmethod
     def open(
@@ -369,6 +400,15 @@ class Document:
             split.item,
         )
         return split.blocks, after
+
+
+def _mark_of(row: Sequence[int | str | bytes]) -> _Mark:
+    """Mark of a row of an index."""
+    block, character, offset, held, flag, skip, continues, item = row
+    assert isinstance(held, bytes)
+    numbers = [int(n) for n in (block, character, offset, flag, skip, item)]
+    block, character, offset, flag, skip, item = numbers
+    return _Mark(block, character, offset, (held, flag), skip, bool(continues), item)
 
 
 def _kept(stream: BinaryIO) -> BinaryIO:

@@ -6,10 +6,10 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands import ANY, commands_of, find, press
+from vbraille.reading.commands.table import ANY, commands_of, find, press
 from vbraille.reading.keys import PASTE
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "keys.md"
+DOCUMENT = Path(__file__).parents[3] / "docs" / "keys.md"
 
 
 @pytest.mark.parametrize("context", Context)

@@ -8,10 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.reading import asking, control, moving
+from vbraille.reading.commands import asking, control, moving
+from vbraille.reading.commands.turning import STEP, turn
 from vbraille.reading.context import Context
 from vbraille.reading.keys import PASTE
-from vbraille.reading.turning import STEP, turn
 
 if TYPE_CHECKING:
     from collections.abc import Callable
