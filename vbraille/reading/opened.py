@@ -17,7 +17,8 @@ from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
 from vbraille.reading.commands.table import press_button, turn_knob
-from vbraille.reading.reader import Echo, Reader
+from vbraille.reading.echo import Echo
+from vbraille.reading.reader import Reader
 from vbraille.reading.underhand import MOST_CELLS
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
@@ -263,17 +264,16 @@ class OpenDevice:
             self.placing = placing_of(ticks[-1])
             if self._reader is not None:
                 self._step(self._reader, ticks)
-        if self._reader is not None:
-            self._take(self._reader, events)
+        self._take(events)
         return events
 
-    def _take(self, reader: Reader, events: list[Event]) -> None:
+    def _take(self, events: list[Event]) -> None:
         """Have buttons and knobs of the device do what keys do."""
-        for event in events:
+        for event in () if self._reader is None else events:
             if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
-                press_button(reader, event.number)
+                press_button(self.reader, event.number)
             elif isinstance(event, Knob):
-                turn_knob(reader, event.number, event.value)
+                turn_knob(self.reader, event.number, event.value)
 
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""

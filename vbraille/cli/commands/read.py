@@ -26,9 +26,9 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.context import Context
+from vbraille.reading.echo import Echo
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
-from vbraille.reading.reader import Echo
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.wording import spelled

@@ -54,7 +54,7 @@ def line_end(reader: Reader) -> None:
 
 def top(reader: Reader) -> None:
     """Go to the first of the lines that are read."""
-    first, _ = reader.limits
+    first = reader.range.first
     before = reader.character
     if first > 1:
         gone = reader.go(first)
@@ -67,7 +67,7 @@ def top(reader: Reader) -> None:
 
 def bottom(reader: Reader) -> None:
     """Go to the last of the lines that are read."""
-    _, last = reader.limits
+    last = reader.range.last
     before = reader.character
     if last is not None and reader.go(last):
         reader.keep_way_back(before)
@@ -112,7 +112,7 @@ def _show(reader: Reader, window: Window, end: str) -> None:
     if reader.window is not None and window.offset == reader.window.offset:
         reader.say(end)
     else:
-        reader.show_part(window)
+        reader.put(window)
         _say_part(reader)
 
 
