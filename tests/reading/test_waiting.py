@@ -143,7 +143,9 @@ def test_a_hand_that_never_comes_back_to_the_left_stop_is_told(places, hopeless)
     assert len(waiting(bench)) == 1
     assert (bench.reader.under.hopeless is not None) == hopeless
     if hopeless:
-        assert bench.reader.under.hopeless.startswith("line 1 is read and never done: the finger turns")
+        assert bench.reader.under.hopeless.startswith(
+            "line 1 is read and never done: the finger turns"
+        )
     assert bench.reader.line_number == 1
 
 

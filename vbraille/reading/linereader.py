@@ -102,6 +102,7 @@ class LineReader:
         self._stay = stay
         self._finished = False  # whether the end was said, until a key brings another line
         self._prefetched = False
+        self._echoed = False  # whether the line was said when it was put under the hand last
 
     @property
     def layout(self) -> Layout:
@@ -241,8 +242,8 @@ class LineReader:
         return True
 
     def announce(self) -> None:
-        """Say which line is under the hand, unless its echo does."""
-        if self.echo is Echo.NONE and self.line is not None:
+        """Say which line is under the hand, unless its echo has just done so."""
+        if not self._echoed and self.line is not None:
             self.say(place_sentence(self.layout, self.line))
 
     def key(self, name: str, usual: str) -> str:
@@ -273,6 +274,7 @@ class LineReader:
         self.under.put(window, line_name(self.layout, window.line))
         self.lines += another
         self._finished = self._prefetched = False
+        self._echoed = another and self.echo is not Echo.NONE
         if another:
             for sentence in self.echo.sentences(window.line, self.layout):
                 self.say(sentence)

@@ -120,6 +120,9 @@ def _look_for_text(source: Source, query: FindText, reach: Reach) -> int | Query
         if not query.backward:
             return None
         number = _last_block(source)
+    following = source.block(number + 1) if query.backward else None
+    if following is not None and following.continues:  # what begins here may end there
+        number += 1
     beside = Text.empty()  # the end of the piece before, or the beginning of the piece after
     goes_on = False  # whether the block belongs to the one beside it
     try:

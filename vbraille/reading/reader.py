@@ -136,7 +136,10 @@ class Reader(LineReader):
 
     def jump_back(self) -> bool:
         """Go back to where the reader was before the last jump; False if there was none."""
-        return bool(self._trail) and self.jump(self._trail.pop(), back=False)
+        if not self._trail:
+            return False
+        self._hit = self._trail.pop()
+        return self.jump(self._hit, back=False)
 
     def tune(self, **turned: Any) -> None:
         """Show this line and those after it in another style, with values as `BrailleStyle` has.
