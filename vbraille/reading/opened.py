@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
+from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.saying import told
 from vbraille.engine.engine import placing_of
@@ -141,8 +142,7 @@ class OpenDevice:
         """
         self._model = model
         if isinstance(self._engine, Host):
-            width = cells_per_line(model.style.geometry, model.display)
-            self._engine.fit(model.display, model.style.room(model.display, width))
+            self._engine.fit(model.display, model.style.room(model.display, _most_cells(model)))
         self._engine.start()
 
     def start_again(self) -> None:
@@ -344,13 +344,13 @@ class OpenDevice:
         """Counts of what went wrong with the device, by name; known after `close`."""
         return self._engine.counts
 
-    def tune(self, **turned: float) -> None:
-        """Show lines with another texture or contrast from now on, each 0 to 1.
+    def tune(self, **turned: Any) -> None:
+        """Show lines in a style of which some values differ from now on; see `Reader.tune`.
 
         Raises
         ------
         InputError
-            If a value is out of range.
+            If a value is out of range, or leaves no room for a cell.
         """
         if self._reader is not None:
             self._reader.tune(**turned)
@@ -378,3 +378,10 @@ class OpenDevice:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _most_cells(model: Model) -> int:
+    """Number of cells that a line has room for, however its reader turns its distances."""
+    least = {"dot_width_mm", "dot_spacing_mm", "cell_gap_mm"}
+    narrowest = model.style.replace(**{name: BOUNDS_MM[name][0] for name in least})
+    return cells_per_line(narrowest.geometry, model.display)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vbraille.reading.commands import asking, control, moving
-from vbraille.reading.commands.turning import STEP, turn
+from vbraille.reading.commands.turning import turn
 from vbraille.reading.context import Context
 from vbraille.reading.keys import PASTE
 
@@ -85,10 +85,10 @@ COMMANDS = (
     Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
     Command("WORD", ("w",), "say the word under the finger", asking.say_word),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("TEXTURE_UP", ("t",), "more texture", turn("texture", STEP)),
-    Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -STEP)),
-    Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", STEP)),
-    Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -STEP)),
+    Command("TEXTURE_UP", ("t",), "more texture", turn("texture", 1)),
+    Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -1)),
+    Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", 1)),
+    Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -1)),
     Command("HELP", ("h", "?"), "say the keys", say_keys),
     Command("QUIT", ("q",), "stop reading", control.stop, EVERYWHERE),
     Command(
