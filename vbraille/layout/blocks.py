@@ -12,26 +12,8 @@ from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from vbraille.translate.source import Block
     from vbraille.translate.text import Text
-
-
-@dataclass(frozen=True, slots=True)
-class Break:
-    """Place at which a line begins, whether or not there was room for more before.
-
-    Parameters
-    ----------
-    character
-        Source character whose first cell begins the line.
-    indent
-        Number of blank cells before it; None for what lines of the block have.
-    """
-
-    character: int
-    indent: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +49,6 @@ class LaidBlock:
         What the piece before left; None if the block begins here.
     goes_on
         Whether another piece follows.
-    forced
-        Places at which a line must begin, in the order of the text; those outside the block do
-        nothing.
 
     Attributes
     ----------
@@ -80,14 +59,7 @@ class LaidBlock:
     """
 
     def __init__(
-        self,
-        block: Block,
-        cells: Cells,
-        width: int,
-        carried: Carried | None,
-        *,
-        goes_on: bool,
-        forced: Sequence[Break] = (),
+        self, block: Block, cells: Cells, width: int, carried: Carried | None, *, goes_on: bool
     ) -> None:
         indent, runover = indents(block, width)
         self._first = 0
@@ -99,13 +71,7 @@ class LaidBlock:
         self.block = block
         self.cells = cells
         breaks = breaks_of(block.text, cells)
-        self.bounds: list[tuple[int, int, int]] = []
-        for start, stop, own in _sections(cells, indent, runover, forced):
-            part = breaks[start:stop]
-            if stop < len(cells):
-                part = part.rstrip(b"\0")  # what stands where a line breaks is dropped
-            lines = wrap(part, width, own, runover, cells.starts[start:stop].data)
-            self.bounds += [(start + a, start + b, i) for a, b, i in lines]
+        self.bounds = wrap(breaks, width, indent, runover, cells.starts.data)
         self._rest: int | None = None  # where the cells that are left begin
         self.carries: Carried | None = None
         if goes_on:
@@ -151,20 +117,3 @@ class LaidBlock:
         character = int(text.places[edge]) if edge < len(text) else text.end
         rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
         return Carried(its_indent, text.since(first), rest, character)
-
-
-def _sections(
-    cells: Cells, indent: int, runover: int, forced: Sequence[Break]
-) -> list[tuple[int, int, int]]:
-    """Cells of each part that is broken into lines for itself, [start, stop), and its indent."""
-    parts = [(0, indent)]
-    for place in forced:
-        if len(cells) and int(cells.starts[0]) <= place.character < cells.end:
-            at = int(cells.starts.searchsorted(place.character))
-            if at == 0 and place.indent is None:  # the block's own first line
-                continue
-            if at == parts[-1][0]:
-                parts.pop()
-            parts.append((at, runover if place.indent is None else place.indent))
-    stops = [at for at, _ in parts[1:]] + [len(cells)]
-    return [(at, stop, own) for (at, own), stop in zip(parts, stops, strict=True)]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.layout.blocks import Break, Carried
+    from vbraille.layout.blocks import Carried
     from vbraille.translate.book import Book
     from vbraille.translate.source import Block
 
@@ -119,8 +119,6 @@ class Layout:
         Cells of the book.
     width
         Number of cells in a line, at least 1.
-    forced
-        Places at which a line begins, in the order of the text, as they were chosen for a width.
 
     Raises
     ------
@@ -128,12 +126,11 @@ class Layout:
         If the width is below 1.
     """
 
-    def __init__(self, book: Book, width: int, forced: tuple[Break, ...] = ()) -> None:
+    def __init__(self, book: Book, width: int) -> None:
         if width < 1:
             raise ValueError(f"width is {width} cells; it must be at least 1")
         self.book = book
         self.width = width
-        self._forced = forced
         # Number of lines before each block; the last entry is that of the next block.
         self._before = array("q", [0])
         # Unfinished line of a long block that comes in pieces, by the number of the next piece.
@@ -216,7 +213,7 @@ class Layout:
         following = self.book.source.block(number + 1)
         goes_on = following is not None and following.continues
         carried = self._carried[number] if found[0].continues else None
-        laid = LaidBlock(*found, self.width, carried, goes_on=goes_on, forced=self._forced)
+        laid = LaidBlock(*found, self.width, carried, goes_on=goes_on)
         if laid.carries is not None:
             self._carried[number + 1] = laid.carries
         if len(self._recent) >= _REMEMBERED:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.advance import EndOfLine
@@ -11,7 +10,6 @@ from vbraille.layout.pages import Layout, locate
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.context import Context
 from vbraille.reading.echo import Echo
-from vbraille.reading.holding import hold
 from vbraille.reading.speed import too_fast_note
 from vbraille.reading.waiting import Waiting
 from vbraille.simulation.steering import ReadLine
@@ -22,12 +20,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.braille.geometry import Geometry
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
     from vbraille.reading.cues import Cue
     from vbraille.render import Model
-    from vbraille.render.braille.style import BrailleStyle
     from vbraille.simulation.steering import Steering
 
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
@@ -70,11 +66,6 @@ class Reader:
         How lines are shown.
     context : Context
         Meaning of the keys at the moment.
-    styles : list of BrailleStyle
-        Styles before each turn that can be undone, the last one last.
-    keep : callable or None
-        Function that saves a style in the profile in use, and gives a sentence on that; None if
-        there is nothing to save to.
     lines : int
         Number of lines read so far: those that were under the hand.
     done : bool
@@ -104,8 +95,6 @@ class Reader:
         self.echo = echo
         self.context = Context.READING
         self.line: Line | None = None
-        self.styles: list[BrailleStyle] = []
-        self.keep: Callable[[BrailleStyle], str] | None = None
         self.lines = 0
         self.done = False
         self._model = model
@@ -113,8 +102,6 @@ class Reader:
         self._advance = advance
         self._stay = stay
         self._steering = steering
-        self._steered_mm = 0.0  # how far a simulated hand was told to go
-        self._start_mm = 0.0  # where the line's first cell begins
         self._end: EndOfLine
         self._waiting: Waiting
         self._finished = False  # whether the end was said, until a key brings another line
@@ -137,12 +124,7 @@ class Reader:
         x_mm = self.engine.x_mm
         if self.line is None or x_mm is None:
             return None
-        return locate(self.line, self.style.geometry, x_mm - self._start_mm)
-
-    @property
-    def model(self) -> Model:
-        """Display, and style in which lines are shown on it now."""
-        return replace(self._model, style=self.style)
+        return locate(self.line, self.style.geometry, x_mm)
 
     def start(self) -> None:
         """Put the first line under the hand."""
@@ -177,8 +159,7 @@ class Reader:
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does so by itself."""
         if self._steering is not None and self.line is not None:
-            self._steered_mm = self._end_mm(self.line)
-            self._steering.give(ReadLine(self._steered_mm))
+            self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self.line))))
 
     def steered_till(self, tick: np.void) -> bool:
         """Whether a simulated hand had read the line by the time of a tick; False without one."""
@@ -202,74 +183,26 @@ class Reader:
     def tune(self, **turned: Any) -> None:
         """Show this line and those after it in a style of which some values differ.
 
-        Parameters
-        ----------
-        turned
-            New values, by the names that `BrailleStyle.replace` takes.
-
         Raises
         ------
         InputError
             If a value is out of range, or leaves no room for a cell.
         """
-        self.restyle(self.style.replace(**turned))
-
-    def restyle(self, style: BrailleStyle) -> None:
-        """Show this line and those after it in another style.
-
-        Where distances change, the page is laid out anew around the character under the hand,
-        which stays where it is.
-
-        Raises
-        ------
-        InputError
-            If the distances leave no room for a cell.
-        """
+        style = self.style.replace(**turned)
         width = cells_per_line(style.geometry, self._model.display)
-        before, self.style = self.style, style
+        cell = self.cell
+        self.style = style
         self._too_fast_said = False
-        if style.geometry != before.geometry:
-            self._lay_out_around(before.geometry, width)
-        elif self.line is not None:
-            self._render(self.line)
-
-    def _lay_out_around(self, before: Geometry, width: int) -> None:
-        """Lay out the page for the distances of the style, around what is under the hand."""
-        held = None
-        if self.line is not None:
-            following = self.layout.line(self.line.number + 1)
-            held = hold(
-                self.line,
-                None if following is None else _beginning(following),
-                before,
-                self.style.geometry,
-                x_mm=self.engine.x_mm,
-                start_mm=self._start_mm,
-                span_mm=self._model.display.span_mm,
-            )
-        old, line = self.layout, self.line
-        self.layout = Layout(old.book, width, () if held is None else held.forced)
-        self._first = self._renumbered(old, self._first) or 1
-        self._last = None if self._last is None else self._renumbered(old, self._last)
-        if line is None:
+        if self.line is None:
             return
-        character = _beginning(line) if held is None else held.character
-        place = self.layout.place(character)
-        assert place is not None, "a line of the book has a place in it"
-        self._start_mm = 0.0 if held is None else held.start_mm
-        reached = self._end.reached
-        self._put(place[0])
-        self._end.reached = reached
-        if self._end_mm(place[0]) > self._steered_mm:
-            self.steer()
-
-    def _renumbered(self, old: Layout, number: int) -> int | None:
-        """Line of the layout on which a line of the old one begins; None past the end."""
-        if number == 1:
-            return 1
-        line = old.line(number)
-        place = None if line is None else self.layout.place(_beginning(line))
-        return None if place is None else place[0].number
+        if width == self.layout.width:
+            self._render(self.line)
+            return
+        span = None if cell is None else self.line.source(cell)
+        self.layout = Layout(self.layout.book, width)
+        place = self.layout.place(int(self.line.cells.starts[0]) if span is None else span[0])
+        if place is not None:
+            self._show(place[0])
 
     def quit(self) -> None:
         """Stop reading."""
@@ -283,35 +216,22 @@ class Reader:
             self.done = True
 
     def _show(self, line: Line) -> None:
+        self.line = line
         self.lines += 1
         self._finished = False
         self._prefetched = False
-        self._start_mm = 0.0
-        self._put(line)
+        end_mm = self.style.geometry.extent_mm(len(line))
+        self._end = EndOfLine(self._model.display.span_mm, end_mm)
+        self._waiting = Waiting(
+            self._model.display.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
+        )
+        self._render(line)
         self.steer()
         for sentence in self.echo.sentences(line):
             self.say(sentence)
 
-    def _put(self, line: Line) -> None:
-        """Put a line under the hand, with its first cell where it is to begin."""
-        self.line = line
-        span_mm, end_mm = self._model.display.span_mm, self._end_mm(line)
-        self._end = EndOfLine(span_mm, end_mm)
-        self._waiting = Waiting(
-            span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
-        )
-        self._render(line)
-
-    def _end_mm(self, line: Line) -> float:
-        """Place where the last dot of a line ends."""
-        return self._start_mm + self.style.geometry.extent_mm(len(line))
-
     def _render(self, line: Line) -> None:
-        display = self._model.display
-        program = self.style.render(line.masks, display)
-        if self._start_mm:
-            program = program.with_anchor(display.span_mm / 2 + self._start_mm)
-        self.engine.show(program, line.number)
+        self.engine.show(self.style.render(line.masks, self._model.display), line.number)
 
     def _watch_speed(self, speed_mm_s: float) -> None:
         if self._too_fast_said or self._end.reached:
@@ -320,8 +240,3 @@ class Reader:
         if note is not None:
             self._too_fast_said = True
             self.say(note)
-
-
-def _beginning(line: Line) -> int:
-    """Source character that a line begins with."""
-    return int(line.cells.starts[0]) if len(line.cells) else line.cells.end

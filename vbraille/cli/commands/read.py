@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
@@ -14,6 +15,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.settled import chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -23,11 +25,14 @@ from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.reading.commands.table import press
+from vbraille.reading.commands.turning import keep_by
 from vbraille.reading.context import Context
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.reading.reader import Echo
 from vbraille.render import MODELS, model_of
+from vbraille.settings.applying import with_profile
+from vbraille.settings.saving import save_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 
 if TYPE_CHECKING:
@@ -45,6 +50,8 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
+    settings = settle(arguments)
+    profile = chosen_profile(arguments, settings)
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     hand = HAND if arguments.hand is None else arguments.hand
@@ -68,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            model = build_show(arguments, model_of(display))
+            model = build_show(arguments, with_profile(settings, profile, model_of(display)))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
@@ -84,6 +91,10 @@ def run(arguments: argparse.Namespace) -> int:
                 last=page.last,
                 advance=arguments.advance == "return",
                 echo=_echo(arguments.echo),
+            )
+            keep_by(
+                device.reader,
+                lambda style: save_profile(settings.path, profile, replace(model, style=style)),
             )
             _Reading(page, device, keyboard, suspension).run()
         finally:

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
+from vbraille.errors import VbrailleError
 from vbraille.reading.cues import Cue
 from vbraille.render.braille.knobs import (
     KNOBS,
-    Knob,
     fixed,
-    mappings_for,
     next_mapping,
     obstacle,
     say_mapping,
 )
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.reading.reader import Reader
     from vbraille.render.braille.style import BrailleStyle
+
+# Beside each reader: the styles before each turn, the last one last, and what saves a style.
+_BEFORE: WeakKeyDictionary[Reader, list[BrailleStyle]] = WeakKeyDictionary()
+_KEEPERS: WeakKeyDictionary[Reader, Callable[[BrailleStyle], str]] = WeakKeyDictionary()
 
 
 def turn(name: str, steps: int) -> Callable[[Reader], None]:
@@ -39,57 +44,73 @@ def turn(name: str, steps: int) -> Callable[[Reader], None]:
         value = knob.value(style)
         after = knob.turned(value, steps)
         end = "most" if steps > 0 else "least"
-        why = fixed(knob, style) or _obstacle(knob, reader, after)
+        why = fixed(knob, style) or obstacle(knob, style.geometry, reader.engine.display, after)
         if why or after == value:
             _stop(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
         else:
-            _turn(reader, style.replace(**{knob.field: after}), knob.said(after))
+            _turn(reader, knob.field, after, knob.said(after))
 
     return handler
 
 
 def change_mapping(reader: Reader) -> None:
     """Take the next way in which actuators show dots, of those that the display can show."""
-    style, display = reader.style, reader.model.display
-    if len(mappings_for(style, display)) == 1:
-        _stop(reader, f"{say_mapping(style.mapping)}, the only one for this display")
-        return
+    style, display = reader.style, reader.engine.display
     mapping = next_mapping(style, display)
-    _turn(reader, style.replace(mapping=mapping), say_mapping(mapping))
+    if mapping == style.mapping:
+        _stop(reader, f"{say_mapping(mapping)}, the only one for this display")
+    else:
+        _turn(reader, "mapping", mapping, say_mapping(mapping))
 
 
 def undo_turn(reader: Reader) -> None:
     """Take back the last turn that was not taken back yet."""
-    if not reader.styles:
+    before = _BEFORE.get(reader)
+    if not before:
         _stop(reader, "undo: nothing was turned")
         return
-    style = reader.styles.pop()
+    style = before.pop()
     said = _differences(reader.style, style)
-    reader.restyle(style)
+    reader.tune(**_fields(style))
     reader.say(f"undo: {said}")
 
 
 def save_settings(reader: Reader) -> None:
     """Save the present tuning in the profile in use."""
-    if reader.keep is None:
+    keep = _KEEPERS.get(reader)
+    if keep is None:
         _stop(reader, "saved: nothing, since no settings file is in use")
     else:
-        reader.say(reader.keep(reader.style))
+        try:
+            reader.say(keep(reader.style))
+        except VbrailleError as error:  # reading goes on
+            reader.say(f"not saved: {spelled(str(error))}")
 
 
-def _obstacle(knob: Knob, reader: Reader, value: float) -> str:
-    """Reason why a knob cannot have a value beside the others; empty if it can."""
-    if knob.unit != "mm":
-        return ""
-    return obstacle(reader.style.geometry, reader.model.display, knob.field, value)
+def keep_by(reader: Reader, keep: Callable[[BrailleStyle], str]) -> None:
+    """Say how `save_settings` saves a reader's style.
+
+    Parameters
+    ----------
+    reader
+        The reader.
+    keep
+        Function that saves a style, and gives a sentence on that.
+    """
+    _KEEPERS[reader] = keep
 
 
-def _turn(reader: Reader, style: BrailleStyle, said: str) -> None:
+def _turn(reader: Reader, field: str, value: object, said: str) -> None:
     """Show another style, and say what has changed."""
     before = reader.style
-    reader.restyle(style)
-    reader.styles.append(before)
+    reader.tune(**{field: value})
+    _BEFORE.setdefault(reader, []).append(before)
     reader.say(said)
+
+
+def _fields(style: BrailleStyle) -> dict[str, Any]:
+    """All that commands of this module change in a style."""
+    return {"geometry": style.geometry, "tuning": style.tuning, "mapping": style.mapping}
 
 
 def _stop(reader: Reader, said: str) -> None:

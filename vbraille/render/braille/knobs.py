@@ -96,8 +96,8 @@ def fixed(knob: Knob, style: BrailleStyle) -> str:
     return ""
 
 
-def obstacle(geometry: Geometry, display: Display, field: str, value: float) -> str:
-    """Reason why a length cannot have a value beside the others; empty if it can.
+def obstacle(knob: Knob, geometry: Geometry, display: Display, value: float) -> str:
+    """Reason why a knob cannot have a value beside the distances that there are; empty if it can.
 
     Parameters
     ----------
@@ -105,11 +105,9 @@ def obstacle(geometry: Geometry, display: Display, field: str, value: float) -> 
         Distances as they are.
     display
         Display whose carriage must have room for a cell.
-    field, value
-        Field of the geometry, and the value in mm that it would have.
     """
     width_mm, spacing_mm, gap_mm = (
-        value if name == field else getattr(geometry, name) for name in _CELL
+        value if name == knob.field else getattr(geometry, name) for name in _CELL
     )
     if width_mm > spacing_mm + gap_mm + 1e-9:
         return "a dot must not be wider than the cell pitch"
