@@ -61,7 +61,7 @@ def tune(parser: ArgumentParser) -> None:
         "file", nargs="?", metavar="TEXT", help="Practise on this text (default: a short one)."
     )
     _profile(parser)
-    parser.add_argument("--device", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
     _translation(parser)
     _hand(parser)
