@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
@@ -14,6 +15,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.settled import chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -30,6 +32,8 @@ from vbraille.reading.echo import Echo
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.render import MODELS, model_of
+from vbraille.settings.applying import with_profile
+from vbraille.settings.saving import save_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.wording import spelled
 
@@ -48,11 +52,13 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
+    settings = settle(arguments)
+    profile = chosen_profile(arguments, settings)
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bound_by(Bindings())
+    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
@@ -74,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            model = build_show(arguments, model_of(display))
+            model = build_show(arguments, with_profile(settings, profile, model_of(display)))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
@@ -90,7 +96,13 @@ def run(arguments: argparse.Namespace) -> int:
                 last=page.last,
                 advance=arguments.advance == "return",
                 echo=_echo(arguments.echo),
-                beside=Beside(bound=bound, verbose=arguments.verbose),
+                beside=Beside(
+                    bound=bound,
+                    save_style=lambda style: save_profile(
+                        settings.path, profile, replace(model, style=style)
+                    ),
+                    verbose=arguments.verbose,
+                ),
             )
             _Reading(page, device, keyboard, suspension).run()
         finally:
