@@ -24,7 +24,7 @@ class Knobbed(SimulatedDevice):
         if 200 <= self.frames < 400:
             self.turn(1, (self.frames - 200) / 200)
         if self.frames == 400:
-            self.turn(1, 0.5)
+            self.turn(1, 0.123)
             self.press(3)
             self.let_go(3)
 '''
@@ -43,14 +43,13 @@ def heard(host, enough):
 
 
 def test_knobs_and_buttons_of_a_driver_reach_the_reader(tmp_path, monkeypatch):
-    monkeypatch.setenv(
-        "PYTHONPATH", drivers.install(tmp_path, "knobbed", "Knobbed", _MODULE)["PYTHONPATH"]
-    )
+    environment = drivers.install(tmp_path, "knobbed", "Knobbed", _MODULE)
+    monkeypatch.setenv("PYTHONPATH", environment["PYTHONPATH"])
     with Host("knobbed:", info(), 26) as host:
-        events = heard(host, lambda told: Knob(1, 0.5) in told[1:] and len(buttons(told)) == 2)
+        events = heard(host, lambda told: Knob(1, 0.123) in told and len(buttons(told)) == 2)
     values = [event.value for event in events if isinstance(event, Knob)]
     assert values[:-1] == sorted(values[:-1])
-    assert values[-1] == 0.5
+    assert values[-1] == 0.123
     assert 5 <= len(values) <= 60  # of 201 turns
     assert buttons(events) == [Button(3, pressed=True), Button(3, pressed=False)]
 

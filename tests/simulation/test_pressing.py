@@ -64,4 +64,4 @@ def test_presses_are_in_the_spec_of_a_device():
     device = open_simulated("?hand=slow&press=1@0s-3000s,2@0s-3000s", info())
     assert device.take_events() == [Button(1, pressed=True), Button(2, pressed=True)]
     with pytest.raises(InputError, match="no press"):
-        open_simulated("?hand=slow&press=now", info())
+        open_simulated("?hand=slow&press=1@2s,now", info())

@@ -204,8 +204,8 @@ def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
                 f"{loop.device.display.name} tells {event!r}, which is no event of "
                 f"vbraille.devices.events; tell whoever wrote its driver"
             )
-        # Drivers may tell all they have to by one code; only what is alike stands for another. Where
-        # a knob was is of no use once it is elsewhere.
+        # Drivers may tell all they have to by one code; only what is alike stands for another.
+        # Where a knob was is of no use once it is elsewhere.
         alike = event.kind and not event.tells_place
         notices.add(event, now_ns, replace(event, times=1) if alike else event.kind)
     for event in notices.take(now_ns):

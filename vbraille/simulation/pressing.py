@@ -71,6 +71,17 @@ def parse_press(text: str) -> Press:
         raise InputError(str(error)) from None
 
 
+def parse_presses(text: str) -> tuple[Press, ...]:
+    """Presses that a text describes, with commas between; none if it is empty.
+
+    Raises
+    ------
+    InputError
+        If one of them is none.
+    """
+    return tuple(parse_press(one.strip()) for one in text.split(",")) if text.strip() else ()
+
+
 def held(presses: Iterable[Press], now_s: float) -> int:
     """Bits of the buttons that are held at a time, bit 0 for button 1."""
     bits = 0

@@ -14,7 +14,7 @@ from vbraille.devices.events import Button, Knob
 from vbraille.errors import InputError, check_range
 from vbraille.pose import Pose
 from vbraille.simulation.paging import Area
-from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_press
+from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
@@ -300,7 +300,7 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     seed = given.pop("seed", "1")
     hand = given.pop("hand", None)
     descriptor = given.pop("steering", None)
-    presses = [parse_press(text) for text in given.pop("press", "").split(",") if text]
+    presses = parse_presses(given.pop("press", ""))
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
         said = address.partition("&steering=")[0]  # a program adds this part, never a person
         raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")

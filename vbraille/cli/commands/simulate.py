@@ -12,7 +12,7 @@ from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
 from vbraille.simulation.firmware import describe
-from vbraille.simulation.pressing import parse_press
+from vbraille.simulation.pressing import parse_presses
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.simulation.specs import parse_hand
@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Be a device until a signal says to stop."""
     info = _info(arguments)
     hand = parse_hand(arguments.hand, arguments.seed)
-    presses = [parse_press(text) for text in arguments.press]
+    presses = parse_presses(arguments.press)
     if arguments.unplug_every and arguments.link is None:
         raise InputError("--unplug-every needs --link, for the port has a new name each time")
     try:

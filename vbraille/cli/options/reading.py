@@ -140,11 +140,10 @@ def simulate(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--press",
-        action="append",
-        default=[],
-        metavar="N@TIME",
-        help="Press button N, 1 to 8, so long after the first greeting, such as 1@2.5s, or hold it "
-        "for a while, as in 1@2.5s-4s; it may be given several times.",
+        default="",
+        metavar="N@TIME,…",
+        help="Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold "
+        "it for a while, as in 1@2.5s-4s (default: no button).",
     )
     for name, text in (
         ("drop", "Lose this share of the messages, both ways"),
