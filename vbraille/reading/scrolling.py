@@ -13,6 +13,10 @@ FASTEST_CELLS_S: Final = 30.0
 STEP: Final = 1.2  # from a speed to the next faster one
 
 
+# Time between two looks that counts; a longer one was a pause, in which nothing was read.
+_MOST_S: Final = 0.25
+
+
 class Scroll:
     """Time that a line is given by its number of cells, whatever the hand does.
 
@@ -20,11 +24,6 @@ class Scroll:
     ----------
     speed_cells_s
         Cells a second, 1 to 30.
-
-    Attributes
-    ----------
-    on : bool
-        Whether lines come by themselves.
 
     Raises
     ------
@@ -36,11 +35,22 @@ class Scroll:
         check_range(
             "autoscroll", speed_cells_s, SLOWEST_CELLS_S, FASTEST_CELLS_S, " cells a second"
         )
-        self.on = False
         # Steps from the usual speed: counted, so that as many back lead to the same speed.
         self._steps = math.log(speed_cells_s / USUAL_CELLS_S, STEP)
+        self._on = False
         self._passed = 0.0  # cells of the line for which the time is over
         self._till_s: float | None = None  # when that was so
+
+    @property
+    def on(self) -> bool:
+        """Whether lines come by themselves; the present line has all its time once that is set."""
+        return self._on
+
+    @on.setter
+    def on(self, on: bool) -> None:
+        if on and not self._on:
+            self._passed, self._till_s = 0.0, None
+        self._on = on
 
     @property
     def speed_cells_s(self) -> float:
@@ -51,28 +61,26 @@ class Scroll:
     @property
     def sentence(self) -> str:
         """Sentence that says the speed."""
-        speed = self.speed_cells_s
-        return f"autoscroll: {speed:g} {'cell' if speed == 1 else 'cells'} a second"
+        return f"autoscroll: {self._words}"
 
-    def faster(self) -> bool:
-        """Turn the speed up by a fifth; False if it is the fastest already."""
-        return self._turn(1)
+    def faster(self) -> str:
+        """Turn the speed up by a fifth; give words for it, with "the fastest" if it cannot be."""
+        return self._turn(1, "the fastest")
 
-    def slower(self) -> bool:
-        """Turn the speed down by as much as `faster` turns it up; False if it is the slowest."""
-        return self._turn(-1)
+    def slower(self) -> str:
+        """Turn the speed down by as much as `faster` turns it up; give words for it likewise."""
+        return self._turn(-1, "the slowest")
 
     def begin(self, now_s: float) -> None:
         """Note that a line has come under the hand, by a clock in seconds that does not go back."""
         self._passed = 0.0
         self._till_s = now_s
 
-    def hold(self, now_s: float) -> None:
-        """Note that the time since the last call does not count, as in a pause."""
-        self._till_s = now_s
-
     def due(self, line_cells: int, now_s: float) -> bool:
-        """Whether the time of the line is over; call it again and again, as speeds may change.
+        """Whether the time of the line is over; if so, that of the next line begins.
+
+        Call it again and again, as the speed may change: that counts at once for the present line.
+        Time in which it is not called, as in a pause, does not count.
 
         Parameters
         ----------
@@ -81,18 +89,26 @@ class Scroll:
         now_s
             Time by the same clock as in `begin`.
         """
-        if not self.on:
-            self._till_s = now_s
+        if not self._on:
             return False
-        if self._till_s is not None:
-            self._passed += (now_s - self._till_s) * self.speed_cells_s
+        since_s = 0.0 if self._till_s is None else now_s - self._till_s
         self._till_s = now_s
-        return self._passed >= max(line_cells, 1)
+        if since_s <= _MOST_S:
+            self._passed += since_s * self.speed_cells_s
+        if self._passed < max(line_cells, 1):
+            return False
+        self.begin(now_s)
+        return True
 
-    def _turn(self, steps: int) -> bool:
+    @property
+    def _words(self) -> str:
+        speed = self.speed_cells_s
+        return f"{speed:g} {'cell' if speed == 1 else 'cells'} a second"
+
+    def _turn(self, steps: int, bound: str) -> str:
         before = self.speed_cells_s
         self._steps += steps
         if self.speed_cells_s == before:
             self._steps -= steps
-            return False
-        return True
+            return f"{self._words}, {bound}"
+        return self._words
