@@ -42,6 +42,18 @@ def read(parser: ArgumentParser) -> None:
         help="Say what is printed of each line: nothing, its text, its cells in Unicode braille, "
         "or both (default: none at a terminal, otherwise both).",
     )
+    parser.add_argument(
+        "--speech",
+        action="store_true",
+        help="Speak lines, settings and all else that is said, through Speech Dispatcher.",
+    )
+    parser.add_argument(
+        "--cues",
+        choices=("sound", "bell", "none"),
+        help="Signal the end of a line or page, a limit, and what is not found: by tones, by the "
+        "terminal's bell, or not (default: tones at a terminal, the bell through SSH, otherwise "
+        "none).",
+    )
     _hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)

@@ -1,0 +1,52 @@
+"""What a reader hears of ``vbraille read`` at a terminal: sentences, speech, and little more."""
+
+import re
+
+from tests.cli import program
+from tests.reading.ssipserver import SsipServer
+
+# All that may be printed for a key beside what it says, which has no end of a line.
+MOST_BYTES = 40
+QUIET = ("--advance", "key", "--hand", "sweep:30", "--cues", "none")
+KEYS = ("n", "n", "n", "p", "\x1b[A", "w", "t", "T", "t", "c", "C", " ", " ", "x", "\x1b[15~")
+
+
+def test_a_key_prints_its_sentences_and_nothing_else(text):
+    with program.Terminal("read", text, *QUIET) as terminal:
+        terminal.until("h says the keys\r\n")
+        for key in KEYS:
+            before = len(terminal.printed)
+            terminal.type(key)
+            terminal.until(r"\n")
+            terminal.type("~")  # a key that is none says so, after all that the one before has said
+            terminal.until(r"'~'.*\r\n")
+            said = re.sub(r".*'~'.*\r\n", "", terminal.printed[before:])
+            assert "\x1b" not in said
+            assert re.fullmatch(r"([^\x00-\x1f]+\r\n){1,2}", said), said
+            beside = len(said.encode()) - sum(len(line.encode()) for line in said.splitlines())
+            assert beside <= MOST_BYTES
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
+def test_lines_and_settings_are_spoken(text, tmp_path):
+    place = {"SPEECHD_ADDRESS": f"unix_socket:{tmp_path / 'sock'}"}
+    with (
+        SsipServer(tmp_path / "sock") as server,
+        program.Terminal("read", text, *QUIET, "--speech", **place) as terminal,
+    ):
+        server.until(lambda it: "one two three" in it.said)
+        terminal.until("h says the keys\r\n")
+        terminal.type("n")
+        server.until(lambda it: it.said[-1] == "four five six")
+        terminal.type("C")
+        server.until(lambda it: it.said[-1] == "contrast: 0.9")
+        server.goes_on.clear()  # a server that answers no more keeps no key waiting
+        for key, said in (("n", "line: 3"), ("p", "line: 2"), ("C", "contrast: 0.8")):
+            terminal.type(key)
+            terminal.until(f"{said}\r\n")
+        assert server.said[-1] == "contrast: 0.9"
+        terminal.type("q")
+        assert terminal.end() == 0
+        assert ("SET SELF LANGUAGE en", "") in server.done
+        assert "four five six" not in terminal.printed  # spoken, and not printed
