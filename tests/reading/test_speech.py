@@ -107,7 +107,7 @@ def test_a_server_that_does_not_run_is_started(at, tmp_path):
     with SsipServer(f"{at}.later"):
         SpeechServer("en").close()
     asked = (tmp_path / "asked").read_text()
-    assert asked == f"--spawn --communication-method unix_socket --socket-path {at}\n"
+    assert asked == f"-a -c unix_socket -S {at}\n"
 
 
 def test_a_server_without_the_language_speaks_as_it_can(at):

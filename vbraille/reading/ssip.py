@@ -126,10 +126,10 @@ def _connected() -> socket.socket:
         reason = error
     kind, place = address()
     if kind == "unix_socket":
-        spawn = ["speech-dispatcher", "--spawn", "--communication-method", kind]
+        spawn = ["speech-dispatcher", "-a", "-c", kind, "-S", place]  # spawn, method, socket
         try:
             subprocess.run(
-                [*spawn, "--socket-path", place],
+                spawn,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
