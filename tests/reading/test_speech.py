@@ -65,6 +65,7 @@ def test_a_server_that_stops_keeps_nobody_and_says_the_newest_when_it_goes_on(at
 def test_what_was_said_last_is_spoken_though_the_reading_ends_with_it(at):
     with SsipServer(at) as server:
         with Speech("en", count().__next__) as speech:
+            server.until(lambda it: it.done and it.done[-1] == ("SET SELF PRIORITY TEXT", ""))
             speech.say("summary: lines 3")
         assert server.said == ["summary: lines 3"]
 
@@ -74,6 +75,7 @@ def test_a_long_sentence_is_said_whole(at):
         sentence = "".join(chr(0x4E00 + number) for number in range(2000))
         with Speech("zh") as speech:
             speech.say(sentence)
+            server.until(lambda it: len("".join(it.said)) == len(sentence))
         assert "".join(server.said) == sentence
 
 

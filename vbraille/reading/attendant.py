@@ -17,7 +17,7 @@ from typing import Final
 MOST_BYTES: Final = 4096
 # Lines that wait for room in the pipe; of more the oldest are dropped.
 _MOST_WAITING = 50
-_END_S = 1.0
+_END_S = 2.0
 
 
 class Attendant:
@@ -76,7 +76,7 @@ class Attendant:
         return True
 
     def close(self) -> None:
-        """End the process once it has done what it was told; it is given a second for that."""
+        """End the process once it has done what it was told; it is given two seconds for that."""
         with suppress(OSError):
             self._pipe.close()
         try:
