@@ -121,6 +121,24 @@ class TestContent:
             assert places.last_path() is None
 
 
+def test_names_and_texts_that_are_no_text(folder):
+    path = folder / os.fsdecode(b"b\xffk.txt")
+    path.write_bytes("\ud800 and more".encode("utf-32-le", "surrogatepass"))
+    with opened(folder) as places:
+        options = BookOptions(encoding="utf-32-le")
+        resumed = open_kept(places, str(path), options)
+        resumed.kept.keep_at(resumed.source, 6)
+        resumed.kept.set_bookmark(Bookmark("\udcff", 0, "\ud800"))
+    with opened(folder) as places:
+        assert places.last_path() == path
+        assert [book.missing for book in places.listed()] == [False]
+        resumed = open_kept(places, None)
+        assert resumed.place.character == 6
+        assert [mark.text for mark in resumed.kept.bookmarks()] == ["?"]
+        resumed.kept.delete_bookmark("\udcff")
+        assert resumed.kept.bookmarks() == []
+
+
 class TestChanged:
     @pytest.mark.parametrize(
         ("changed", "at"),

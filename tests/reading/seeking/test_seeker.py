@@ -99,6 +99,12 @@ def test_a_text_that_has_no_name(book):
         assert spool.tell() == at
 
 
+def test_a_name_that_is_no_text(book):
+    path = book.rename(book.with_name(os.fsdecode(b"b\xffk.txt")))
+    with Seeker(BookOpening(str(path))) as seeker:
+        assert isinstance(final(seeker, FindText("last \udcff", 0)), NotFound)
+
+
 def test_what_cannot_be_opened_is_one_sentence(tmp_path):
     with Seeker(BookOpening(str(tmp_path / "none.txt"))) as seeker:
         failed = final(seeker, FindText("last", 0))

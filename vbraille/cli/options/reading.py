@@ -47,6 +47,20 @@ def read(parser: ArgumentParser) -> None:
     parser.set_defaults(model=None, hand=None, seed=None)
 
 
+def books(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille books``."""
+    parser.add_argument(
+        "--forget",
+        type=whole,
+        metavar="N",
+        help="Delete all that is kept of the book with this number in the list; the book's file "
+        "stays (default: nothing is deleted).",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="Print the list as JSON, for another program."
+    )
+
+
 def page(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille page``."""
     _text(parser)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from vbraille.reading.places.values import KeptPlace
+from vbraille.reading.places.values import KeptPlace, storable
 from vbraille.reading.queries import FindShare, FindText, Found
 from vbraille.reading.seeking.answering import answer
 
@@ -41,8 +41,8 @@ def place_in(source: Source, character: int) -> KeptPlace:
         character,
         number,
         source.progress(number),
-        before[-AROUND:],
-        after[:AROUND],
+        storable(before[-AROUND:]),
+        storable(after[:AROUND]),
         max(0, character - begins),
     )
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from vbraille.reading.packing import pack_index, unpack_index
 from vbraille.reading.places.anchoring import anchored, place_in
-from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace
+from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, storable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -152,6 +154,9 @@ class KeptBook:
 
     def set_bookmark(self, bookmark: Bookmark) -> None:
         """Set a bookmark; one of the same name is moved."""
+        bookmark = msgspec.structs.replace(
+            bookmark, name=storable(bookmark.name), text=storable(bookmark.text)
+        )
         self._own_bookmarks[bookmark.name] = bookmark
         self._put(
             f"bookmark {bookmark.name}",
@@ -161,6 +166,7 @@ class KeptBook:
 
     def delete_bookmark(self, name: str) -> None:
         """Delete a bookmark; if there is none of that name, nothing happens."""
+        name = storable(name)
         self._own_bookmarks[name] = None
         self._put(
             f"bookmark {name}",
@@ -186,10 +192,12 @@ class KeptBook:
         """Keep the options with which the book is open."""
         if options != self._options:
             self._options = options
-            self._set("options", msgspec.msgpack.encode(options))
+            with suppress(UnicodeEncodeError):  # the name of a table's file may be no text
+                self._set("options", msgspec.msgpack.encode(options))
 
     def keep_title(self, title: str) -> None:
         """Keep the title that the book gives itself."""
+        title = storable(title)
         if title and title != self.title:
             self.title = title
             self._set("title", title)
@@ -278,7 +286,7 @@ class KeptBook:
             (
                 self.number,
                 self.digest,
-                "" if self.path is None else str(self.path),
+                path_bytes(self.path),
                 -1 if mark is None else mark.size,
                 -1 if mark is None else mark.mtime_ns,
                 -1 if mark is None else mark.inode,
@@ -289,6 +297,11 @@ class KeptBook:
                 None if self._tuning is None else msgspec.msgpack.encode(self._tuning),
             ),
         )
+
+
+def path_bytes(path: Path | None) -> bytes:
+    """Path as the system has it, of which not every byte need be text; empty for none."""
+    return b"" if path is None else os.fsencode(path)
 
 
 def decoded(packed: bytes | None, kind: type) -> Any:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.reading.places.book import KeptBook, decoded
+from vbraille.reading.places.book import KeptBook, decoded, path_bytes
 from vbraille.reading.places.database import usual_path
 from vbraille.reading.places.identity import QUICK_BYTES, Digesting, digest_of, fingerprint
 from vbraille.reading.places.store import Store
-from vbraille.reading.places.values import KeptPlace, ListedBook
+from vbraille.reading.places.values import KeptPlace, ListedBook, storable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,7 +78,8 @@ class KeptPlaces:
         """
         place = None if path is None else Path(path).absolute()
         mark = None if place is None else fingerprint(place)
-        name = title or ("standard input" if place is None else place.name)
+        title = storable(title)
+        name = title or ("standard input" if place is None else storable(place.name))
         try:
             with self._store.patient(), self._store.transaction() as connection:
                 number, known = _find_or_make(connection, place, mark, digest, name)
@@ -98,9 +100,10 @@ class KeptPlaces:
     def last_path(self) -> Path | None:
         """Path of the book that was read last, of those that have a file; None if there is none."""
         row = self._store.first(
-            "SELECT path FROM books WHERE path != '' AND NOT replaced ORDER BY read_s DESC LIMIT 1"
+            "SELECT path FROM books WHERE length(path) AND NOT replaced "
+            "ORDER BY read_s DESC, id DESC LIMIT 1"
         )
-        return None if row is None else Path(row[0])
+        return None if row is None else Path(os.fsdecode(row[0]))
 
     def listed(self) -> list[ListedBook]:
         """All books, the one that was read last first."""
@@ -110,7 +113,7 @@ class KeptPlaces:
         )
         return [
             ListedBook(
-                number, title, path, read_s, decoded(place, KeptPlace),
+                number, title, os.fsdecode(path), read_s, decoded(place, KeptPlace),
                 bool(path) and not _exists(path),
             )
             for number, title, path, read_s, place in rows
@@ -125,7 +128,7 @@ class KeptPlaces:
         if row is None:
             return False
         older = self._store.all(
-            "SELECT id FROM books WHERE replaced AND path != '' AND path = ?", row[0]
+            "SELECT id FROM books WHERE replaced AND length(path) AND path = ?", row[0]
         )
         numbers = [number, *(n for (n,) in older)]
         with self._store.patient():
@@ -160,9 +163,9 @@ class KeptPlaces:
         return time.time_ns()  # no other will have it
 
 
-def _exists(path: str) -> bool:
+def _exists(path: bytes) -> bool:
     try:
-        return Path(path).exists()
+        return Path(os.fsdecode(path)).exists()
     except OSError:
         return False
 
@@ -186,7 +189,7 @@ def _find_or_make(
         row = connection.execute(
             "SELECT id, digest FROM books WHERE size = ? AND mtime_ns = ? AND inode = ? "
             "ORDER BY path = ? DESC, read_s DESC LIMIT 1",
-            (mark.size, mark.mtime_ns, mark.inode, str(path)),
+            (mark.size, mark.mtime_ns, mark.inode, path_bytes(path)),
         ).fetchone()
         if row is not None and digest in (None, row[1]):
             _take_path(connection, row[0], path, mark)
@@ -205,9 +208,9 @@ def _find_or_make(
     old = None
     if path is not None:
         old = connection.execute(
-            "SELECT id FROM books WHERE path = ? AND NOT replaced LIMIT 1", (str(path),)
+            "SELECT id FROM books WHERE path = ? AND NOT replaced LIMIT 1", (path_bytes(path),)
         ).fetchone()
-    values: tuple[Any, ...] = (digest, "" if path is None else str(path), *_numbers(mark), title)
+    values: tuple[Any, ...] = (digest, path_bytes(path), *_numbers(mark), title)
     number = connection.execute(
         "INSERT INTO books (digest, path, size, mtime_ns, inode, title, read_s, replaced, settled)"
         " VALUES (?, ?, ?, ?, ?, ?, 0, 0, 1)",
@@ -241,14 +244,14 @@ def _take_path(
         return
     connection.execute(
         "UPDATE books SET path = ?, size = ?, mtime_ns = ?, inode = ?, replaced = 0 WHERE id = ?",
-        (str(path), *_numbers(mark), number),
+        (path_bytes(path), *_numbers(mark), number),
     )
     connection.execute(
-        "UPDATE books SET replaced = 1 WHERE path = ? AND id != ?", (str(path), number)
+        "UPDATE books SET replaced = 1 WHERE path = ? AND id != ?", (path_bytes(path), number)
     )
     older = connection.execute(
         "SELECT id FROM books WHERE path = ? AND replaced ORDER BY read_s DESC LIMIT -1 OFFSET ?",
-        (str(path), _OLDER_KEPT),
+        (path_bytes(path), _OLDER_KEPT),
     ).fetchall()
     for row in older:
         for sql in _FORGETTING:

@@ -5,6 +5,11 @@ from __future__ import annotations
 import msgspec
 
 
+def storable(text: str) -> str:
+    """Text without what cannot be written as UTF-8: halves of characters, bytes of no text."""
+    return text.encode("utf-8", "replace").decode()
+
+
 class KeptPlace(msgspec.Struct, frozen=True):
     """A place in a book, told in so many ways that one of them holds later.
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Self
 import msgspec
 
 from vbraille.reading.packing import unpack_answer
-from vbraille.reading.queries import CountLines, Failed, Indexed, Searched
+from vbraille.reading.queries import CountLines, Failed, FindText, Indexed, Searched
 from vbraille.reading.seeking.pipes import Incoming, Outgoing
 
 if TYPE_CHECKING:
@@ -88,11 +88,15 @@ class Seeker:
         assert popen.stdout is not None
         incoming, outgoing = Incoming(popen.stdout.fileno()), Outgoing(popen.stdin.fileno())
         self._process = _Process(popen, incoming, outgoing)
-        self._tell({"open": msgspec.to_builtins(self._opening, builtin_types=(bytes,))})
+        fields = msgspec.to_builtins(self._opening, builtin_types=(bytes,))
+        self._tell({"open": {**fields, "file": os.fsencode(self._opening.file)}})
 
     def ask(self, query: Query) -> None:
         """Ask a question; one of the same kind that was not answered yet is given up."""
         counts = isinstance(query, CountLines)
+        if isinstance(query, FindText):  # halves of characters cannot be sent, nor found
+            text = query.text.encode("utf-8", "replace").decode()
+            query = msgspec.structs.replace(query, text=text)
         self._give_up(counts=counts)
         self._last += 1
         self._asked[counts] = self._last

@@ -6,6 +6,7 @@ parent is heard within a step.
 
 from __future__ import annotations
 
+import os
 import select
 import time
 from typing import TYPE_CHECKING, Any
@@ -72,7 +73,8 @@ class Worker:
 
     def _take(self, message: dict[str, Any]) -> None:
         if "open" in message:
-            self._open(msgspec.convert(message["open"], BookOpening))
+            fields = {**message["open"], "file": os.fsdecode(message["open"]["file"])}
+            self._open(msgspec.convert(fields, BookOpening))
         elif "ask" in message:
             self._begin(message["number"], msgspec.convert(message["ask"], Query))
         elif "cancel" in message:
