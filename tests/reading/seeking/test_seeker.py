@@ -39,8 +39,8 @@ def answers(seeker, *, until):
         assert time.monotonic() < end, given
         if (answer := seeker.poll()) is not None:
             given.append(answer)
-        elif seeker._process is not None:
-            select.select([seeker._process.incoming.descriptor], [], [], 1.0)
+        elif seeker.descriptor is not None:
+            select.select([seeker.descriptor], [], [], 1.0)
     return given
 
 

@@ -68,6 +68,11 @@ class Seeker:
         """Whether lines are being counted."""
         return True in self._asked
 
+    @property
+    def descriptor(self) -> int | None:
+        """Number of the open file that can be read when an answer comes; None without a process."""
+        return None if self._process is None else self._process.incoming.descriptor
+
     def start(self) -> None:
         """Start the process, if it does not run, so that it can see where the book's blocks are."""
         if self._process is not None:
