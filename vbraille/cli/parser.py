@@ -28,6 +28,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.books,
         "vbraille books --json",
     ),
+    "keys": (
+        "List the keys that are obeyed while reading.",
+        reading.keys,
+        "vbraille keys",
+    ),
     "page": (
         "Print the page as it is laid out.",
         reading.page,

@@ -12,7 +12,6 @@ from tempfile import TemporaryFile
 import pytest
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.packing import pack_index
 from vbraille.reading.queries import (
     Counted,
     CountLines,
@@ -85,7 +84,7 @@ def test_the_index_of_the_whole_book_comes_of_itself(book):
         document.adopt(indexed.index)
         assert document.complete
         assert seeker.index == indexed.index
-    with Seeker(BookOpening(str(book), index=pack_index(indexed.index))) as seeker:
+    with Seeker(BookOpening(str(book), index=indexed.index)) as seeker:
         assert isinstance(final(seeker, FindText("last", 0)), Found)
 
 

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from vbraille.reading.packing import pack_index, unpack_index
 from vbraille.reading.places.anchoring import anchored, place_in
 from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, storable
+from vbraille.translate.source import Index
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.reading.places.identity import Digesting, Fingerprint
     from vbraille.reading.places.store import Store
-    from vbraille.translate.source import Index, Source
+    from vbraille.translate.source import Source
 
 EVERY_S = 0.5  # a place that changes all the time is written so often
 _LARGEST_TUNING = 100_000  # bytes
@@ -95,10 +95,7 @@ class KeptBook:
     def index(self) -> Index | None:
         """Where the book's blocks are, as far as it was kept."""
         row = self._store.first("SELECT packed FROM indices WHERE book = ?", self.number)
-        try:
-            return None if row is None else unpack_index(row[0])
-        except (ValueError, TypeError, msgspec.DecodeError):
-            return None
+        return None if row is None else decoded(row[0], Index)
 
     def keep(self, place: KeptPlace) -> None:
         """Keep the place at which reading goes on; call it at each step of the reading loop."""
@@ -207,7 +204,7 @@ class KeptBook:
         self._put(
             "index",
             "INSERT OR REPLACE INTO indices (book, packed) VALUES (?, ?)",
-            (self.number, pack_index(index)),
+            (self.number, msgspec.msgpack.encode(index)),
         )
 
     def settle(self, source: Source) -> str | None:

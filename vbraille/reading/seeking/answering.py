@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.reading.nearby import LINK, Reach, first_place, look
 from vbraille.reading.queries import (
     CountLines,
     FindKind,
@@ -16,21 +17,21 @@ from vbraille.reading.queries import (
     Searched,
 )
 from vbraille.reading.seeking.counting import LineCounts
-from vbraille.reading.seeking.extent import block_at_share, extended, known_blocks
+from vbraille.reading.seeking.extent import block_at_share, extended
 from vbraille.reading.seeking.finding import find_text
 from vbraille.translate.book import Book
 from vbraille.translate.documents.document import Document
-from vbraille.translate.source import BlockKind, MarkKind
+from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.reading.queries import Answer, Query
-    from vbraille.translate.source import Block, Source
+    from vbraille.translate.source import Source
 
-LINK = "link"
 _NOT_PLAIN = frozenset(kind.value for kind in BlockKind) - {"paragraph", "line"} | {LINK}
-_STEP = 64  # blocks that are looked at before it is told how far that is
+_BLOCKS = 64  # that are looked at before it is heard whether somebody still wants to know
+_STEP = Reach(_BLOCKS, 0.02)
 
 
 class Answering:
@@ -86,44 +87,28 @@ def _find_kind(source: Source, query: FindKind) -> Iterator[Answer]:
     if isinstance(source, Document) and query.kind in _NOT_PLAIN:
         yield NotFound()  # so that nobody waits for the end of a long text
         return
-    number = query.block
-    while True:
-        number += -1 if query.backward else 1
-        block = source.block(number)
-        if block is None:
-            yield NotFound()
-            return
-        if _is_wanted(block, query):
+    left: int | Query | None = query
+    while isinstance(left, FindKind):
+        left = look(source, left, _STEP)
+        if isinstance(left, FindKind):
+            yield Searched(source.progress(max(left.block, 0)))
+    if not isinstance(left, int):
+        yield NotFound()
+        return
+    yield Found(_group_start(source, left) if query.backward else left, source.index())
+
+
+def _group_start(source: Source, place: int) -> int:
+    """Place where the list or table begins that a place is in; other places stay."""
+    number = source.block_at(place)
+    block = None if number is None else source.block(number)
+    if number is None or block is None or not block.group:
+        return place
+    while number and (before := source.block(number - 1)) is not None:
+        if before.group != block.group or before.kind is not block.kind:
             break
-        if number % _STEP == 0:
-            yield Searched(source.progress(number))
-    if query.backward and query.group:
-        while (before := source.block(number - 1)) is not None and before.group == block.group:
-            number, block = number - 1, before
-    yield Found(_place(block, query), source.index())
-
-
-def _is_wanted(block: Block, query: FindKind) -> bool:
-    if query.kind == LINK:
-        return any(mark.kind is MarkKind.LINK for mark in block.marks)
-    return (
-        block.kind.value == query.kind
-        and not block.continues
-        and not (query.level and block.level > query.level)
-        and not (query.group and block.group == query.group)
-    )
-
-
-def _place(block: Block, query: FindKind) -> int:
-    if query.kind == LINK:
-        links = [mark.start for mark in block.marks if mark.kind is MarkKind.LINK]
-        return links[-1 if query.backward else 0]
-    return place_of_block(block)
-
-
-def place_of_block(block: Block) -> int:
-    """Place of the source at which a block begins."""
-    return int(block.text.places[0]) if len(block.text) else max(block.text.end - 1, 0)
+        number, place = number - 1, first_place(before)
+    return place
 
 
 def _find_share(source: Source, share: float) -> Iterator[Answer]:
@@ -133,7 +118,7 @@ def _find_share(source: Source, share: float) -> Iterator[Answer]:
     while block is not None and block.continues and number:
         number -= 1
         block = source.block(number)
-    yield NotFound() if block is None else Found(place_of_block(block), source.index())
+    yield NotFound() if block is None else Found(first_place(block), source.index())
 
 
 def _find_page(source: Source, label: str) -> Iterator[Answer]:
@@ -144,9 +129,9 @@ def _find_page(source: Source, label: str) -> Iterator[Answer]:
     number = 0
     while (block := source.block(number)) is not None:
         if block.kind is BlockKind.PAGE and str(block.text).strip().casefold() == wanted:
-            yield Found(place_of_block(block), source.index())
+            yield Found(first_place(block), source.index())
             return
         number += 1
-        if number % _STEP == 0:
-            yield Searched(source.progress(min(number, known_blocks(source))))
+        if number % _BLOCKS == 0:
+            yield Searched(source.progress(number - 1))
     yield NotFound()

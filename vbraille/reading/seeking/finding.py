@@ -109,7 +109,7 @@ def _hit(
     return within(document, (start, suspect.end), sought, backward=backward)
 
 
-def _row_before(rows: tuple[tuple[int | str | bytes, ...], ...], character: int) -> int:
+def _row_before(rows: tuple[tuple[int | str, ...], ...], character: int) -> int:
     """Number of the last row whose chunk begins at a character or before it."""
     low, high = 0, len(rows)
     while high - low > 1:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 
 from vbraille.layout.texts import choose_table
-from vbraille.reading.packing import unpack_index
 from vbraille.translate import Book, Undefined
 from vbraille.translate.documents.document import Document
+from vbraille.translate.source import Index
 
 
 class BookOpening(msgspec.Struct, frozen=True):
@@ -26,12 +26,14 @@ class BookOpening(msgspec.Struct, frozen=True):
         As the reader opened the book.
     table, language, grade
         Braille table, or the language and grade by which it is chosen; None for the usual.
+    switch
+        Whether passages in other languages are translated by the tables of those languages.
     undefined
         What is written for characters that the table does not know.
     in_cells
         Whether the book is in braille, so that it has no table.
     index
-        Packed index of the source, if one is known; see `vbraille.reading.packing`.
+        Index of the source, as far as it is known.
     """
 
     file: str = ""
@@ -44,9 +46,10 @@ class BookOpening(msgspec.Struct, frozen=True):
     table: str | None = None
     language: str | None = None
     grade: int | None = None
+    switch: bool = True
     undefined: str = "mark"
     in_cells: bool = False
-    index: bytes | None = None
+    index: Index | None = None
 
 
 def open_again(opening: BookOpening) -> Book:
@@ -62,8 +65,15 @@ def open_again(opening: BookOpening) -> Book:
     source = Document.open(path, opening.encoding, keep_lines=opening.keep_lines)
     source.name = opening.name or opening.file
     if opening.index is not None:
-        source.adopt(unpack_index(opening.index))
+        source.adopt(opening.index)
     if opening.in_cells:
         return Book(source)
     undefined = Undefined(opening.undefined)
-    return Book(source, choose_table(opening.language, opening.grade, opening.table, undefined))
+    table = choose_table(opening.language, opening.grade, opening.table, undefined)
+    return Book(
+        source,
+        table,
+        language=opening.language or "",
+        grade=opening.grade,
+        switch=opening.switch,
+    )

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from vbraille.reading.packing import unpack_answer
-from vbraille.reading.queries import CountLines, Failed, FindText, Indexed, Searched
+from vbraille.reading.queries import Answer, CountLines, Failed, FindText, Indexed, Searched
 from vbraille.reading.seeking.pipes import Incoming, Outgoing
 
 if TYPE_CHECKING:
-    from vbraille.reading.queries import Answer, Query
+    from vbraille.reading.queries import Query
     from vbraille.reading.seeking.opening import BookOpening
     from vbraille.translate.source import Index
 
@@ -93,7 +92,7 @@ class Seeker:
         assert popen.stdout is not None
         incoming, outgoing = Incoming(popen.stdout.fileno()), Outgoing(popen.stdin.fileno())
         self._process = _Process(popen, incoming, outgoing)
-        fields = msgspec.to_builtins(self._opening, builtin_types=(bytes,))
+        fields = msgspec.to_builtins(self._opening)
         self._tell({"open": {**fields, "file": os.fsencode(self._opening.file)}})
 
     def ask(self, query: Query) -> None:
@@ -146,7 +145,7 @@ class Seeker:
         with suppress(BrokenPipeError):
             process.outgoing.flush()
         for message in process.incoming.messages():
-            self._take(message["number"], unpack_answer(message["answer"]))
+            self._take(message["number"], msgspec.convert(message["answer"], Answer))
         if process.incoming.ended:
             self._process = None
             self._end(process)

@@ -124,14 +124,14 @@ def _pattern(needle: str, letter) -> str:
 
 def ahead(
     document: Document,
-    row: Sequence[int | str | bytes],
+    row: Sequence[int | str],
     sieve: Sieve,
     piece_bytes: int = PIECE_BYTES,
 ) -> Iterator[Suspect]:
     """Look through a document from a chunk on, whose row in the document's index is given."""
     _, character, offset, held, flag, skip, *_ = row
     decoder = TextDecoder(document.encoding.name)
-    decoder.restore((_bytes(held), int(flag)))
+    decoder.restore((bytes.fromhex(str(held)), int(flag)))
     offset, place = int(offset), int(character) - int(skip)
     tail, combined = "", False
     since = start = place  # where a hit may begin that is not at its end yet
@@ -155,7 +155,7 @@ def ahead(
 
 
 def behind(
-    document: Document, rows: Sequence[Sequence[int | str | bytes]], last: int, sieve: Sieve
+    document: Document, rows: Sequence[Sequence[int | str]], last: int, sieve: Sieve
 ) -> Iterator[Suspect]:
     """Look through a document backwards from the end of a chunk, whose number is given."""
     after = last + 1
@@ -163,7 +163,7 @@ def behind(
         first = max(0, after - _CHUNKS)
         _, character, offset, held, flag, skip, *_ = rows[first]
         decoder = TextDecoder(document.encoding.name)
-        decoder.restore((_bytes(held), int(flag)))
+        decoder.restore((bytes.fromhex(str(held)), int(flag)))
         offset, place = int(offset), int(character) - int(skip)
         if after < len(rows):
             end, end_place = int(rows[after][2]), int(rows[after][1])
@@ -209,8 +209,3 @@ def _combining(document: Document, raw: bytes, text: str) -> bool:
             or raw[0] & 0xC0 == 0x80  # the piece begins within a character
         )
     return not unicodedata.is_normalized("NFC", text)
-
-
-def _bytes(held: int | str | bytes) -> bytes:
-    assert isinstance(held, bytes)
-    return held
