@@ -116,6 +116,7 @@ class KeptBook:
         character: int,
         *,
         line: int | None = None,
+        lines_before: int | None = None,
         width: int = 0,
         table: str = "",
         page: str = "",
@@ -128,7 +129,7 @@ class KeptBook:
             The book.
         character
             Place of the source.
-        line, width, table, page
+        line, lines_before, width, table, page
             As in `KeptPlace`.
         """
         old = self._place
@@ -136,9 +137,8 @@ class KeptBook:
             self.keep(old)
         elif self._due():
             place = place_in(source, character)
-            self.keep(
-                msgspec.structs.replace(place, line=line, width=width, table=table, page=page)
-            )
+            told = {"line": line, "lines_before": lines_before, "width": width}
+            self.keep(msgspec.structs.replace(place, **told, table=table, page=page))
 
     def bookmarks(self) -> list[Bookmark]:
         """All bookmarks, by their place."""
@@ -152,7 +152,10 @@ class KeptBook:
     def set_bookmark(self, bookmark: Bookmark) -> None:
         """Set a bookmark; one of the same name is moved."""
         bookmark = msgspec.structs.replace(
-            bookmark, name=storable(bookmark.name), text=storable(bookmark.text)
+            bookmark,
+            name=storable(bookmark.name),
+            text=storable(bookmark.text),
+            after=storable(bookmark.after),
         )
         self._own_bookmarks[bookmark.name] = bookmark
         self._put(
@@ -222,7 +225,7 @@ class KeptBook:
             self._place, found = anchored(source, self._place)
         marks = self.bookmarks()
         for mark in marks:
-            old = KeptPlace(mark.character, share=mark.share, after=mark.text)
+            old = KeptPlace(mark.character, share=mark.share, after=mark.after or mark.text)
             place, _ = anchored(source, old)
             self.set_bookmark(
                 msgspec.structs.replace(mark, character=place.character, share=place.share)

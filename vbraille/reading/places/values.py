@@ -27,8 +27,10 @@ class KeptPlace(msgspec.Struct, frozen=True):
         Number of the source's characters that the text before the place is from.
     line
         Number of the line, from 1, in lines of `width` cells by `table`; None if nobody counted.
+    lines_before
+        Number of such lines before the block; None if nobody counted. A `Layout` can begin there.
     width, table
-        Width in cells and name of the table for which the line's number holds.
+        Width in cells and name of the table for which these numbers hold.
     page
         Number of the printed page as the book writes it; empty if it has none.
     """
@@ -40,6 +42,7 @@ class KeptPlace(msgspec.Struct, frozen=True):
     after: str = ""
     reach: int = 0
     line: int | None = None
+    lines_before: int | None = None
     width: int = 0
     table: str = ""
     page: str = ""
@@ -47,6 +50,10 @@ class KeptPlace(msgspec.Struct, frozen=True):
     def line_for(self, width: int, table: str) -> int | None:
         """Number of the line in lines of a width by a table; None if it is not known for them."""
         return self.line if (self.width, self.table) == (width, table) else None
+
+    def lines_before_for(self, width: int, table: str) -> int | None:
+        """Number of such lines before the block; None if it is not known for them."""
+        return self.lines_before if (self.width, self.table) == (width, table) else None
 
 
 class Bookmark(msgspec.Struct, frozen=True):
@@ -62,12 +69,15 @@ class Bookmark(msgspec.Struct, frozen=True):
         A few words of the text from there on.
     share
         About how much of the book stands before it, 0 to 1.
+    after
+        Text from the place on, for which a changed book is searched; empty for that of `text`.
     """
 
     name: str
     character: int
     text: str = ""
     share: float = 0.0
+    after: str = ""
 
 
 class BookOptions(msgspec.Struct, frozen=True):
