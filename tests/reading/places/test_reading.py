@@ -3,6 +3,8 @@
 from vbraille.layout.pages import Layout
 from vbraille.reading.places import BookOptions, KeptPlaces, KeptReading, open_kept
 from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.source import BlockKind
 
 TEXT = "\n\n".join(f"Paragraph number {n} says {n * n} and no more." for n in range(3000))
 
@@ -67,3 +69,29 @@ def test_bookmarks_are_found_again_by_more_than_the_reader_is_told(tmp_path):
     seen = []
     read(tmp_path, lambda kept, _: seen.extend(kept.bookmarks()))
     assert [(m.name, m.character, m.text) for m in seen] == [("a", at + 12, "Paragraph number")]
+
+
+class Paged(PartedSource):
+    """A book with pages of print."""
+
+    def __init__(self):
+        super().__init__("book", [1], "0" * 64)
+
+    def passages(self, part):  # noqa: ARG002 - it has one
+        for page in ("xii", "13"):
+            yield Passage(page, BlockKind.PAGE)
+            yield Passage(f"The first words of page {page}.")
+            yield Passage(f"The last words of page {page}.")
+
+
+def test_the_page_of_print(tmp_path):
+    source = Paged()
+    layout = Layout(Book(source, BrailleTable("en-ueb-g2.ctb")), 20)
+    with KeptPlaces.open(tmp_path / "places.sqlite") as places:
+        book = places.book(None, source.sha256())
+        kept = KeptReading(book, layout)
+        pages = []
+        for number in (1, 2, 4, 5):
+            kept.keep(int(source.block(number).text.places[3]))
+            pages.append(book.place.page)
+        assert pages == ["xii", "xii", "13", "13"]

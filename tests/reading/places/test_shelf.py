@@ -223,6 +223,16 @@ class TestWriting:
         assert written() not in (first, second)
         other.close()
 
+    def test_the_last_of_many_places_is_kept_at_the_end(self, folder):
+        document = Document.open(folder / "book.txt")
+        with KeptPlaces.open(folder / "places.sqlite", now=lambda: 0.0) as places:
+            kept = places.book(folder / "book.txt")
+            kept.set_bookmark(Bookmark("a", 1))
+            for character in range(100, 110):
+                kept.keep_at(document, character)
+        with KeptPlaces.open(folder / "places.sqlite") as places:
+            assert places.book(folder / "book.txt").place == place_in(document, 109)
+
     def test_bookmarks_stand_by_their_place(self, folder):
         with opened(folder) as places:
             kept = places.book(folder / "book.txt")

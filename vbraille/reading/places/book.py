@@ -121,7 +121,7 @@ class KeptBook:
         table: str = "",
         page: str = "",
     ) -> None:
-        """Keep a place by its character, with the text around it, if it is time to write it.
+        """Keep a place by its character, with the text around it, as `keep` does.
 
         Parameters
         ----------
@@ -135,10 +135,10 @@ class KeptBook:
         old = self._place
         if old is not None and (old.character, old.line) == (character, line):
             self.keep(old)
-        elif self._due():
-            place = place_in(source, character)
-            told = {"line": line, "lines_before": lines_before, "width": width}
-            self.keep(msgspec.structs.replace(place, **told, table=table, page=page))
+            return
+        place = place_in(source, character)
+        told = {"line": line, "lines_before": lines_before, "width": width}
+        self.keep(msgspec.structs.replace(place, **told, table=table, page=page))
 
     def bookmarks(self) -> list[Bookmark]:
         """All bookmarks, by their place."""

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 from vbraille.reading.places.anchoring import place_in
 from vbraille.reading.places.values import Bookmark
 from vbraille.reading.whereabouts import before, is_counted
+from vbraille.translate.documents.document import Document
 from vbraille.translate.source import BlockKind
 
 if TYPE_CHECKING:
-    from vbraille.layout.pages import Layout
+    from vbraille.layout.pages import Layout, Line
     from vbraille.reading.places.book import KeptBook
+    from vbraille.translate.source import Block
 
 
 class KeptReading:
@@ -28,6 +30,7 @@ class KeptReading:
     def __init__(self, kept: KeptBook, layout: Layout) -> None:
         self._kept = kept
         self._layout = layout
+        self._seen: tuple[Block | None, str] = None, ""  # a block and its page
 
     def bookmarks(self) -> list[Bookmark]:
         """All bookmarks, by their place."""
@@ -52,7 +55,7 @@ class KeptReading:
             self._kept.keep_at(source, character)
             return
         line, _ = found
-        page = before(source, line, BlockKind.PAGE)
+        page = self._page(line)
         self._kept.keep_at(
             source,
             character,
@@ -60,8 +63,17 @@ class KeptReading:
             lines_before=self._lines_before(character),
             width=layout.width,
             table="" if table is None else table.name,
-            page="" if page is None else str(page.text).strip(),
+            page=page,
         )
+
+    def _page(self, line: Line) -> str:
+        """Page of the printed book that a line is on; looked for once for each block."""
+        if isinstance(self._layout.book.source, Document):
+            return ""  # it has none, and looking would read much of it
+        if self._seen[0] is not line.block:
+            page = before(self._layout.book.source, line, BlockKind.PAGE)
+            self._seen = line.block, "" if page is None else str(page.text).strip()
+        return self._seen[1]
 
     def _lines_before(self, character: int) -> int | None:
         """Number of lines before the block that a character is in; None if nobody counted."""
