@@ -118,6 +118,20 @@ def _reading(parser: ArgumentParser) -> None:
     _leave_to_settings(parser)
 
 
+def books(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille books``."""
+    parser.add_argument(
+        "--forget",
+        type=whole,
+        metavar="N",
+        help="Delete all that is kept of the book with this number in the list; the book's file "
+        "stays (default: nothing is deleted).",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="Print the list as JSON, for another program."
+    )
+
+
 def keys(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille keys``."""
     parser.add_argument(
