@@ -109,7 +109,7 @@ class Reader(LineReader):
     def put(self, window: Window) -> None:
         """Put a part of a line under the hand."""
         super().put(window)
-        self.keeping.moved(self.character_of(None))
+        self.keeping.moved(self.layout, window.line)
 
     def jump(self, character: int, *, back: bool = True) -> bool:
         """Put the line of a place of the source under the hand; False if it is none of those.
