@@ -39,11 +39,13 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.local import LocalEngine
+    from vbraille.engine.spawning import Spawned
     from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.simulation.steering import Steering
 
 HAND = "sweep:60"
 _POLL_S = 0.02
@@ -72,6 +74,9 @@ class OpenDevice:
         Function that is called with each thing that the reader should hear.
     attended
         Whether somebody is at a keyboard, who can end a line that no hand ends.
+    spawned, steering
+        Host process that was begun for the device, and the steering of a simulated hand that it
+        inherited; None to begin it when the device is started.
 
     Attributes
     ----------
@@ -89,6 +94,8 @@ class OpenDevice:
         clock: Clock | None = None,
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
+        spawned: Spawned | None = None,
+        steering: Steering | None = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted
@@ -117,12 +124,15 @@ class OpenDevice:
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
-            self._steering = steering_of(device)
+            self._steering = steering_of(device) if steering is None else steering
             self._engine = Host(
                 device_spec(device, hand, seed, self._steering),
                 wanted,
                 pass_fds=() if self._steering is None else (self._steering.descriptor,),
+                spawned=spawned,
             )
+            if self._simulated:
+                self._engine.launch()  # it loads while the text is laid out
 
     def find(self) -> Display:
         """Find out what the device is; a device other than the simulated one is opened for that.
