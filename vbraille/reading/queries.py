@@ -111,10 +111,14 @@ class Counted(msgspec.Struct, frozen=True, tag="counted"):
         Number of lines.
     index
         Where the blocks up to there are.
+    width, block
+        Width and block that were asked for.
     """
 
     lines: int
     index: Index
+    width: int = 0
+    block: int = 0
 
 
 class Failed(msgspec.Struct, frozen=True, tag="failed"):

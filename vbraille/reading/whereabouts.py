@@ -21,7 +21,7 @@ _LEAST_SHARE = 1e-4  # of a book, from which the rest is estimated
 
 def is_counted(layout: Layout) -> bool:
     """Whether line numbers are counted from the beginning of the book."""
-    return getattr(layout, "counted", True)
+    return layout.counted
 
 
 def first_character(line: Line) -> int:

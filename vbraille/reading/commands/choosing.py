@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.reading.cues import Cue
-from vbraille.translate import Book, BrailleTable, Undefined, find_table
+from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ def _change(reader: Reader, language: str, grade: int | None = None) -> None:
         if name == book.table.name:
             reader.say(f"table: {name}, as before")
             return
-        how = getattr(book.table, "how", Undefined.MARK)
-        reader.lay_out_again(book=Book(book.source, BrailleTable(name, how)))
+        other = BrailleTable(name, book.table.how)
+        reader.lay_out_again(book=Book(book.source, other, language=language, grade=grade))
     except InputError as error:
         reader.say(f"table: {spelled(str(error))}")
         return
