@@ -176,15 +176,19 @@ def _build_brf(arguments: argparse.Namespace) -> Book:
     return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
 
 
-def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
+def lay_out(
+    arguments: argparse.Namespace, book: Book, model: Model, width: int | None = None
+) -> Page:
     """Page of a text for a display and a style, whose width is said on stderr.
+
+    With a `width`, in cells, lines are so long whatever the display.
 
     Raises
     ------
     InputError
         If there is no room for a cell, or the text ends before the lines asked for.
     """
-    width = cells_per_line(model.style.geometry, model.display)
+    width = width or cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
     layout = Layout(book, width)
     if layout.line(first) is None:

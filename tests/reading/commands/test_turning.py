@@ -1,5 +1,7 @@
 """Knobs that a reader turns while the hand moves: what is said, what is felt, where they stop."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -103,15 +105,30 @@ def test_mappings_come_in_turn_and_dot_rows_where_one_is_shown():
     assert said[0] == "mapping: paired"
     assert said[-1] == "mapping: alternate"
     assert len(set(said)) == 7
-    one.reader._model = VBD
-    one.reader.style = VBD.style.replace(geometry=one.reader.style.geometry)
-    one.engine.show = lambda *_: None
-    assert [does(one, change_mapping)[0] for _ in range(3)] == [
-        f"dot row: {row}" for row in (2, 3, 1)
-    ]
-    assert does(one, turn("texture_cycles", 1)) == [
+
+
+class OneRow:
+    """As much of a reader as a turn needs, on a display that shows one row of dots."""
+
+    def __init__(self):
+        self.style, self.engine = VBD.style, SimpleNamespace(display=VBD.display)
+        self.said, self.cues = [], []
+        self.say, self.cue = self.said.append, self.cues.append
+
+    def tune(self, **turned):
+        self.style = self.style.replace(**turned)
+
+
+def test_where_one_row_of_dots_is_shown_it_is_turned_and_texture_has_one_wavelength():
+    reader = OneRow()
+    for _ in range(3):
+        change_mapping(reader)
+    assert reader.said == [f"dot row: {row}" for row in (2, 3, 1)]
+    turn("texture_cycles", 1)(reader)
+    assert reader.said[3:] == [
         "texture cycles: 7, the most: the texture of this display has a fixed wavelength"
     ]
+    assert reader.cues == [Cue.LIMIT]
 
 
 def test_undo_takes_back_one_turn_after_the_other():
