@@ -6,7 +6,6 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.devices.base import Device, Placing
 from vbraille.devices.events import Button, Knob
 from vbraille.devices.saying import told
@@ -158,8 +157,7 @@ class OpenDevice:
         self._model = model
         if isinstance(self._engine, Host):
             # Cells may come closer while somebody reads.
-            most = max(MOST_CELLS, _most_cells(model))
-            self._engine.fit(model.display, model.style.room(model.display, most))
+            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS))
         self._engine.start()
 
     def start_again(self) -> None:
@@ -412,10 +410,3 @@ class OpenDevice:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-
-def _most_cells(model: Model) -> int:
-    """Number of cells that a line has room for, however its reader turns its distances."""
-    least = {"dot_width_mm", "dot_spacing_mm", "cell_gap_mm"}
-    narrowest = model.style.replace(**{name: BOUNDS_MM[name][0] for name in least})
-    return cells_per_line(narrowest.geometry, model.display)
