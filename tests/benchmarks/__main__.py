@@ -17,6 +17,7 @@ PARTS = (
     "analysis",
     "coverage",
     "reader",
+    "turning",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -211,6 +211,7 @@ class Reader(LineReader):
             If there is no room for a cell.
         """
         cell, character, layout = self.cell, self.character, self.layout
+        before, x_mm, geometry = self.window, self.engine.x_mm, self.style.geometry
         if style is not None:
             self.under.show_in(style)
         self._fixed = self._fixed or width is not None
@@ -222,11 +223,11 @@ class Reader(LineReader):
             return
         line, new_cell = found
         window = Window(line, self.under.width)
-        x_mm = self.engine.x_mm
-        if cell is None or x_mm is None:
+        if before is None or cell is None or x_mm is None:
             self.put(window.showing(new_cell))
         else:
-            self.put(window.under(new_cell, x_mm, self.style.geometry))
+            share = before.share_at(x_mm, geometry)
+            self.put(window.under(new_cell, share, x_mm, self.style.geometry))
 
     def find(self, query: Query, then: Callable[[int | None], None]) -> None:
         """Look for something in the book, and call a function with its place, or None.

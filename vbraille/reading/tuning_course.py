@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.errors import InputError
-from vbraille.render.braille.knobs import KNOBS, Knob, kept_values, obstacle, with_values
+from vbraille.render.braille.knobs import KNOBS, StyleKnob, kept_values, obstacle, with_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,8 +82,8 @@ class _Stand:
     """How far the choices have brought a course."""
 
     style: BrailleStyle
-    found: tuple[tuple[Knob, float], ...]
-    knob: Knob | None
+    found: tuple[tuple[StyleKnob, float], ...]
+    knob: StyleKnob | None
     span: Span | None
 
 
@@ -113,12 +113,12 @@ class TuningCourse:
         return len(self.choices) >= self.total
 
     @property
-    def knob(self) -> Knob | None:
-        """Knob that the next choice is about; None at the end."""
+    def knob(self) -> StyleKnob | None:
+        """StyleKnob that the next choice is about; None at the end."""
         return self._stand().knob
 
     @property
-    def found(self) -> tuple[tuple[Knob, float], ...]:
+    def found(self) -> tuple[tuple[StyleKnob, float], ...]:
         """Knobs that are settled so far, with their values."""
         return self._stand().found
 
@@ -177,7 +177,7 @@ def _lower_first(number: int) -> bool:
     return number % 2 == 0
 
 
-def _span(knob: Knob, style: BrailleStyle, start: Model) -> Span:
+def _span(knob: StyleKnob, style: BrailleStyle, start: Model) -> Span:
     """Interval of values of a knob that are tried in a style."""
     low, high = knob.low, knob.high
     if knob.name == "contrast":

@@ -118,7 +118,7 @@ class UnderHand:
         self.shown += 1
         self._begun = False
         span_mm = self._display.span_mm
-        self._end_mm = self.style.geometry.extent_mm(len(window))
+        self._end_mm = window.start_mm + self.style.geometry.extent_mm(len(window))
         self._end = EndOfLine(span_mm, self._end_mm)
         self._waiting = Waiting(span_mm, self._end_mm, name, by_hand=self._by_hand, key=self._key)
         self._render(window)
@@ -175,4 +175,6 @@ class UnderHand:
 
     def _render(self, window: Window) -> None:
         program = self.style.render(window.masks, self._display)
+        if window.start_mm:
+            program = program.with_anchor(self._display.span_mm / 2 + window.start_mm)
         self._engine.show(program, window.line.number)

@@ -15,7 +15,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.settled import chosen_profile, settle
+from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -25,8 +25,7 @@ from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
-from vbraille.reading.bindings import Bindings
-from vbraille.reading.commands.table import bound_by, press
+from vbraille.reading.commands.table import press
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.echo import Echo
@@ -61,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
+    bound = bind_settings(settings)
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened

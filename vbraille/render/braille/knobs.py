@@ -28,7 +28,7 @@ _SHOWN_ROWS = DOT_ROWS - 1  # the row of dots 7 and 8 is not shown alone
 
 
 @dataclass(frozen=True, slots=True)
-class Knob:
+class StyleKnob:
     """A number of a style that a reader turns.
 
     Parameters
@@ -70,17 +70,17 @@ class Knob:
         return round(after) if isinstance(self.low, int) else after
 
 
-def _length(name: str, step: float) -> Knob:
+def _length(name: str, step: float) -> StyleKnob:
     low, high = BOUNDS_MM[f"{name}_mm"]
-    return Knob(f"{name}_mm", f"{name}_mm", name.replace("_", " "), "mm", step, low, high)
+    return StyleKnob(f"{name}_mm", f"{name}_mm", name.replace("_", " "), "mm", step, low, high)
 
 
 KNOBS = {
     knob.name: knob
     for knob in (
-        Knob("texture", "texture", "texture", "", 0.1, 0.0, 1.0),
-        Knob("contrast", "contrast", "contrast", "", 0.1, 0.0, 1.0),
-        Knob("texture_cycles", "cycles", "texture cycles", "", 2, 1, MOST_TEXTURE_CYCLES),
+        StyleKnob("texture", "texture", "texture", "", 0.1, 0.0, 1.0),
+        StyleKnob("contrast", "contrast", "contrast", "", 0.1, 0.0, 1.0),
+        StyleKnob("texture_cycles", "cycles", "texture cycles", "", 2, 1, MOST_TEXTURE_CYCLES),
         _length("dot_width", 0.2),
         _length("dot_spacing", 0.2),
         _length("cell_gap", 0.2),
@@ -89,14 +89,14 @@ KNOBS = {
 }
 
 
-def fixed(knob: Knob, style: BrailleStyle) -> str:
+def fixed(knob: StyleKnob, style: BrailleStyle) -> str:
     """Reason why a knob turns nothing in a style; empty if it does."""
     if knob.field == "cycles" and style.profile is Profile.HALF_SINE:
         return "the texture of this display has a fixed wavelength"
     return ""
 
 
-def obstacle(knob: Knob, geometry: Geometry, display: Display, value: float) -> str:
+def obstacle(knob: StyleKnob, geometry: Geometry, display: Display, value: float) -> str:
     """Reason why a knob cannot have a value beside the distances that there are; empty if it can.
 
     Parameters
@@ -187,9 +187,9 @@ def with_values(
     return style.replace(**changes)
 
 
-def _mapping(style: BrailleStyle, display: Display, name: str, value: float | str) -> Mapping:
+def _mapping(style: BrailleStyle, display: Display, name: str, value: object) -> Mapping:
     """Mapping that a settings file names; InputError if the display cannot show it."""
-    allowed: dict[float | str, Mapping] = {
+    allowed: dict[object, Mapping] = {
         (m.left[0] + 1 if m.rows == 1 else m.name): m for m in mappings_for(style, display)
     }
     own = "dot_row" if style.mapping.rows == 1 else "mapping"
