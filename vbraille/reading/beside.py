@@ -76,7 +76,13 @@ class KeptLike(Protocol):
 class ScrollLike(Protocol):
     """Brings the next line after a time that the reader chooses."""
 
-    on: bool
+    @property
+    def on(self) -> bool:
+        """Whether lines come by themselves."""
+        ...
+
+    @on.setter
+    def on(self, on: bool) -> None: ...
 
     def faster(self) -> object:
         """Have lines come sooner."""
