@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
@@ -14,6 +15,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.settled import chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -33,6 +35,8 @@ from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
+from vbraille.settings.applying import with_profile
+from vbraille.settings.saving import save_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.wording import spelled
 
@@ -51,11 +55,13 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
+    settings = settle(arguments)
+    profile = chosen_profile(arguments, settings)
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bound_by(Bindings())
+    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
@@ -83,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            model = build_show(arguments, model_of(display))
+            model = build_show(arguments, with_profile(settings, profile, model_of(display)))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
@@ -100,7 +106,13 @@ def run(arguments: argparse.Namespace) -> int:
                 advance=arguments.advance == "return",
                 echo=echo,
                 beside=Beside(
-                    bound=bound, scroll=Scroll(), cue=hearing.cue, verbose=arguments.verbose
+                    bound=bound,
+                    scroll=Scroll(),
+                    cue=hearing.cue,
+                    save_style=lambda style: save_profile(
+                        settings.path, profile, replace(model, style=style)
+                    ),
+                    verbose=arguments.verbose,
                 ),
             )
             _Reading(page, device, keyboard, suspension, hearing).run()
