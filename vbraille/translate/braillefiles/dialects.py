@@ -31,8 +31,9 @@ def by_display_table(table: str) -> NDArray[np.int16]:
     """Mask of each byte as a display table of liblouis has it, int16[256]; -1 for no braille.
 
     Bytes are Latin-1. A letter stands for the cell of its small letter, or of its capital where
-    the table knows no small one, and never for dots 7 and 8, which tell the two apart. What the
-    table does not know of the bytes 0x60 to 0x7E is written for 0x40 to 0x5E, and the reverse.
+    the table knows no small one, and never for dots 7 and 8, which tell the two apart; a to z are
+    the same in all dialects, and some tables leave them out. What the table does not know of the
+    bytes 0x60 to 0x7E is written for 0x40 to 0x5E, and the reverse.
 
     Raises
     ------
@@ -50,8 +51,10 @@ def by_display_table(table: str) -> NDArray[np.int16]:
         folded = chr(code ^ 0x20) if 0x40 <= code < 0x7F else ""
         small = character.lower() if len(character.lower()) == 1 else character
         dots = known.get(small) or known[character] or known.get(folded, 0)
-        if character.isalpha():
+        if 0x40 <= code < 0x7F:
             dots &= 0x3F
+        if character.isascii() and character.isalpha() and not dots:
+            dots = int(Cells.from_brf(character).masks[0])
         if dots:
             masks[code] = dots
     masks[0x20] = 0

@@ -164,6 +164,7 @@ class _Body:
         self._out: list[str] = []
         self._size = 0
         self._levels = 0  # lists that are open
+        self._group = 0  # the list that they are
         self._ids = 0
 
     def parts(self, blocks: Iterable[tuple[Block, Cells]]) -> Iterable[tuple[str, str]]:
@@ -205,8 +206,9 @@ class _Body:
         self.written.eight += high
         self.written.six += masks.size - high
         cells = Cells.bare(masks)
-        if block.kind is not BlockKind.ITEM:
+        if block.kind is not BlockKind.ITEM or block.group != self._group:
             self._close_lists(0)
+        self._group = block.group
         text = _words(cells)
         kind = block.kind
         if kind is BlockKind.PAGE:
