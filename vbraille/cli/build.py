@@ -199,9 +199,13 @@ def _build_brf(arguments: argparse.Namespace) -> Book:
         if getattr(arguments, option) is not None:
             raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
     stream = _open(arguments.file)
-    if arguments.encoding is not None:
-        return Book(open_unicode_braille(stream, arguments.file, arguments.encoding))
-    return Book(open_brf(stream, arguments.file, table=arguments.brf_table))
+    try:
+        if arguments.encoding is not None:
+            return Book(open_unicode_braille(stream, arguments.file, arguments.encoding))
+        return Book(open_brf(stream, arguments.file, table=arguments.brf_table))
+    except InputError:
+        stream.close()
+        raise
 
 
 def lay_out(

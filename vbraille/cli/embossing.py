@@ -68,10 +68,12 @@ def check(arguments: argparse.Namespace) -> None:
         if arguments.format in ("dots", "text"):
             raise InputError("--layout makes pages; give --format brf, pef or unicode")
         lines_per_page(arguments)
-    if arguments.out is not None and not arguments.force and Path(arguments.out).exists():
-        raise InputError(
-            f"{arguments.out} is there already; choose another name, or replace it by --force"
-        )
+    if arguments.out is not None:
+        path = Path(arguments.out)
+        if path.exists() and not arguments.force:
+            raise InputError(_taken(arguments.out))
+        if not path.parent.is_dir():
+            raise InputError(f"there is no directory {path.parent}; make it, or choose another")
 
 
 def lines_per_page(arguments: argparse.Namespace) -> int:
@@ -128,11 +130,13 @@ def output_file(name: str, *, replace: bool) -> Iterator[BinaryIO]:
             with file:
                 yield file
     except FileExistsError:
-        raise InputError(
-            f"{name} is there already; choose another name, or replace it by --force"
-        ) from None
+        raise InputError(_taken(name)) from None
     except OSError as error:
         raise VbrailleError(f"{name} could not be written: {error.strerror}") from None
+
+
+def _taken(name: str) -> str:
+    return f"{name} is there already; choose another name, or replace it by --force"
 
 
 def emboss(arguments: argparse.Namespace, book: Book) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.layout.embossed_rules import BEFORE_NUMBER, CENTRED_MARGIN, Placing, placing
+from vbraille.layout.embossed_rules import BEFORE_NUMBER, CENTRED_MARGIN, PlacingRule, placing
 from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.translate.source import BlockKind
 from vbraille.translate.text import Text, to_codes
@@ -205,7 +205,7 @@ class BanaPages:
         yield from self._full
         self._full.clear()
 
-    def _placing(self, block: Block, number: int) -> Placing:
+    def _placing(self, block: Block, number: int) -> PlacingRule:
         deepest = block.level
         if block.kind is BlockKind.ITEM and block.group:
             if self._deepest[0] != block.group:
@@ -226,7 +226,7 @@ class BanaPages:
                 deepest = max(deepest, block.level)
         return deepest
 
-    def _begin(self, block: Block, place: Placing, number: int, flow: _Flow) -> None:
+    def _begin(self, block: Block, place: PlacingRule, number: int, flow: _Flow) -> None:
         """Put the blank line before a block, on a page that has room for what must keep with it."""
         same = self._before == (block.kind, block.group) and place.apart
         after_heading = self._before is not None and self._before[0] is BlockKind.HEADING
@@ -246,7 +246,7 @@ class BanaPages:
                 self._finish()
         self._wants_blank = False
 
-    def _needed(self, place: Placing, flow: _Flow, number: int) -> int:
+    def _needed(self, place: PlacingRule, flow: _Flow, number: int) -> int:
         """Lines that a heading needs with one line of what follows it, itself without blanks."""
         needed = flow.count(self._within(place)) + place.after
         following = self._book.block(number + 1)
@@ -271,7 +271,7 @@ class BanaPages:
         """Number of lines that are left on the page."""
         return self._lines - (0 if self._sheet is None else len(self._sheet.rows))
 
-    def _within(self, place: Placing) -> int:
+    def _within(self, place: PlacingRule) -> int:
         """Number of cells that a line has for text, wherever it is on the page."""
         return self._width - 2 * CENTRED_MARGIN * place.centred
 
@@ -335,7 +335,7 @@ class BanaPages:
 class _Flow:
     """Cells of a block from which one line after the other is taken."""
 
-    def __init__(self, place: Placing) -> None:
+    def __init__(self, place: PlacingRule) -> None:
         self._place = place
         self._indent = place.first
         self._begun = False
@@ -392,7 +392,7 @@ class _Flow:
         starts = self._starts[window]
         bounds = wrap(
             self.breaks[window], room, min(self._indent, room // 2), self._place.others,
-            memoryview(np.ascontiguousarray(starts)),
+            starts.tolist(),
         )  # fmt: skip
         start, stop, indent = bounds[0]
         following = bounds[1][0] if len(bounds) > 1 else len(self.breaks[window])

@@ -23,7 +23,7 @@ BEFORE_NUMBER = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Placing:
+class PlacingRule:
     """How a block is placed.
 
     Parameters
@@ -52,24 +52,24 @@ class Placing:
 
 _HEADINGS = (
     # Section 4, Headings: centered, a blank line before and after.
-    Placing(0, 0, centred=True, before=True, after=True, keeps=True),
+    PlacingRule(0, 0, centred=True, before=True, after=True, keeps=True),
     # Section 4: cell-5 heading, blocked in cell 5, a blank line before and none after.
-    Placing(4, 4, before=True, keeps=True),
+    PlacingRule(4, 4, before=True, keeps=True),
     # Section 4: cell-7 heading, blocked in cell 7, a blank line before and none after.
-    Placing(6, 6, before=True, keeps=True),
+    PlacingRule(6, 6, before=True, keeps=True),
 )
 # Section 1, General Formatting: paragraphs are indented, 3-1, without blank lines.
-_PARAGRAPH = Placing(2, 0)
+_PARAGRAPH = PlacingRule(2, 0)
 # Section 11, Tables: a table as rows is a list of them, 1-3, blank lines around it.
-_ROW = Placing(0, 2, before=True, after=True, apart=True)
+_ROW = PlacingRule(0, 2, before=True, after=True, apart=True)
 # Section 13, Poetry: each line of verse 1-3, blank lines around them.
-_LINE = Placing(0, 2, before=True, after=True, apart=True)
+_LINE = PlacingRule(0, 2, before=True, after=True, apart=True)
 # Section 16, Notes: a note that stands in the text, 7-5, a blank line around it is not required.
-_NOTE = Placing(6, 4)
+_NOTE = PlacingRule(6, 4)
 
 
-def placing(block: Block, deepest: int = 1) -> Placing:
-    """Placing of a block that is no page.
+def placing(block: Block, deepest: int = 1) -> PlacingRule:
+    """PlacingRule of a block that is no page.
 
     Parameters
     ----------
@@ -85,13 +85,13 @@ def placing(block: Block, deepest: int = 1) -> Placing:
             # Section 8, Lists: 1-3; in a list of several levels each begins two cells further in,
             # and all run over two cells beyond the deepest beginning (1-5, 3-5 for two levels).
             first = 2 * (block.level - 1)
-            return Placing(
+            return PlacingRule(
                 first, 2 * max(deepest, block.level), before=True, after=True, apart=True
             )
         case BlockKind.QUOTE:
             # Section 9, Displayed material: margins moved two cells in, blank lines around it.
             inset = 2 * block.level
-            return Placing(inset + 2, inset, before=True, after=True, apart=True)
+            return PlacingRule(inset + 2, inset, before=True, after=True, apart=True)
         case BlockKind.ROW:
             return _ROW
         case BlockKind.LINE:

@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Heading:
+class OutlineHeading:
     """A heading of an outline.
 
     Parameters
     ----------
     level
-        Its level, from 1.
+        Depth of its part, 1 for the largest parts.
     title
-        Its text.
+        Text of the heading.
     page
         Number of the print page that it is on; empty if the source does not say.
     percent
@@ -55,7 +55,7 @@ class Outline:
 
     title: str
     language: str
-    headings: tuple[Heading, ...]
+    headings: tuple[OutlineHeading, ...]
     counts: dict[str, int]
     languages: dict[str, int]
     unshown: dict[str, int]
@@ -77,7 +77,7 @@ def outline(source: Source) -> Outline:
     languages: Counter[str] = Counter()
     unshown: Counter[str] = Counter()
     groups: dict[BlockKind, int] = {BlockKind.ITEM: 0, BlockKind.ROW: 0}
-    headings: list[Heading] = []
+    headings: list[OutlineHeading] = []
     page, number, before = "", 0, None
     while (block := source.block(number)) is not None:
         words = to_text(block.text.codes).strip()
@@ -88,7 +88,7 @@ def outline(source: Source) -> Outline:
             _count_groups(block, before, counts, groups)
             if block.kind is BlockKind.HEADING:
                 percent = round(100 * source.progress(number), 1)
-                headings.append(Heading(block.level, " ".join(words.split()), page, percent))
+                headings.append(OutlineHeading(block.level, " ".join(words.split()), page, percent))
             counts["notes"] += block.kind is BlockKind.NOTE
         if block.language and not block.continues:
             languages[block.language] += 1

@@ -13,7 +13,7 @@ from vbraille.translate.outline import outline
 if TYPE_CHECKING:
     import argparse
 
-    from vbraille.translate.outline import Heading
+    from vbraille.translate.outline import OutlineHeading
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,6 +41,6 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _said(heading: Heading) -> str:
+def _said(heading: OutlineHeading) -> str:
     page = f"page {heading.page}, " if heading.page else ""
     return f"level {heading.level}: {heading.title}, {page}{heading.percent:.0f} percent"

@@ -120,7 +120,7 @@ def _parse(content: bytes, name: str) -> etree._Element:
     if root.tag != f"{{{NAMESPACE}}}pef":
         raise InputError(f"{name} is no PEF file: it begins with {root.tag}; give a PEF 2008-1")
     declared = root.getroottree().docinfo.internalDTD
-    if declared is not None and next(declared.iterentities(), None) is not None:
+    if declared is not None and declared.entities():
         raise InputError(f"{name} declares entities, which no PEF file needs; it is not read")
     return root
 
@@ -129,7 +129,7 @@ def _rows(page: etree._Element, name: str) -> str | None:
     """Rows of a page, with a line feed between two; None if it has none."""
     rows = []
     for row in page.iter(f"{{{NAMESPACE}}}row"):
-        text = "".join(row.itertext()).strip(" \t\r\n")
+        text = "".join(map(str, row.itertext())).strip(" \t\r\n")
         if len(row) or not all(_BLANK <= ord(character) < _BLANK + 256 for character in text):
             wrong = next((c for c in text if not _BLANK <= ord(c) < _BLANK + 256), None)
             what = "an element" if wrong is None else repr(wrong)
@@ -144,4 +144,4 @@ def _rows(page: etree._Element, name: str) -> str | None:
 def _metadata(root: etree._Element, what: str) -> str:
     """Value of the first such element of Dublin Core in the head; empty if there is none."""
     found = root.find(f".//{{{NAMESPACE}}}meta/{{{DUBLIN_CORE}}}{what}")
-    return "" if found is None else " ".join("".join(found.itertext()).split())
+    return "" if found is None else " ".join("".join(map(str, found.itertext())).split())
