@@ -213,6 +213,8 @@ class BanaPages:
             deepest = max(deepest, self._deepest[1])
         made = placing(block, deepest)
         most = self._width // 2  # deep levels must leave room for words
+        if max(made.first, made.others) <= most:
+            return made
         return replace(made, first=min(made.first, most), others=min(made.others, most))
 
     def _look_deep(self, group: int, number: int) -> int:

@@ -10,6 +10,8 @@ import uuid
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vbraille.braille.cells import Cells
 from vbraille.translate.braillefiles.pef import DUBLIN_CORE, NAMESPACE
 from vbraille.wording import printable
@@ -17,12 +19,13 @@ from vbraille.wording import printable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
     Rows = Sequence[NDArray[np.uint8]]
 
 FORM_FEED = b"\f"
+_SIX_DOTS = bytes(range(64))
+_BRF = Cells.bare(np.arange(64, dtype=np.uint8)).to_brf().encode("ascii").ljust(256)
 
 
 def brf_pages(pages: Iterable[Rows]) -> Iterator[bytes]:
@@ -47,7 +50,7 @@ def brf_lines(rows: Iterable[NDArray[np.uint8]]) -> bytes:
     ValueError
         If a cell has dot 7 or 8, which BRF cannot write.
     """
-    return "".join(f"{Cells.bare(row).to_brf().rstrip(' ')}\n" for row in rows).encode("ascii")
+    return b"".join(map(_brf_line, rows))
 
 
 def unicode_lines(rows: Iterable[NDArray[np.uint8]]) -> bytes:
@@ -134,6 +137,13 @@ def escaped(text: str) -> str:
     for character, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
         plain = plain.replace(character, entity)
     return plain.replace("\ufffe", "\ufffd").replace("\uffff", "\ufffd")
+
+
+def _brf_line(row: NDArray[np.uint8]) -> bytes:
+    masks = row.tobytes().rstrip(b"\0")
+    if masks.translate(None, _SIX_DOTS):
+        Cells.bare(row).to_brf()  # says which cell it is
+    return masks.translate(_BRF) + b"\n"
 
 
 def _pattern(row: NDArray[np.uint8]) -> str:
