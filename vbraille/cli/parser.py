@@ -23,6 +23,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
+    "keys": (
+        "List the keys that are obeyed while reading.",
+        reading.keys,
+        "vbraille keys",
+    ),
     "page": (
         "Print the page as it is laid out, or write it for an embosser.",
         reading.page,

@@ -22,13 +22,16 @@ from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
-from vbraille.reading.commands.table import press
+from vbraille.reading.beside import Beside
+from vbraille.reading.bindings import Bindings
+from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.context import Context
+from vbraille.reading.echo import Echo
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
-from vbraille.reading.reader import Echo
 from vbraille.render import MODELS, model_of
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -47,6 +50,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
+    if arguments.cells is not None and arguments.cells < 1:
+        raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
+    bound = bound_by(Bindings())
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
@@ -72,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
-            page = lay_out(arguments, book, model)
+            page = lay_out(arguments, book, model, arguments.cells)
             note_unseen_dots(page)
             device.start(page.model)
             # Till now Ctrl-Z may do what it does elsewhere.
@@ -84,6 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
                 last=page.last,
                 advance=arguments.advance == "return",
                 echo=_echo(arguments.echo),
+                beside=Beside(bound=bound, verbose=arguments.verbose),
             )
             _Reading(page, device, keyboard, suspension).run()
         finally:
@@ -110,10 +117,16 @@ class _Reading:
 
     def run(self) -> None:
         """Read to the end."""
+        try:
+            self._read()
+        finally:
+            self._device.reader.leave()
+
+    def _read(self) -> None:
         device = self._device
-        self._page.say_note()
+        self._say_notes()
         if self._keyboard.attached:
-            say_line("h says the keys")
+            say_line(f"{device.reader.key('HELP', 'h')} says the keys")
         while not device.done:
             for key in self._pressed():
                 self._press(key)
@@ -125,8 +138,14 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
-            self._page.see(device.reader.line_number)
-            self._page.say_note()
+            if device.reader.layout is self._page.layout:
+                self._page.see(device.reader.line_number)
+            self._say_notes()
+
+    def _say_notes(self) -> None:
+        """Say what is to be said of the text and of its table, which may have changed."""
+        for note in self._device.reader.layout.book.notes():
+            say_line(spelled(note), aside=True)
 
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:
@@ -155,8 +174,12 @@ class _Reading:
 
     def _press(self, key: str) -> None:
         placing = self._device.placing is Placing.STOP
-        self._device.reader.context = Context.PLACING if placing else Context.READING
-        press(self._device.reader, key)
+        reader = self._device.reader
+        if placing:
+            reader.context = Context.PLACING
+        elif reader.context is Context.PLACING:
+            reader.context = Context.READING
+        press(reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.

@@ -42,9 +42,26 @@ def read(parser: ArgumentParser) -> None:
         help="Say what is printed of each line: nothing, its text, its cells in Unicode braille, "
         "or both (default: none at a terminal, otherwise both).",
     )
+    parser.add_argument(
+        "--cells",
+        type=whole,
+        metavar="N",
+        help="Lay out lines of so many cells; the hand goes along a longer one part by part "
+        "(default: as many as the hand can cross).",
+    )
+    parser.add_argument(
+        "--verbose", action="store_true", help="Say more, such as how far a search has come."
+    )
     _hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
+
+
+def keys(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille keys``."""
+    parser.add_argument(
+        "--json", action="store_true", help="Print the commands as JSON, for other programs."
+    )
 
 
 def page(parser: ArgumentParser) -> None:

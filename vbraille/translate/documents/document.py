@@ -11,11 +11,11 @@ import io
 import os
 from bisect import bisect_right
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.documents.chunkmarks import ChunkMark, fingerprint
 from vbraille.translate.documents.codepoints import Stretch, shorten_blanks
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
@@ -32,45 +32,9 @@ from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from vbraille.translate.source import Block
 
 CHUNK_BYTES = 65_536
-
-
-@dataclass(frozen=True, slots=True)
-class _Mark:
-    """Place at which reading can go on, before a block's first character.
-
-    Parameters
-    ----------
-    block
-        Number of the next block, from 0.
-    character
-        Place of the block's first character in the document.
-    offset, state
-        A place in the file at or before that character, and the decoder's state there.
-    skip
-        Number of characters between that place and the block.
-    continues
-        Whether the block is a further piece of the block before.
-    item
-        Number of the list item that the block is a piece of; 0 for none.
-    """
-
-    block: int
-    character: int
-    offset: int
-    state: tuple[bytes, int]
-    skip: int
-    continues: bool
-    item: int = 0
-
-    @property
-    def bytes(self) -> int:
-        """Estimated number of bytes before the place: a character takes at least one."""
-        return self.offset + self.skip
 
 
 class Document:
@@ -132,8 +96,8 @@ class Document:
         self._decoder = TextDecoder(self.encoding.name)
         self._found = encoding is None
         self._noted = self._grown = False
-        start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
-        self._marks: list[_Mark] = [start]  # of each chunk, and of the next to read
+        start = ChunkMark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
+        self._marks: list[ChunkMark] = [start]  # of each chunk, and of the next to read
         self._complete = False
         self._recent: dict[int, list[Block]] = {}
         self.title = self.language = ""
@@ -150,20 +114,17 @@ class Document:
 
     def index(self) -> Index:
         """Tell where the chunks that were read begin."""
-        rows = tuple(
-            (m.block, m.character, m.offset, *m.state, m.skip, int(m.continues), m.item)
-            for m in self._marks
-        )
-        return Index(*self._fits(), rows, self._complete)
+        return Index(*self._fits(), tuple(mark.row for mark in self._marks), self._complete)
 
     def adopt(self, index: Index) -> None:
         """Take over where chunks begin, if the index is of this file and knows more."""
-        if (index.form, index.fits) == self._fits() and len(index.rows) > len(self._marks):
-            self._marks = [_mark_of(row) for row in index.rows]
+        if len(index.rows) > len(self._marks) and (index.form, index.fits) == self._fits():
+            self._marks = [ChunkMark.of_row(row) for row in index.rows]
             self._complete = index.complete
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return "Document 1", (self.size, self.encoding.name, self.encoding.skip, self.keep_lines)
+        how = self.encoding.name, self.encoding.skip, int(self.keep_lines)
+        return "Document 2", (fingerprint(self._read, self.size), self.size, *how)
 
     @classmethod
     def open(
@@ -336,7 +297,7 @@ class Document:
             if after is None:
                 self._complete = True
                 self._grown = self._end() > self.size
-                after = _Mark(
+                after = ChunkMark(
                     mark.block + len(blocks),
                     blocks[-1].text.end if blocks else mark.character,
                     self.size,
@@ -350,7 +311,7 @@ class Document:
         self._recent[chunk] = blocks
         return blocks
 
-    def _parse(self, mark: _Mark) -> tuple[list[Block], _Mark | None]:
+    def _parse(self, mark: ChunkMark) -> tuple[list[Block], ChunkMark | None]:
         """Blocks from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
         parts: list[Stretch] = []
@@ -390,7 +351,7 @@ class Document:
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
-        after = _Mark(
+        after = ChunkMark(
             mark.block + len(split.blocks),
             used,
             offset,
@@ -400,15 +361,6 @@ class Document:
             split.item,
         )
         return split.blocks, after
-
-
-def _mark_of(row: Sequence[int | str | bytes]) -> _Mark:
-    """Mark of a row of an index."""
-    block, character, offset, held, flag, skip, continues, item = row
-    assert isinstance(held, bytes)
-    numbers = [int(n) for n in (block, character, offset, flag, skip, item)]
-    block, character, offset, flag, skip, item = numbers
-    return _Mark(block, character, offset, (held, flag), skip, bool(continues), item)
 
 
 def _kept(stream: BinaryIO) -> BinaryIO:

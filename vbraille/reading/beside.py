@@ -1,0 +1,123 @@
+"""What works beside a reader, as the reader sees it: each may be missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from vbraille.reading.bindings import Bound
+    from vbraille.reading.cues import Cue
+    from vbraille.reading.queries import Answer, Query
+
+
+class SeekerLike(Protocol):
+    """A process that looks through the whole book meanwhile; one question at a time."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether a question has not been answered yet."""
+        ...
+
+    def ask(self, query: Query) -> None:
+        """Ask a question; one that was not answered yet is given up."""
+        ...
+
+    def poll(self) -> Answer | None:
+        """Give what has come since the last call, without waiting; None if nothing has."""
+        ...
+
+    def cancel(self) -> None:
+        """Give the question up."""
+        ...
+
+
+class BookmarkLike(Protocol):
+    """A place of a book that has a name."""
+
+    @property
+    def name(self) -> str:
+        """Name that the reader gave it."""
+        ...
+
+    @property
+    def character(self) -> int:
+        """Place of the source."""
+        ...
+
+    @property
+    def text(self) -> str:
+        """A few words of the text there."""
+        ...
+
+
+class KeptLike(Protocol):
+    """What is kept of a book between two readings."""
+
+    def bookmarks(self) -> Sequence[BookmarkLike]:
+        """Give all bookmarks, by their place."""
+        ...
+
+    def mark(self, name: str, character: int, text: str) -> None:
+        """Set a bookmark; one with the same name is moved."""
+        ...
+
+    def delete_bookmark(self, name: str) -> None:
+        """Delete a bookmark."""
+        ...
+
+    def keep(self, character: int) -> None:
+        """Keep the place at which reading goes on another time."""
+        ...
+
+
+class ScrollLike(Protocol):
+    """Brings the next line after a time that the reader chooses."""
+
+    on: bool
+
+    def faster(self) -> object:
+        """Have lines come sooner."""
+        ...
+
+    def slower(self) -> object:
+        """Have lines come later."""
+        ...
+
+    def due(self, line_cells: int, now_s: float) -> bool:
+        """Whether a line of so many cells, under the hand now, has had its time."""
+        ...
+
+
+def _no_cue(_: Cue) -> None:
+    """Give no signal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """What works beside a reader.
+
+    Parameters
+    ----------
+    bound
+        Keys and buttons of commands; None for the usual ones.
+    seeker
+        Process that looks through the whole book; None to do so where the reader is.
+    kept
+        What is kept of the book between two readings; None to keep it while this one lasts.
+    scroll
+        What brings lines by time when the reader asks for that; None if nothing does.
+    cue
+        Function that is called with short signals, beside the sentences.
+    verbose
+        Whether more is said, such as how far a search has come.
+    """
+
+    bound: Bound | None = None
+    seeker: SeekerLike | None = None
+    kept: KeptLike | None = None
+    scroll: ScrollLike | None = None
+    cue: Callable[[Cue], None] = _no_cue
+    verbose: bool = False
