@@ -25,6 +25,10 @@ def test_lines_are_counted_as_they_are_shown():
     lines = list(layout.lines())
     unshown = Unshown()
     assert unshown.sentence is None
+    unshown.see(lines[-1])  # a reader may begin at the end
+    unshown.see(lines[-1])
+    assert unshown.sentence == "not shown: 1 thing (1 other thing); each is marked where it stands"
+    unshown = Unshown()
     unshown.see(lines[0])
     assert unshown.sentence == "not shown: 1 thing (1 formula); each is marked where it stands"
     for line in [*lines, *lines]:

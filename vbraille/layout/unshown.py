@@ -19,11 +19,11 @@ class Unshown:
     """Count what lines or blocks have remarks on, because it cannot be shown; each once."""
 
     def __init__(self) -> None:
-        self._after = -1  # remarks that begin before this place were counted
+        self._seen: set[tuple[int, str]] = set()  # places and targets of what was counted
         self._counts: Counter[str] = Counter()
 
     def see(self, line: Line) -> None:
-        """Count the remarks that begin on a line, unless it or a later one was counted before."""
+        """Count the remarks that begin on a line, each once, however often the line comes."""
         block = line.block
         if not block.marks or line.first >= line.after:
             return
@@ -31,7 +31,7 @@ class Unshown:
         self._count(block, int(places[line.first]), int(places[line.after - 1]) + 1)
 
     def see_block(self, block: Block) -> None:
-        """Count the remarks that begin in a block, unless it or a later one was counted before."""
+        """Count the remarks that begin in a block, each once, however often the block comes."""
         if block.marks and len(block.text):
             self._count(block, int(block.text.places[0]), block.text.end)
 
@@ -52,6 +52,9 @@ class Unshown:
 
     def _count(self, block: Block, first: int, after: int) -> None:
         for mark in block.marks:
-            if mark.kind is MarkKind.UNSHOWN and max(first, self._after) <= mark.start < after:
+            place = mark.start, mark.target
+            if mark.kind is not MarkKind.UNSHOWN or not first <= mark.start < after:
+                continue
+            if place not in self._seen:
+                self._seen.add(place)
                 self._counts[mark.target or "other thing"] += 1
-        self._after = max(self._after, after)
