@@ -140,7 +140,7 @@ def test_quotes_verse_rows_and_notes():
         lines=25,
     )
     assert body(page) == [
-        *("  AA", "", "    AAAA BBBB CCCC", "  DDDD EEEE", "      DEEPER", "", "VERSE"),
+        *("  AA", "", "  AAAA BBBB CCCC", "DDDD EEEE", "    DEEPER", "", "VERSE"),
         *("AAAA BBBB CCCC DDDD", "  EEEE", "", "ROW", "", "      AAAA BBBB CCCC", "    DDDD EEEE"),
     ]
 

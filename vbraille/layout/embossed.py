@@ -110,7 +110,7 @@ class _PrintPage:
     def label(self) -> Row:
         """Number for the top of the next braille page: 12, then a12, b12 and so on.
 
-        Section 1 of the rules, Print Page Numbers.
+        This is the rule on print page numbers.
         """
         self.shown += 1
         if self.shown == 1:

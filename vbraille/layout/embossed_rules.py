@@ -1,8 +1,9 @@
 """How BANA's literary layout places each kind of block on an embossed page.
 
 The rules are those of *Braille Formats: Principles of Print-to-Braille Transcription, 2016* of the
-Braille Authority of North America; each row of the table names the section that has it. Cells are
-counted from 1 there, and "3-1" says that a first line begins in cell 3 and the others in cell 1.
+Braille Authority of North America, read with DAISY's braille style sheet for them; each row of the
+table names the subject under which the rule is. Cells are counted from 1 there, and "3-1" says that
+a first line begins in cell 3 and the others in cell 1. What is our own choice says so.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from vbraille.translate.source import BlockKind
 if TYPE_CHECKING:
     from vbraille.translate.source import Block
 
-# Section 4, Headings: a centered heading leaves three cells blank on either side.
+# Headings: a centered heading leaves three cells blank on either side.
 CENTRED_MARGIN = 3
-# Section 1, General Formatting: at least three blank cells between a line's text and the number
-# of a page on the same line.
+# Braille Page Numbers, Print Page Numbers: at least three blank cells between a line's text and the
+# number of a page on the same line.
 BEFORE_NUMBER = 3
 
 
@@ -51,20 +52,20 @@ class PlacingRule:
 
 
 _HEADINGS = (
-    # Section 4, Headings: centered, a blank line before and after.
+    # Headings: centered, a blank line before and after.
     PlacingRule(0, 0, centred=True, before=True, after=True, keeps=True),
-    # Section 4: cell-5 heading, blocked in cell 5, a blank line before and none after.
+    # Headings: cell-5 heading, blocked in cell 5, a blank line before and none after.
     PlacingRule(4, 4, before=True, keeps=True),
-    # Section 4: cell-7 heading, blocked in cell 7, a blank line before and none after.
+    # Headings: cell-7 heading, blocked in cell 7, a blank line before and none after.
     PlacingRule(6, 6, before=True, keeps=True),
 )
-# Section 1, General Formatting: paragraphs are indented, 3-1, without blank lines.
+# Paragraph Format: paragraphs are indented, 3-1, without blank lines.
 _PARAGRAPH = PlacingRule(2, 0)
-# Section 11, Tables: a table as rows is a list of them, 1-3, blank lines around it.
+# Tables: our choice of rows as a list, 1-3, blank lines around it.
 _ROW = PlacingRule(0, 2, before=True, after=True, apart=True)
-# Section 13, Poetry: each line of verse 1-3, blank lines around them.
+# Poetry: each line of verse 1-3, blank lines around them.
 _LINE = PlacingRule(0, 2, before=True, after=True, apart=True)
-# Section 16, Notes: a note that stands in the text, 7-5, a blank line around it is not required.
+# Notes: our choice for a note that stands in the text, 7-5, as transcribers' notes are.
 _NOTE = PlacingRule(6, 4)
 
 
@@ -82,15 +83,16 @@ def placing(block: Block, deepest: int = 1) -> PlacingRule:
         case BlockKind.HEADING:
             return _HEADINGS[min(block.level, len(_HEADINGS)) - 1]
         case BlockKind.ITEM:
-            # Section 8, Lists: 1-3; in a list of several levels each begins two cells further in,
+            # Lists: 1-3; in a list of several levels each begins two cells further in,
             # and all run over two cells beyond the deepest beginning (1-5, 3-5 for two levels).
             first = 2 * (block.level - 1)
             return PlacingRule(
                 first, 2 * max(deepest, block.level), before=True, after=True, apart=True
             )
         case BlockKind.QUOTE:
-            # Section 9, Displayed material: margins moved two cells in, blank lines around it.
-            inset = 2 * block.level
+            # Displayed Material: 3-1 like a paragraph, blank lines around it; that a quotation
+            # within one stands two cells further in is our choice.
+            inset = 2 * (block.level - 1)
             return PlacingRule(inset + 2, inset, before=True, after=True, apart=True)
         case BlockKind.ROW:
             return _ROW

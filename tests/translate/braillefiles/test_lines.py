@@ -155,6 +155,20 @@ def test_unicode_braille_comes_back_byte_for_byte(lines):
     assert unicode_lines(rows) == content
 
 
+@examples(100)
+@given(st.binary(max_size=200) | st.text(max_size=60).map(str.encode), st.booleans())
+def test_any_bytes_are_read_or_refused_in_one_sentence(content, dialect):
+    table = "de-eurobrl6.dis" if dialect else None
+    try:
+        found = blocks(opened(content, table=table))
+    except InputError as error:
+        assert str(error).startswith("book.brf ")
+        assert "\n" not in str(error)
+    else:
+        assert all(block.cells is not None for block in found)
+        assert all(len(block.cells) == len(block.text) for block in found)
+
+
 def made(seed):
     """A file of three parts, whose ends are where they hurt."""
     rng = np.random.default_rng(seed)

@@ -120,6 +120,22 @@ def test_what_is_hostile_or_damaged_is_one_sentence(content, wanted):
     assert "\n" not in str(caught.value)
 
 
+@examples(60)
+@given(st.data())
+def test_a_damaged_file_is_read_or_refused_in_one_sentence(data):
+    content = bytearray((SAMPLES / "brailleutils.pef").read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        start = data.draw(st.integers(0, len(content)))
+        content[start : start + data.draw(st.integers(0, 9))] = data.draw(st.binary(max_size=9))
+    try:
+        pages = pages_of(bytes(content))
+    except InputError as error:
+        assert str(error).startswith("book.pef ")
+        assert "\n" not in str(error)
+    else:
+        assert pages
+
+
 def test_a_file_that_is_too_large_is_not_read():
     class Endless(io.RawIOBase):
         def seek(self, *_):
