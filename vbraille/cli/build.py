@@ -160,10 +160,8 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
         If an option or the text cannot be used.
     """
     kind = Path(arguments.file).suffix.lower()
-    if kind == ".pef":
-        return Book(PefBook.open(_open(arguments.file), arguments.file))
-    if kind in (".brf", ".brl"):
-        return _build_brf(arguments)
+    if kind in (".brf", ".brl", ".pef"):
+        return _build_braille(arguments)
     table = build_table(arguments)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
@@ -194,11 +192,13 @@ def _open(name: str) -> BinaryIO:
         raise InputError(f"{name} cannot be read: {reason}") from None
 
 
-def _build_brf(arguments: argparse.Namespace) -> Book:
+def _build_braille(arguments: argparse.Namespace) -> Book:
     for option in ("table", "language", "grade"):
-        if getattr(arguments, option) is not None:
+        if getattr(arguments, option) is not None and option not in arguments.settled:
             raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
     stream = _open(arguments.file)
+    if arguments.file.lower().endswith(".pef"):
+        return Book(PefBook.open(stream, arguments.file))
     try:
         if arguments.encoding is not None:
             return Book(open_unicode_braille(stream, arguments.file, arguments.encoding))

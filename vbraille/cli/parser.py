@@ -28,6 +28,16 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.keys,
         "vbraille keys",
     ),
+    "settings": (
+        "Print each setting of reading, and where it comes from.",
+        reading.settings,
+        "vbraille settings --profile evening",
+    ),
+    "tune": (
+        "Find out in five minutes how braille feels best, two ways at a time.",
+        reading.tune,
+        "vbraille tune --profile evening --device serial:/dev/ttyACM0",
+    ),
     "page": (
         "Print the page as it is laid out, or write it for an embosser.",
         reading.page,
