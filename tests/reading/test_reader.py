@@ -1,5 +1,6 @@
 """A reader on the manual clock: lines, commands, and what is said."""
 
+import io
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,8 @@ from vbraille.reading.echo import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, BrailleTable, CellsSource, Document
+from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate.braillefiles.lines import open_brf
 
 SPAN_MM = 10.8
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
@@ -97,8 +99,8 @@ def test_the_hand_s_return_brings_the_next_line_until_the_end():
 
 
 def test_a_text_that_is_braille_already_is_read_like_any_other():
-    braille = Document.from_text(",read ,me\n  #c", keep_lines=True)
-    bench = Bench(book=Book(CellsSource(braille)), hand=Sweep(400), echo=Echo.BOTH)
+    braille = open_brf(io.BytesIO(b",read ,me\n  #c"), "text")
+    bench = Bench(book=Book(braille), hand=Sweep(400), echo=Echo.BOTH)
     bench.run()
     assert bench.reader.done
     assert [said for said in bench.said if not said.startswith("speed")] == [

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
@@ -12,20 +13,23 @@ from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.layout.unknown import Unknown
-from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
+from vbraille.layout.unshown import Unshown
+from vbraille.render import MAPPINGS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
     BrailleTable,
-    CellsSource,
     Document,
     Undefined,
     six_dot_table,
 )
+from vbraille.translate.braillefiles.lines import open_brf, open_unicode_braille
+from vbraille.translate.braillefiles.pef import PefBook
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
+    from typing import BinaryIO
 
     from vbraille.layout.pages import Line
     from vbraille.translate import Source
@@ -45,6 +49,8 @@ class Page:
         Numbers of the first and last line that were asked for.
     unknown
         Counter of characters that the table does not know; None where there is no table.
+    unshown
+        Counter of what the source holds that cannot be shown.
     """
 
     layout: Layout
@@ -52,6 +58,7 @@ class Page:
     first: int
     last: int | None
     unknown: Unknown | None
+    unshown: Unshown = field(default_factory=Unshown)
 
     @property
     def source(self) -> Source:
@@ -91,14 +98,16 @@ class Page:
             say_line(spelled(note), aside=True)
 
     def say_unknown(self) -> None:
-        """Say at the end how many characters the table does not know, if there were any."""
-        sentence = None if self.unknown is None else self.unknown.sentence
-        if sentence is not None:
-            say_line(spelled(sentence), aside=True)
+        """Say at the end what was not shown: unknown characters, and things such as formulas."""
+        for counter in (self.unknown, self.unshown):
+            sentence = None if counter is None else counter.sentence
+            if sentence is not None:
+                say_line(spelled(sentence), aside=True)
 
     def _count(self, line: Line) -> None:
         if self.unknown is not None:
             self.unknown.see(line)
+        self.unshown.see(line)
 
 
 def build_lengths(
@@ -150,8 +159,9 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     InputError
         If an option or the text cannot be used.
     """
-    if arguments.file.lower().endswith(".brf"):
-        return _build_brf(arguments)
+    kind = Path(arguments.file).suffix.lower()
+    if kind in (".brf", ".brl", ".pef"):
+        return _build_braille(arguments)
     table = build_table(arguments)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
@@ -169,11 +179,33 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     return Book(document, table)
 
 
-def _build_brf(arguments: argparse.Namespace) -> Book:
+def _open(name: str) -> BinaryIO:
+    """Open a file of braille."""
+    try:
+        return Path(name).open("rb")
+    except FileNotFoundError:
+        raise InputError(f"there is no file {name}; check the name") from None
+    except IsADirectoryError:
+        raise InputError(f"{name} is a directory; give a file of braille in it") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{name} cannot be read: {reason}") from None
+
+
+def _build_braille(arguments: argparse.Namespace) -> Book:
     for option in ("table", "language", "grade"):
         if getattr(arguments, option) is not None and option not in arguments.settled:
             raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
-    return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
+    stream = _open(arguments.file)
+    if arguments.file.lower().endswith(".pef"):
+        return Book(PefBook.open(stream, arguments.file))
+    try:
+        if arguments.encoding is not None:
+            return Book(open_unicode_braille(stream, arguments.file, arguments.encoding))
+        return Book(open_brf(stream, arguments.file, table=arguments.brf_table))
+    except InputError:
+        stream.close()
+        raise
 
 
 def lay_out(
@@ -203,20 +235,6 @@ def lay_out(
     say_line(f"line width: {cells}, {written}", aside=True)
     unknown = None if table is None else Unknown(table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)
-
-
-def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
-    """Page of the text; stderr is told how wide it is.
-
-    With `six_dots`, a table of eight dots is refused.
-
-    Raises
-    ------
-    InputError
-        If an option or the text cannot be used.
-    """
-    model = build_lengths(arguments, MODELS[arguments.model])
-    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model)
 
 
 def _eight_dots(table: BrailleTable) -> str:
