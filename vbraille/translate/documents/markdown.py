@@ -16,6 +16,7 @@ from vbraille.translate.documents.markup.pieces import markup_encoding
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
+_DEEPEST = 100
 # What some writers of Markdown set behind a heading, for links to it.
 _NAME = re.compile(r"\s*\{\s*#([^\s{}]+)[^{}]*\}\s*$")
 # Lines of the front matter that say what the book is.
@@ -58,7 +59,8 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
         raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
     found = markup_encoding(content[:SAMPLE_BYTES], encoding)
     text = TextDecoder(found.name).decode(content[found.skip :], found.skip, final=True)
-    parser = MarkdownIt("commonmark").enable(["table", "strikethrough"])
+    # What is nested deeper is dropped; the usual limit is one that a real text may reach.
+    parser = MarkdownIt("commonmark", {"maxNesting": _DEEPEST}).enable(["table", "strikethrough"])
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin, dollarmath_plugin):
         parser.use(plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from contextlib import closing
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -104,7 +105,7 @@ class Parsing:
 
     def _read(self) -> Iterator[list[Passage]]:
         """Passages of each part, from the first."""
-        xml = self._xml and self._is_well_formed()
+        well_formed = self._xml and self._is_well_formed()
         stream = self._opened()
         try:
             self.pieces = Pieces(stream, self._encoding)
@@ -112,14 +113,17 @@ class Parsing:
             stream.close()
             raise
         self.reader = self._make()
-        return _passages(stream, self.pieces, self.reader, self._name, xml=xml)
+        texts = iter(self.pieces)
+        if self._xml:
+            texts = without_entities(texts, self._name)
+        return _passages(stream, texts, self.reader, self._name, xml=well_formed)
 
     def _is_well_formed(self) -> bool:
         """Whether the text is XML, which a parser finds out that tells nobody anything."""
         from lxml import etree
 
         parser = _xml_parser(_Nobody())
-        with self._opened() as stream:
+        with closing(self._opened()) as stream:
             try:
                 for text in without_entities(iter(Pieces(stream, self._encoding)), self._name):
                     if text:
@@ -131,18 +135,16 @@ class Parsing:
 
 
 def _passages(
-    stream: Stream, pieces: Pieces, reader: MarkupReader, name: str, *, xml: bool
+    stream: Stream, texts: Iterator[str], reader: MarkupReader, name: str, *, xml: bool
 ) -> Iterator[list[Passage]]:
     """Passages of each piece of a text, and of its end."""
     from lxml import etree
 
-    texts = iter(pieces)
     # lxml takes any object with these methods, which its types do not say.
     target: Any = reader
-    with stream:
+    with closing(stream):
         if xml:
             parser = _xml_parser(target)
-            texts = without_entities(texts, name)
         else:
             parser = etree.HTMLParser(target=target, huge_tree=True, encoding="utf-8")
         fed = False
@@ -165,10 +167,6 @@ class Stream(Readable, Protocol):
     def close(self) -> None:
         """Close them."""
         ...
-
-    def __enter__(self) -> Readable: ...
-
-    def __exit__(self, *args: object) -> None: ...
 
 
 class _Nobody:

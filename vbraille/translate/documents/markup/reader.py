@@ -81,14 +81,17 @@ class MarkupReader:
         self._names: dict[object, str] = {}
         self._block = (self.writing.begin_block,)  # what most blocks end with
         self._open: list[tuple[Undo, ...]] = []
+        self._closed = False
         self._refers = 0  # number of open elements whose links are references to notes
         self._skipped = 0  # number of open elements that are passed over
         self._aside: Aside | None = None
 
     def take(self) -> list[Passage]:
-        """Take the passages that are finished."""
-        found, self.writing.passages = self.writing.passages, []
-        return found
+        """Take the passages that are finished; the last one only after the end."""
+        passages = self.writing.passages
+        stop = len(passages) if self._closed else -1
+        self.writing.passages = passages[stop:]
+        return passages[:stop]
 
     def start(self, tag: object, attrib: Mapping[str, str]) -> None:
         """Take the start of an element."""
@@ -135,6 +138,7 @@ class MarkupReader:
     def close(self) -> None:
         """Take the end of the document."""
         self.writing.close()
+        self._closed = True
 
     def _begin(self, name: str, found: dict[str, str]) -> tuple[Undo, ...]:
         """Begin an element that is not passed over; what is returned ends it."""

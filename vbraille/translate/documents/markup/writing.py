@@ -368,7 +368,7 @@ class Writing:
     def _emit(self, passage: Passage) -> None:
         if self._broken and passage.text:
             self._broken = False
-            if passage.kind is not BlockKind.HEADING:
+            if passage.kind not in (BlockKind.HEADING, BlockKind.NOTE):
                 self.passages.append(Passage(self.spell(BREAK)))
         self._any = True
         if passage.language and passage.language == self.given:
