@@ -222,7 +222,7 @@ def _pieces(passage: Passage, character: int, groups: int) -> Iterable[Block]:
     codes = to_codes(passage.text)
     alphabet = frozenset(np.unique(codes).tolist())
     marks = tuple(
-        replace(mark, start=mark.start + character, end=mark.end + character)
+        Mark(mark.kind, mark.start + character, mark.end + character, mark.target)
         for mark in passage.marks
     )
     group = groups + passage.group if passage.group else 0

@@ -74,16 +74,19 @@ class Flow:
 
     def write(self, text: str) -> None:
         """Add text as it is."""
-        if self.length and self._between:
-            self._append(self._between)
-        self._between = ""
+        if self._between:
+            if self.length:
+                self._parts.append(self._between)
+                self.length += len(self._between)
+            self._between = ""
         if self._unstarted:
             for held in self._held.values():
                 held.start = self.length if held.start < 0 else held.start
             self._unstarted = False
         if (self._runs[-1][1] if self._runs else None) != self.language:
             self._runs.append((self.length, self.language))
-        self._append(text)
+        self._parts.append(text)
+        self.length += len(text)
 
     def say(self, text: str, kind: MarkKind, target: str = "") -> None:
         """Add text that stands for something else, and mark it."""
@@ -188,10 +191,6 @@ class Flow:
         self.length -= stop
         self._most = LONGEST
         return Folded(text[:stop], tuple(shown), language)
-
-    def _append(self, text: str) -> None:
-        self._parts.append(text)
-        self.length += len(text)
 
 
 def _folded(text: str) -> str:
