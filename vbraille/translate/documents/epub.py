@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from typing import Self
 
-    from vbraille.translate.documents.markup.package import Chapter
+    from vbraille.translate.documents.markup.package import BookPart
 
 _OPEN = 3  # chapters whose parsing is kept
 
@@ -166,7 +166,7 @@ class EpubBook(PartedSource):
         """Whether all parts that were read have no block."""
         return self._starts[-1].block == 0
 
-    def _parsing(self, number: int, chapter: Chapter) -> Parsing:
+    def _parsing(self, number: int, chapter: BookPart) -> Parsing:
         """Parsing of a chapter; a few are kept, since a long chapter is parsed from its start."""
         parsing = self._open.get(number)
         if parsing is None:
@@ -191,7 +191,7 @@ class EpubBook(PartedSource):
             self._open[number] = parsing
         return parsing
 
-    def _remark(self, text: str, what: str, chapter: Chapter) -> Passage:
+    def _remark(self, text: str, what: str, chapter: BookPart) -> Passage:
         """Remark on a chapter that cannot be shown."""
         text = self._spell(f"[{text}]")
         mark = Mark(MarkKind.UNSHOWN, 0, len(text), what)

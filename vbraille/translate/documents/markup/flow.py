@@ -23,7 +23,7 @@ class _Held:
 
 
 @dataclass(frozen=True, slots=True)
-class Folded:
+class FoldedText:
     """Text of a block, with its marks and its language, for which see `Block`."""
 
     text: str
@@ -141,7 +141,7 @@ class Flow:
         """Whether the text is so long that a part of it should be taken."""
         return self.length > self._most
 
-    def take_part(self, language: str) -> Folded | None:
+    def take_part(self, language: str) -> FoldedText | None:
         """Take the text up to its last blank; None if it should rather grow on."""
         text = "".join(self._parts)
         self._parts = [text]
@@ -151,7 +151,7 @@ class Flow:
             return None
         return self._take(text, stop or len(text), language)
 
-    def take(self, language: str) -> Folded:
+    def take(self, language: str) -> FoldedText:
         """Take the whole text; the next block begins, with the same marks open.
 
         Parameters
@@ -163,7 +163,7 @@ class Flow:
         text = "".join(self._parts)
         return self._take(text, len(text), language)
 
-    def _take(self, text: str, stop: int, language: str) -> Folded:
+    def _take(self, text: str, stop: int, language: str) -> FoldedText:
         marks = list(self._marks)
         marks += (
             Mark(kind, held.start, self.length, held.target)
@@ -190,7 +190,7 @@ class Flow:
         self._parts = [text[stop:]]
         self.length -= stop
         self._most = LONGEST
-        return Folded(text[:stop], tuple(shown), language)
+        return FoldedText(text[:stop], tuple(shown), language)
 
 
 def _folded(text: str) -> str:

@@ -20,7 +20,7 @@ _OPS = "{http://www.idpf.org/2007/ops}"
 
 
 @dataclass(frozen=True, slots=True)
-class Chapter:
+class BookPart:
     """A document that a book is read from.
 
     Parameters
@@ -63,7 +63,7 @@ class Package:
 
     title: str
     language: str
-    chapters: tuple[Chapter, ...]
+    chapters: tuple[BookPart, ...]
     contents: str
     is_braille: bool
 
@@ -90,7 +90,7 @@ def read_package(archive: Archive) -> Package:
         item = _readable(items, reference.get("idref", ""))
         if item is not None:
             kind = item.get("media-type", "").strip().lower()
-            chapter = Chapter(place(item), kind)
+            chapter = BookPart(place(item), kind)
             (last if reference.get("linear") == "no" else first).append(chapter)
     chapters = tuple(dict.fromkeys(first + last))
     if not chapters:
@@ -138,7 +138,7 @@ def _readable(items: dict[str, Any], identity: str) -> Any | None:
     seen = set()
     while item is not None and identity not in seen:
         seen.add(identity)
-        if Chapter("", item.get("media-type", "").strip().lower()).is_text:
+        if BookPart("", item.get("media-type", "").strip().lower()).is_text:
             return item
         identity = item.get("fallback", "")
         item = items.get(identity)

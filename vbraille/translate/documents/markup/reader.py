@@ -33,7 +33,7 @@ _STYLES = {
     "font-weight:bold": MarkKind.BOLD,
     "text-decoration:underline": MarkKind.UNDERLINE,
     "vertical-align:super": MarkKind.SUPERSCRIPT,
-    "vertical-align:sub;": MarkKind.SUBSCRIPT,
+    "vertical-align:sub": MarkKind.SUBSCRIPT,
 }
 _NOTHING: dict[str, str] = {}
 

@@ -24,7 +24,7 @@ _BLANK = re.compile(r"[ \t\n\r\f]")
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Role:
     """Role of the text that is being read.
 
     Parameters
@@ -64,7 +64,7 @@ class Writing:
         Number of sections around the text, where the markup counts them.
     flow : Flow
         Text of the block that is being read.
-    place : Place
+    place : Role
         Role of that block.
     language : str
         Tag of the language of the block that is being read.
@@ -95,7 +95,7 @@ class Writing:
         self.sections = 0
         self.flow = Flow()
         self.given = self.language = self.flow.language = language
-        self.place = Place()
+        self.place = Role()
         self.table: TableState | None = None
         self.lists: list[ListState] = []
         self.in_notes = False
@@ -195,7 +195,7 @@ class Writing:
         """End an item; the number of one without text is not shown."""
         self._fresh, self._lead = False, ""
 
-    def enter(self, place: Place) -> Callable[[], None]:
+    def enter(self, place: Role) -> Callable[[], None]:
         """Have the next text be in another role; what is returned leaves that again."""
         before = self.place
         self.place = place
@@ -210,7 +210,8 @@ class Writing:
         if self.table is not None and self.table.in_row:
             self.lay_out_table()
         if self._fresh and self._lead:
-            self._emit(self._formed(Passage(""), self.language))
+            alone = self._formed(Passage(""), self.language)
+            self._emit(replace(alone, text=alone.text.rstrip(" ")))
         before, self.table = self.table, TableState(self.group())
 
         def end() -> None:
