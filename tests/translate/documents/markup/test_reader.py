@@ -39,6 +39,19 @@ ROLES = {
         ("paragraph", "c"),
     ],
     "<dl><dt>t<dd>d<dd>e</dl>": [("item1", "t"), ("item2", "d"), ("item2", "e")],
+    "<dl><dt>t<dd><p>a<p>b<dd><ul><li>c</ul></dl>": [
+        ("item1", "t"),
+        ("item2", "a"),
+        ("paragraph", "b"),
+        ("item2", "• c"),
+    ],
+    "<ol><li><table><tr><td>a<td>b</table><li>c</ol>": [
+        ("item1", "1."),
+        ("row", "a  b"),
+        ("item1", "2. c"),
+    ],
+    "<table><tr><td><ul><li>a<li>b</ul><td>c<p>d</table>": [("row", "a b  c d")],
+    "<pre>a<br>b</pre>": [("line", "a"), ("line", "b")],
     "<blockquote>a<p>b<blockquote>c</blockquote></blockquote>d": [
         ("quote1", "a"),
         ("quote1", "b"),
