@@ -16,11 +16,11 @@ from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
     BrailleTable,
-    CellsSource,
-    Document,
     Undefined,
     six_dot_table,
 )
+from vbraille.translate.languages import has_tables
+from vbraille.translate.opening import open_source, open_stream
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -135,13 +135,25 @@ def build_lengths(
     return replace(model, style=replace(model.style, geometry=geometry))
 
 
-def build_table(arguments: argparse.Namespace) -> BrailleTable:
-    """Table for the text; InputError if there is no such table."""
-    return choose_table(arguments.language, arguments.grade, arguments.table, arguments.undefined)
+def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTable:
+    """Table for a text; InputError if there is no such table.
+
+    Parameters
+    ----------
+    arguments
+        Parsed options of the command.
+    language
+        Language of the text as its own source says, whose usual table is taken if no option names
+        a language or a table, and there is one.
+    """
+    named = arguments.language
+    if named is None and arguments.table is None and language and has_tables(language):
+        named = language
+    return choose_table(named, arguments.grade, arguments.table, arguments.undefined)
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
-    """Text and table, before anything is laid out; a BRF file has no table.
+    """Text and table, before anything is laid out; a source that is in braille has no table.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -150,30 +162,34 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     InputError
         If an option or the text cannot be used.
     """
-    if arguments.file.lower().endswith(".brf"):
-        return _build_brf(arguments)
-    table = build_table(arguments)
+    if arguments.file == "-" and arguments.form is None:
+        build_table(arguments)  # nobody types a text for a table that is not there
+    source = _open(arguments)
+    if source.in_cells:
+        for option in ("table", "language", "grade"):
+            if getattr(arguments, option) is not None:
+                raise InputError(f"{source.name} is in braille already; leave out --{option}")
+        return Book(source)
+    table = build_table(arguments, source.language)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
-    keep_lines = arguments.keep_lines
-    if arguments.file == "-":
-        if sys.stdin is None:
-            raise InputError("standard input is closed; give a text there, or the name of a file")
-        if sys.stdin.isatty():
-            say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
-        document = Document.take(
-            sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
-        )
-    else:
-        document = Document.open(arguments.file, arguments.encoding, keep_lines=keep_lines)
-    return Book(document, table)
+    return Book(source, table)
 
 
-def _build_brf(arguments: argparse.Namespace) -> Book:
-    for option in ("table", "language", "grade"):
-        if getattr(arguments, option) is not None:
-            raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
-    return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
+def _open(arguments: argparse.Namespace) -> Source:
+    """Book of the options, from a file or from standard input."""
+    how = {
+        "encoding": arguments.encoding,
+        "keep_lines": arguments.keep_lines,
+        "form": arguments.form,
+    }
+    if arguments.file != "-":
+        return open_source(arguments.file, **how)
+    if sys.stdin is None:
+        raise InputError("standard input is closed; give a text there, or the name of a file")
+    if sys.stdin.isatty():
+        say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
+    return open_stream(sys.stdin.buffer, "standard input", **how)
 
 
 def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:

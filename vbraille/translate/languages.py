@@ -115,6 +115,15 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     )
 
 
+def has_tables(language: str) -> bool:
+    """Whether there is a table for a language, whatever its grade."""
+    try:
+        tables_of(language)
+    except InputError:
+        return False
+    return True
+
+
 def find_table(language: str = "en", grade: int | None = None) -> str:
     """Name of the table for a language and grade.
 

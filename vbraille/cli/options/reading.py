@@ -215,6 +215,12 @@ def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
         help="Read the file in this text encoding (default: what its bytes say).",
     )
     parser.add_argument(
+        "--form",
+        metavar="NAME",
+        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "unicode-braille or pef (default: what its content and then its name say).",
+    )
+    parser.add_argument(
         "--undefined",
         choices=("mark", "name", "code", "drop"),
         default="mark",
