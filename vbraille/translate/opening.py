@@ -152,9 +152,9 @@ def _read(
 
             return DtbookBook.open(stream, name)
         case Form.DOCX | Form.ODT | Form.RTF:
-            from vbraille.translate.documents.office import OfficeBook
+            from vbraille.translate.documents.office.officebook import open_office
 
-            return OfficeBook.open(stream, name, form.value)
+            return open_office(stream, name, form.value)
         case Form.BRF | Form.UNICODE_BRAILLE:
             return CellsSource(Document(stream, name, encoding, keep_lines=True))
         case Form.PEF:

@@ -1,0 +1,94 @@
+"""A word processor's file as a source."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import locale
+import re
+from typing import TYPE_CHECKING, BinaryIO
+
+from vbraille.errors import InputError
+from vbraille.translate.documents.office.officehtml import written
+
+if TYPE_CHECKING:
+    from anydoc import Document
+
+    from vbraille.translate.source import Source
+
+LARGEST_BYTES = 200 << 20
+_RTF_LANGUAGE = re.compile(rb"\\deflang(\d{1,5})\b")
+_RTF_HEADER_BYTES = 65_536
+
+
+def open_office(stream: BinaryIO, name: str, form: str) -> Source:
+    """Open a DOCX, ODT or RTF file.
+
+    Parameters
+    ----------
+    stream
+        Bytes of the file. It is read to its end and closed.
+    name
+        Name of the source in messages.
+    form
+        "docx", "odt" or "rtf".
+
+    Raises
+    ------
+    InputError
+        If the file is locked, damaged or too large, or what reads such files is not installed.
+    """
+    with stream:
+        stream.seek(0)
+        content = stream.read(LARGEST_BYTES + 1)
+    if len(content) > LARGEST_BYTES:
+        raise InputError(
+            f"{name} is larger than {LARGEST_BYTES >> 20} MB, which no text is; "
+            f"save it as EPUB or without its pictures"
+        )
+    digest = hashlib.sha256(content).hexdigest()
+    title = language = ""
+    if form == "rtf":
+        language = _rtf_language(content)
+    else:
+        from vbraille.translate.documents.office.officexml import annotated
+
+        found = annotated(content, form)
+        content, title, language = found.content, found.title, found.language
+    document = _document(content, name, form)
+    html = "".join(written(document, title, language)).encode("utf-8", "replace")
+    from vbraille.translate.documents.html import HtmlBook
+
+    return HtmlBook.open(io.BytesIO(html), name, encoding="utf-8", digest=digest)
+
+
+def _document(content: bytes, name: str, form: str) -> Document:
+    try:
+        import anydoc
+    except ImportError:
+        raise InputError(
+            f"{name} is a {form.upper()} file, and what reads these is not installed; "
+            f"pip install 'vbraille[office]' installs it"
+        ) from None
+    try:
+        return anydoc.to_document(content, form)
+    except anydoc.EncryptedError:
+        raise InputError(
+            f"{name} is locked with a password; open it with that and save it without one"
+        ) from None
+    except anydoc.ResourceLimitError as error:
+        raise InputError(
+            f"{name} unpacks to more than any book holds ({error.limit}); it is not opened"
+        ) from None
+    except (anydoc.ConvertError, UnicodeError, ValueError):
+        raise InputError(
+            f"{name} is damaged or no {form.upper()} file; get it again, or open it in a word "
+            f"processor and save it anew"
+        ) from None
+
+
+def _rtf_language(content: bytes) -> str:
+    """Tag of the language that an RTF file says its text is in; empty if it says none."""
+    found = _RTF_LANGUAGE.search(content[:_RTF_HEADER_BYTES])
+    tag = None if found is None else locale.windows_locale.get(int(found[1]))
+    return "" if tag is None else tag.replace("_", "-")
