@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
@@ -12,7 +12,8 @@ from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.layout.unknown import Unknown
-from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
+from vbraille.layout.unshown import Unshown
+from vbraille.render import MAPPINGS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
     BrailleTable,
@@ -45,6 +46,8 @@ class Page:
         Numbers of the first and last line that were asked for.
     unknown
         Counter of characters that the table does not know; None where there is no table.
+    unshown
+        Counter of what the source holds that cannot be shown.
     """
 
     layout: Layout
@@ -52,6 +55,7 @@ class Page:
     first: int
     last: int | None
     unknown: Unknown | None
+    unshown: Unshown = field(default_factory=Unshown)
 
     @property
     def source(self) -> Source:
@@ -91,14 +95,16 @@ class Page:
             say_line(spelled(note), aside=True)
 
     def say_unknown(self) -> None:
-        """Say at the end how many characters the table does not know, if there were any."""
-        sentence = None if self.unknown is None else self.unknown.sentence
-        if sentence is not None:
-            say_line(spelled(sentence), aside=True)
+        """Say at the end what was not shown: unknown characters, and things such as formulas."""
+        for counter in (self.unknown, self.unshown):
+            sentence = None if counter is None else counter.sentence
+            if sentence is not None:
+                say_line(spelled(sentence), aside=True)
 
     def _count(self, line: Line) -> None:
         if self.unknown is not None:
             self.unknown.see(line)
+        self.unshown.see(line)
 
 
 def build_lengths(
@@ -181,6 +187,7 @@ def _open(arguments: argparse.Namespace) -> Source:
     how = {
         "encoding": arguments.encoding,
         "keep_lines": arguments.keep_lines,
+        "brf_table": arguments.brf_table,
         "form": arguments.form,
     }
     if arguments.file != "-":
@@ -192,15 +199,19 @@ def _open(arguments: argparse.Namespace) -> Source:
     return open_stream(sys.stdin.buffer, "standard input", **how)
 
 
-def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
+def lay_out(
+    arguments: argparse.Namespace, book: Book, model: Model, width: int | None = None
+) -> Page:
     """Page of a text for a display and a style, whose width is said on stderr.
+
+    With a `width`, in cells, lines are so long whatever the display.
 
     Raises
     ------
     InputError
         If there is no room for a cell, or the text ends before the lines asked for.
     """
-    width = cells_per_line(model.style.geometry, model.display)
+    width = width or cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
     layout = Layout(book, width)
     if layout.line(first) is None:
@@ -215,20 +226,6 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
     say_line(f"line width: {cells}, {written}", aside=True)
     unknown = None if table is None else Unknown(table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)
-
-
-def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
-    """Page of the text; stderr is told how wide it is.
-
-    With `six_dots`, a table of eight dots is refused.
-
-    Raises
-    ------
-    InputError
-        If an option or the text cannot be used.
-    """
-    model = build_lengths(arguments, MODELS[arguments.model])
-    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model)
 
 
 def _eight_dots(table: BrailleTable) -> str:

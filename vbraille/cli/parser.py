@@ -24,9 +24,14 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
     "page": (
-        "Print the page as it is laid out.",
+        "Print the page as it is laid out, or write it for an embosser.",
         reading.page,
-        "vbraille page book.txt --format brf --lines 1-25",
+        "vbraille page book.txt --layout bana --cells 40 --lines 25 --format brf --out book.brf",
+    ),
+    "structure": (
+        "Print a book's outline, and what it has.",
+        reading.structure,
+        "vbraille structure book.epub",
     ),
     "render": (
         "Write every frame of a reading to an HDF5 file.",

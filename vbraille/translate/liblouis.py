@@ -113,8 +113,15 @@ class TableInfo:
 def list_tables() -> tuple[TableInfo, ...]:
     """All tables that have metadata, by name."""
     with _lock:  # asked once: liblouis 3.24 has nothing to free the answers with
+        return tuple(sorted(_table_info(str(path).encode()) for path in _table_paths()))
+
+
+@cache
+def _table_paths() -> tuple[Path, ...]:
+    """Paths of the tables that have metadata."""
+    with _lock:
         paths: list[bytes] = list(itertools.takewhile(bool, _list_tables()))
-        return tuple(sorted(map(_table_info, paths)))
+        return tuple(Path(path.decode()) for path in paths)
 
 
 def _table_info(path: bytes) -> TableInfo:
@@ -129,6 +136,35 @@ def _table_info(path: bytes) -> TableInfo:
         dots=int(value("dots") or 0),
         kind=value("type"),
     )
+
+
+def display_dots(table: str, characters: str) -> list[int]:
+    """Dot masks that a display table has for characters; 0 for what it does not know, and blanks.
+
+    Parameters
+    ----------
+    table
+        File name of a display table that liblouis has (``de-eurobrl6.dis``), or a path.
+    characters
+        Characters to look up, each in the Basic Multilingual Plane.
+
+    Raises
+    ------
+    InputError
+        If there is no such table; the message names the nearest.
+    """
+    known = bool(table.strip()) and not {"\0", ","} & set(table)
+    try:
+        if not known or len(table.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
+            raise RuntimeError
+        with _lock:
+            found = louis.charToDots([table], characters)
+    except RuntimeError:
+        folders = {path.parent for path in _table_paths()}
+        names = sorted(path.name for folder in folders for path in folder.glob("*.dis"))
+        near = f"; {nearest(table, names, 3)}" if names else ""
+        raise InputError(f"there is no display table {table!r}{near}") from None
+    return [ord(dots) & 0xFF for dots in found]
 
 
 class BrailleTable:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
-from vbraille.translate.cellssource import CellsSource
 from vbraille.translate.documents.document import Document
 from vbraille.translate.documents.streams import keep_stream, open_file
 from vbraille.translate.forms import Form, find_form
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _HAVE_LINES = (Form.TEXT, Form.BRF, Form.UNICODE_BRAILLE, Form.PEF)
-_HAVE_ENCODINGS = (Form.TEXT, Form.MARKDOWN, Form.HTML, Form.UNICODE_BRAILLE)
+_HAVE_ENCODINGS = (Form.TEXT, Form.MARKDOWN, Form.HTML, Form.BRF, Form.UNICODE_BRAILLE)
 
 
 def open_source(
@@ -103,7 +102,7 @@ def _open(
             found = Form.TEXT
         for given, fits, option in (
             (encoding is not None, found in _HAVE_ENCODINGS, "encoding"),
-            (brf_table is not None, found is Form.BRF, "brf-table"),
+            (brf_table is not None, found is Form.BRF and encoding is None, "brf-table"),
             (keep_lines, found in _HAVE_LINES, "keep-lines"),
         ):
             if given and not fits:
@@ -155,8 +154,14 @@ def _read(
             from vbraille.translate.documents.office.officebook import open_office
 
             return open_office(stream, name, form.value)
+        case Form.BRF if encoding is None:
+            from vbraille.translate.braillefiles.lines import open_brf
+
+            return open_brf(stream, name, table=brf_table)
         case Form.BRF | Form.UNICODE_BRAILLE:
-            return CellsSource(Document(stream, name, encoding, keep_lines=True))
+            from vbraille.translate.braillefiles.lines import open_unicode_braille
+
+            return open_unicode_braille(stream, name, encoding)
         case Form.PEF:
             from vbraille.translate.braillefiles.pef import PefBook
 

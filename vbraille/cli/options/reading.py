@@ -53,11 +53,39 @@ def page(parser: ArgumentParser) -> None:
     _layout(parser)
     parser.add_argument(
         "--format",
-        choices=("unicode", "brf", "dots", "text"),
+        choices=("unicode", "brf", "dots", "text", "pef", "ebrl"),
         default="unicode",
-        help="Print Unicode braille, ASCII braille, dot numbers, or the text of each line "
-        "(default: unicode).",
+        help="Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, PEF, "
+        "or eBraille (default: unicode).",
     )
+    parser.add_argument(
+        "--out", metavar="FILE", help="Write to this file, whole or not at all (default: print)."
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="Replace the file if it is there already."
+    )
+    parser.add_argument(
+        "--cells",
+        type=whole,
+        metavar="N",
+        help="Lay out for lines of so many cells, whatever the display (default: the display's, "
+        "or 40 on pages).",
+    )
+    parser.add_argument(
+        "--layout",
+        choices=("bana",),
+        help="Make pages to be embossed by the literary layout of the Braille Authority of North "
+        "America, with page numbers; --lines 25 then says how many lines a page has (default: "
+        "lines without pages).",
+    )
+    parser.set_defaults(model=None)  # so that it is known whether a display was asked for
+
+
+def structure(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille structure``."""
+    _source(parser)
+    parser.add_argument("--json", action="store_true", help="Print the same as JSON.")
+    parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
 
 
 def render(parser: ArgumentParser) -> None:
@@ -188,12 +216,7 @@ def tables(parser: ArgumentParser) -> None:
 
 
 def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
-    parser.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="?" if optional else None,
-        help="Take this text file, or standard input for -.",
-    )
+    _source(parser, optional=optional)
     parser.add_argument(
         "--table", metavar="NAME", help="Translate with this liblouis table (default: by language)."
     )
@@ -208,17 +231,6 @@ def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
         metavar="N",
         help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
         "in the language).",
-    )
-    parser.add_argument(
-        "--encoding",
-        metavar="NAME",
-        help="Read the file in this text encoding (default: what its bytes say).",
-    )
-    parser.add_argument(
-        "--form",
-        metavar="NAME",
-        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
-        "unicode-braille or pef (default: what its content and then its name say).",
     )
     parser.add_argument(
         "--undefined",
@@ -239,6 +251,32 @@ def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
         default=(1, None),
         metavar="3-10",
         help="Take these lines of the page only, counted from 1 (default: all).",
+    )
+
+
+def _source(parser: ArgumentParser, *, optional: bool = False) -> None:
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="Take this text file, or standard input for -.",
+    )
+    parser.add_argument(
+        "--encoding",
+        metavar="NAME",
+        help="Read the file in this text encoding (default: what its bytes say).",
+    )
+    parser.add_argument(
+        "--form",
+        metavar="NAME",
+        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "unicode-braille or pef (default: what its content and then its name say).",
+    )
+    parser.add_argument(
+        "--brf-table",
+        metavar="NAME",
+        help="Read a BRF file in the dialect of this display table of liblouis, such as "
+        "de-eurobrl6.dis (default: North American ASCII braille).",
     )
 
 

@@ -110,6 +110,25 @@ class PartedSource(ABC):
             If the part cannot be read.
         """
 
+    def made(self, part: int, character: int, group: int) -> list[Block]:
+        """Make the blocks of a part; a format with many small blocks may have a faster way.
+
+        Parameters
+        ----------
+        part
+            Number of the part, from 0.
+        character
+            Place of its first character in the source.
+        group
+            Number of lists and tables in the parts before it.
+        """
+        blocks: list[Block] = []
+        for passage in self.passages(part):
+            for block in _pieces(passage, character, group):
+                blocks.append(block)
+                character = block.text.end
+        return blocks
+
     def anchored(self, name: str) -> int | None:  # noqa: ARG002
         """Give the number of the part that has an anchor, if the format tells without reading."""
         return None
@@ -197,15 +216,14 @@ class PartedSource(ABC):
         if blocks is not None:
             return blocks
         start = self._starts[part]
-        blocks, groups = [], 0
-        character = start.character
-        for passage in self.passages(part):
-            groups = max(groups, passage.group)
-            for block in _pieces(passage, character, start.group):
-                blocks.append(block)
-                character = block.text.end
+        blocks = self.made(part, start.character, start.group)
         if part == len(self._starts) - 1:
-            after = _Start(start.block + len(blocks), character, start.group + groups)
+            groups = max((block.group for block in blocks), default=0)
+            after = _Start(
+                start.block + len(blocks),
+                blocks[-1].text.end if blocks else start.character,
+                max(start.group, groups),
+            )
             self._starts.append(after)
         if len(self._recent) >= _REMEMBERED:
             del self._recent[next(iter(self._recent))]

@@ -59,7 +59,7 @@ def open_office(stream: BinaryIO, name: str, form: str) -> Source:
     html = "".join(written(document, title, language)).encode("utf-8", "replace")
     from vbraille.translate.documents.html import HtmlBook
 
-    return HtmlBook.open(io.BytesIO(html), name, encoding="utf-8", digest=digest)
+    return HtmlBook(io.BytesIO(html), name, "utf-8", digest=digest, title=title, language=language)
 
 
 def _document(content: bytes, name: str, form: str) -> Document:
