@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
@@ -97,8 +98,8 @@ def _open(
 ) -> Source:
     try:
         found = find_form(stream, name) if form is None else named_form(form)
-        if found is Form.TEXT or _is_empty(stream):
-            # An empty file is one in all forms, and the text's sentence says so.
+        if _is_empty(stream):
+            # What is empty is so in all forms, and the text's sentence says so.
             found = Form.TEXT
         for given, fits, option in (
             (encoding is not None, found in _HAVE_ENCODINGS, "encoding"),
@@ -117,8 +118,8 @@ def _open(
 
 
 def _is_empty(stream: BinaryIO) -> bool:
-    stream.seek(0)
-    return not stream.read(1)
+    """Whether a stream has no end but its beginning, as that of an empty file or of a device."""
+    return not stream.seek(0, io.SEEK_END)
 
 
 def _read(

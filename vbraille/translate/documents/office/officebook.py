@@ -6,6 +6,7 @@ import hashlib
 import io
 import locale
 import re
+from collections import Counter
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 LARGEST_BYTES = 200 << 20
-_RTF_LANGUAGE = re.compile(rb"\\deflang(\d{1,5})\b")
+_RTF_USUAL = re.compile(rb"\\deflang(\d{1,5})\b")
+_RTF_LANGUAGE = re.compile(rb"\\lang(\d{1,5})\b")
+_RTF_TITLE = re.compile(rb"\{\\title ([^{}\\]*)\}")  # of no other letters than ASCII
 _RTF_HEADER_BYTES = 65_536
 
 
@@ -49,7 +52,7 @@ def open_office(stream: BinaryIO, name: str, form: str) -> Source:
     digest = hashlib.sha256(content).hexdigest()
     title = language = ""
     if form == "rtf":
-        language = _rtf_language(content)
+        title, language = _rtf_title(content), _rtf_language(content)
     else:
         from vbraille.translate.documents.office.officexml import annotated
 
@@ -87,8 +90,19 @@ def _document(content: bytes, name: str, form: str) -> Document:
         ) from None
 
 
+def _rtf_title(content: bytes) -> str:
+    """Title of an RTF file; empty if it has none, or one that is not plain ASCII."""
+    found = _RTF_TITLE.search(content[:_RTF_HEADER_BYTES])
+    return "" if found is None else " ".join(found[1].decode("ascii", "ignore").split())
+
+
 def _rtf_language(content: bytes) -> str:
     """Tag of the language that an RTF file says its text is in; empty if it says none."""
-    found = _RTF_LANGUAGE.search(content[:_RTF_HEADER_BYTES])
-    tag = None if found is None else locale.windows_locale.get(int(found[1]))
-    return "" if tag is None else tag.replace("_", "-")
+    usual = _RTF_USUAL.search(content[:_RTF_HEADER_BYTES])
+    named = _RTF_LANGUAGE.findall(content) if usual is None else [usual[1]]
+    for number, _ in Counter(map(int, named)).most_common():
+        # A number below 1024 is a language's without a country, which is added here.
+        tag = locale.windows_locale.get(number if number >= 0x400 else number | 0x400)
+        if tag is not None:
+            return tag.replace("_", "-") if number >= 0x400 else tag.partition("_")[0]
+    return ""
