@@ -38,6 +38,9 @@ class Passage:
         Number of the list or table within the part, from 1; 0 for other blocks.
     cells
         Cells of a source that is braille already, with places that are indices into the text.
+    continues
+        Whether the passage goes on where the one right before it broke off, since the two are a
+        very long one.
     """
 
     text: str
@@ -49,6 +52,7 @@ class Passage:
     group: int = 0
     headers: tuple[str, ...] = ()
     cells: Cells | None = None
+    continues: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,7 +259,7 @@ def _pieces(passage: Passage, character: int, groups: int) -> Iterable[Block]:
             passage.kind,
             passage.level,
             cells,
-            continues=start > 0,
+            continues=start > 0 or passage.continues,
             marks=tuple(mark for mark in marks if mark.start < after and mark.end > first),
             language=passage.language,
             anchors=passage.anchors if start == 0 else (),
