@@ -207,7 +207,7 @@ def test_books_cut_short(call, tmp_path, name):
         if name.endswith((".epub", ".docx", ".odt")):
             assert said.code == 2
     if name.endswith((".html", ".md", ".brf")):
-        assert read >= 5  # text that is there is read
+        assert read >= 2  # text that is there is read
 
 
 @pytest.mark.parametrize("suffix", [Path(name).suffix for name in SAMPLES] + [".txt"])
@@ -228,7 +228,7 @@ def test_what_is_no_file(call, file, form):
 def test_bytes_that_are_no_braille(call, tmp_path):
     path = tmp_path / "book.brf"
     path.write_bytes(b",! ,h>b|r\r\n\x80\xff\1\2 one\r\n")
-    assert usable(call("page", path, "--format", "unicode"))
+    assert "(line 2, byte " in sentence(call("page", path))
 
 
 def test_forms_and_options_that_do_not_fit(call, tmp_path):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.document import Document
+from vbraille.translate.documents.encodings import SAMPLE_BYTES
 from vbraille.translate.documents.streams import keep_stream, open_file
 from vbraille.translate.forms import Form, find_form
 from vbraille.wording import nearest, setting
@@ -101,6 +102,8 @@ def _open(
         if _is_empty(stream):
             # What is empty is so in all forms, and the text's sentence says so.
             found = Form.TEXT
+        elif found in (Form.BRF, Form.UNICODE_BRAILLE) and _is_blank(stream):
+            raise InputError(f"{name} has no braille in it; give a file of braille")
         for given, fits, option in (
             (encoding is not None, found in _HAVE_ENCODINGS, "encoding"),
             (brf_table is not None, found is Form.BRF and encoding is None, "brf-table"),
@@ -120,6 +123,12 @@ def _open(
 def _is_empty(stream: BinaryIO) -> bool:
     """Whether a stream has no end but its beginning, as that of an empty file or of a device."""
     return not stream.seek(0, io.SEEK_END)
+
+
+def _is_blank(stream: BinaryIO) -> bool:
+    """Whether a stream of ASCII characters has nothing but blanks, as far as one looks."""
+    stream.seek(0)
+    return not stream.read(SAMPLE_BYTES).strip(b" \t\r\n\f\x1a\0")
 
 
 def _read(

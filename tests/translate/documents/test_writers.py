@@ -78,7 +78,6 @@ WRITERS = (
     "harbour.md",
     "pandoc-2.epub",
     "pandoc-3.epub",
-    "libreoffice.epub",
     "zipped.epub",
     "dtbook.xml",
 )
@@ -223,6 +222,18 @@ def test_a_note_is_found_from_its_reference(book):
     place = source.anchor(target.removeprefix("#"))
     assert place is not None
     assert NOTE in str(source.block(source.block_at(place)).text)
+
+
+def test_libreoffices_epub_has_texts_alone():
+    """It writes neither headings nor lists, nor the head of a table."""
+    source = open_source(str(FILES / "libreoffice.epub"))
+    found = [str(block.text) for block in blocks_of(source)]
+    assert source.title == "The Harbour"
+    texts = [text.split(" ", 1)[1] if kind == "item" else text for kind, _, text in BOOK]
+    texts = [text for text in texts if text != "Fish  Price"]
+    assert [text for text in found if text in texts][1:] == texts
+    assert found[-1].endswith(NOTE)
+    assert any(marked(block, MarkKind.NOTE) for block in blocks_of(source))
 
 
 def test_a_page_that_the_author_begins():
