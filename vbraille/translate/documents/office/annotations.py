@@ -58,9 +58,8 @@ class Languages:
     _characters: Counter[str] = field(default_factory=Counter)
 
     def count(self, tag: str, characters: int) -> None:
-        """Count characters of a language."""
-        if tag:
-            self._characters[tag] += characters
+        """Count characters of a language, or of none that is known."""
+        self._characters[tag] += characters
 
     def most(self, otherwise: str) -> str:
         """Tag of the language that most of the text is in; the other tag if none was counted."""

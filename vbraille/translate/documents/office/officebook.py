@@ -70,7 +70,7 @@ def _document(content: bytes, name: str, form: str) -> Document:
         import anydoc
     except ImportError:
         raise InputError(
-            f"{name} is a {form.upper()} file, and what reads these is not installed; "
+            f"{name} is in {form.upper()}, and what reads that is not installed; "
             f"pip install 'vbraille[office]' installs it"
         ) from None
     try:
