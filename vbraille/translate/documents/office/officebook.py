@@ -7,13 +7,13 @@ import io
 import locale
 import re
 from collections import Counter
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, cast
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.office.officehtml import written
 
 if TYPE_CHECKING:
-    from anydoc import Document
+    from anydoc import Document, Format
 
     from vbraille.translate.source import Source
 
@@ -74,7 +74,7 @@ def _document(content: bytes, name: str, form: str) -> Document:
             f"pip install 'vbraille[office]' installs it"
         ) from None
     try:
-        return anydoc.to_document(content, form)
+        return anydoc.to_document(content, cast("Format", form))
     except anydoc.EncryptedError:
         raise InputError(
             f"{name} is locked with a password; open it with that and save it without one"

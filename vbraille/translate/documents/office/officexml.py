@@ -118,4 +118,4 @@ def _packed(archive: ZipFile, roots: dict[str, Element]) -> bytes | None:
 def _told(about: Element | None, name: str) -> str:
     """Value of the first of Dublin Core's elements with a name."""
     found = None if about is None else about.find(f".//{{http://purl.org/dc/elements/1.1/}}{name}")
-    return "" if found is None else " ".join("".join(found.itertext()).split())
+    return "" if found is None else " ".join("".join(map(str, found.itertext())).split())
