@@ -40,6 +40,7 @@ class Bench:
         width=20,
         book=None,
         rate_hz=1000.0,
+        keep_lines=False,
         **options,
     ):
         self.clock = ManualClock()
@@ -50,7 +51,8 @@ class Bench:
         self.loop = self.engine.loop
         self.said: list[str] = []
         if book is None:
-            book = Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb"))
+            document = Document.from_text(text, keep_lines=keep_lines)
+            book = Book(document, BrailleTable("en-ueb-g2.ctb"))
         self.layout = Layout(book, width)
         self.reader = Reader(
             self.layout,

@@ -173,7 +173,7 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     source = _open(arguments)
     if source.in_cells:
         for option in ("table", "language", "grade"):
-            if getattr(arguments, option) is not None:
+            if getattr(arguments, option) is not None and option not in arguments.settled:
                 raise InputError(f"{source.name} is in braille already; leave out --{option}")
         return Book(source)
     table = build_table(arguments, source.language)

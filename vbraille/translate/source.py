@@ -142,14 +142,14 @@ class Index(msgspec.Struct, frozen=True):
     fits
         Values that must be the same for the index to be taken over, such as the file's size.
     rows
-        What is known, in the source's own form; each row is numbers, text and bytes.
+        What is known, in the source's own form; each row is numbers and text.
     complete
         Whether the index reaches to the end.
     """
 
     form: str
     fits: tuple[str | int, ...]
-    rows: tuple[tuple[int | str | bytes, ...], ...]
+    rows: tuple[tuple[int | str, ...], ...]
     complete: bool = False
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from tests.reading.test_reader import Bench
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands.table import ANY, commands_of, find, press
+from vbraille.reading.bindings import ANY
+from vbraille.reading.commands.table import commands_of, find, press
 from vbraille.reading.keys import PASTE
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "keys.md"
@@ -47,7 +48,7 @@ def test_help_says_every_key_of_the_context():
 
 def test_a_key_that_calls_nothing_says_how_to_learn_the_keys():
     bench = Bench()
-    assert bench.press("x") == ["no command: 'x'; h says the keys"]
+    assert bench.press("é") == ["no command: 'é'; h says the keys"]
     assert bench.press([PASTE]) == ["paste: text that is pasted is passed over; type the keys"]
     bench.press("q")
     assert bench.reader.done

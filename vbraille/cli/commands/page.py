@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli import embossing
 from vbraille.cli.build import build_book, build_lengths, lay_out
+from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.errors import InputError
 from vbraille.render import MODELS
 from vbraille.wording import printable
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
+    settle(arguments, TRANSLATION)
     embossing.check(arguments)
     book = build_book(arguments, six_dots=arguments.format == "brf")
     if _keeps_pages(arguments, book) and arguments.format == "brf":

@@ -1,8 +1,10 @@
-"""Commands to the device, and the end of reading."""
+"""Commands to the device, what is typed, and the end of reading."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
@@ -20,5 +22,44 @@ def set_zero(reader: Reader) -> None:
 
 
 def stop(reader: Reader) -> None:
-    """Stop reading."""
+    """Stop reading; or, when keys are learnt, stop learning."""
     reader.quit()
+
+
+def learn(reader: Reader) -> None:
+    """Have keys say what they do, and do nothing."""
+    reader.context = Context.LEARNING
+    reader.say("learn: a key says what it does; this key again or q ends it")
+
+
+def end_learning(reader: Reader) -> None:
+    """Have keys do what they do again."""
+    reader.context = Context.READING
+    reader.say("learn: off")
+
+
+def enter(reader: Reader) -> None:
+    """Take what was typed, and say it."""
+    prompt = reader.prompt
+    reader.prompt, reader.context = None, Context.READING
+    if prompt is None:
+        return
+    typed = prompt.typed.strip() or prompt.again
+    if not typed:
+        reader.say(f"{prompt.label}: nothing was typed")
+        return
+    reader.say(f"{prompt.label}: {typed}")
+    prompt.then(typed)
+
+
+def give_up(reader: Reader) -> None:
+    """Forget what was typed."""
+    prompt = reader.prompt
+    reader.prompt, reader.context = None, Context.READING
+    reader.say(f"{'text' if prompt is None else prompt.label}: given up")
+
+
+def erase(reader: Reader) -> None:
+    """Take back the character that was typed last."""
+    if reader.prompt is not None:
+        reader.prompt.erase()

@@ -9,10 +9,10 @@ from __future__ import annotations
 import hashlib
 import io
 from bisect import bisect_right
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.documents.chunkmarks import ChunkMark, fingerprint
 from vbraille.translate.documents.codepoints import Stretch, shorten_blanks
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
@@ -30,44 +30,9 @@ from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from vbraille.translate.source import Block
-
-
-@dataclass(frozen=True, slots=True)
-class _Mark:
-    """Place at which reading can go on, before a block's first character.
-
-    Parameters
-    ----------
-    block
-        Number of the next block, from 0.
-    character
-        Place of the block's first character in the document.
-    offset, state
-        A place in the file at or before that character, and the decoder's state there.
-    skip
-        Number of characters between that place and the block.
-    continues
-        Whether the block is a further piece of the block before.
-    item
-        Number of the list item that the block is a piece of; 0 for none.
-    """
-
-    block: int
-    character: int
-    offset: int
-    state: tuple[bytes, int]
-    skip: int
-    continues: bool
-    item: int = 0
-
-    @property
-    def bytes(self) -> int:
-        """Estimated number of bytes before the place: a character takes at least one."""
-        return self.offset + self.skip
 
 
 class Document:
@@ -129,8 +94,8 @@ class Document:
         self._decoder = TextDecoder(self.encoding.name)
         self._found = encoding is None
         self._noted = self._grown = False
-        start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
-        self._marks: list[_Mark] = [start]  # of each chunk, and of the next to read
+        start = ChunkMark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
+        self._marks: list[ChunkMark] = [start]  # of each chunk, and of the next to read
         self._complete = False
         self._recent: dict[int, list[Block]] = {}
         self.title = self.language = ""
@@ -147,20 +112,17 @@ class Document:
 
     def index(self) -> Index:
         """Tell where the chunks that were read begin."""
-        rows = tuple(
-            (m.block, m.character, m.offset, *m.state, m.skip, int(m.continues), m.item)
-            for m in self._marks
-        )
-        return Index(*self._fits(), rows, self._complete)
+        return Index(*self._fits(), tuple(mark.row for mark in self._marks), self._complete)
 
     def adopt(self, index: Index) -> None:
         """Take over where chunks begin, if the index is of this file and knows more."""
-        if (index.form, index.fits) == self._fits() and len(index.rows) > len(self._marks):
-            self._marks = [_mark_of(row) for row in index.rows]
+        if len(index.rows) > len(self._marks) and (index.form, index.fits) == self._fits():
+            self._marks = [ChunkMark.of_row(row) for row in index.rows]
             self._complete = index.complete
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return "Document 1", (self.size, self.encoding.name, self.encoding.skip, self.keep_lines)
+        how = self.encoding.name, self.encoding.skip, int(self.keep_lines)
+        return "Document 2", (fingerprint(self._read, self.size), self.size, *how)
 
     @classmethod
     def open(
@@ -288,6 +250,16 @@ class Document:
             digest.update(chunk)
         return digest.hexdigest()
 
+    def read(self, offset: int, size: int) -> bytes:
+        """Bytes of the file from an offset on, as they are; fewer at its end.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        """
+        return self._read(offset, size)
+
     def close(self) -> None:
         """Close the file; it is closed in any case when the document is forgotten."""
         self._stream.close()
@@ -317,7 +289,7 @@ class Document:
             if after is None:
                 self._complete = True
                 self._grown = self._end() > self.size
-                after = _Mark(
+                after = ChunkMark(
                     mark.block + len(blocks),
                     blocks[-1].text.end if blocks else mark.character,
                     self.size,
@@ -331,7 +303,7 @@ class Document:
         self._recent[chunk] = blocks
         return blocks
 
-    def _parse(self, mark: _Mark) -> tuple[list[Block], _Mark | None]:
+    def _parse(self, mark: ChunkMark) -> tuple[list[Block], ChunkMark | None]:
         """Blocks from a mark on, none only if a stretch is blank; and the mark after them."""
         self._decoder.restore(mark.state)
         parts: list[Stretch] = []
@@ -371,7 +343,7 @@ class Document:
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
-        after = _Mark(
+        after = ChunkMark(
             mark.block + len(split.blocks),
             used,
             offset,
@@ -381,15 +353,6 @@ class Document:
             split.item,
         )
         return split.blocks, after
-
-
-def _mark_of(row: Sequence[int | str | bytes]) -> _Mark:
-    """Mark of a row of an index."""
-    block, character, offset, held, flag, skip, continues, item = row
-    assert isinstance(held, bytes)
-    numbers = [int(n) for n in (block, character, offset, flag, skip, item)]
-    block, character, offset, flag, skip, item = numbers
-    return _Mark(block, character, offset, (held, flag), skip, bool(continues), item)
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:
