@@ -264,6 +264,8 @@ def test_the_language_of_a_book_chooses_its_table(call, tmp_path):
     path.write_text("<html lang='fr-CA'><p>Les bateaux rentrent.")
     assert "table fr-bfu-comp6.utb\n" in call("page", path).err
     assert "table de-g2.ctb\n" in call("page", path, "--language", "de").err
+    path.write_text("<html lang='fre'><p>Les bateaux rentrent.")
+    assert "table fr-bfu-comp6.utb\n" in call("page", path).err
     assert "table fr-bfu-g2.ctb\n" in call("page", path, "--grade", "2").err
     assert "table en-ueb-g1.ctb\n" in call("page", path, "--table", "en-ueb-g1.ctb").err
     path.write_text("<html lang='tlh-x'><p>Heghlu'meH QaQ jajvam.")

@@ -78,6 +78,33 @@ _SAME = {
     "zh-sg": "cmn-hans",
     "zh-tw": "cmn-hant",
 }
+# Three letters that older books have (ISO 639-2) for two.
+_SAME |= {
+    three: two
+    for two, codes in {
+        "ar": "ara",
+        "cs": "cze ces",
+        "da": "dan",
+        "de": "ger deu",
+        "el": "gre ell",
+        "en": "eng",
+        "es": "spa",
+        "fi": "fin",
+        "fr": "fre fra",
+        "he": "heb",
+        "hu": "hun",
+        "it": "ita",
+        "nl": "dut nld",
+        "no": "nor nob nno",
+        "pl": "pol",
+        "pt": "por",
+        "ru": "rus",
+        "sv": "swe",
+        "tr": "tur",
+        "cmn": "chi zho",
+    }.items()
+    for three in codes.split()
+}
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
 
