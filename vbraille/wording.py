@@ -47,7 +47,7 @@ def spelled(message: str) -> str:
     import re  # takes longer to load than all else that a command line needs to begin
 
     return re.sub(
-        "\u2039([a-z]+)\u203a", lambda found: f"--{_OPTIONS.get(found[1], found[1])}", message
+        "\u2039([a-z-]+)\u203a", lambda found: f"--{_OPTIONS.get(found[1], found[1])}", message
     )
 
 

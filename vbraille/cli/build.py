@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
@@ -18,18 +17,16 @@ from vbraille.render import MAPPINGS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
     BrailleTable,
-    Document,
     Undefined,
     six_dot_table,
 )
-from vbraille.translate.braillefiles.lines import open_brf, open_unicode_braille
-from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.languages import has_tables
+from vbraille.translate.opening import open_source, open_stream
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator
-    from typing import BinaryIO
 
     from vbraille.layout.pages import Line
     from vbraille.translate import Source
@@ -144,13 +141,28 @@ def build_lengths(
     return replace(model, style=replace(model.style, geometry=geometry))
 
 
-def build_table(arguments: argparse.Namespace) -> BrailleTable:
-    """Table for the text; InputError if there is no such table."""
-    return choose_table(arguments.language, arguments.grade, arguments.table, arguments.undefined)
+def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTable:
+    """Table for a text; InputError if there is no such table.
+
+    Parameters
+    ----------
+    arguments
+        Parsed options of the command.
+    language
+        Language of the text as its own source says, whose usual table is taken if no option of
+        the command line names a language or a table, and there is one.
+    """
+    named, grade, table = arguments.language, arguments.grade, arguments.table
+    usual = {"language", "table"} - arguments.settled  # what the settings say is for other texts
+    asked = any(getattr(arguments, name) is not None for name in usual)
+    if not asked and language and has_tables(language):
+        named, table = language, None
+        grade = None if "table" in arguments.settled else grade
+    return choose_table(named, grade, table, arguments.undefined)
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
-    """Text and table, before anything is laid out; a BRF file has no table.
+    """Text and table, before anything is laid out; a source that is in braille has no table.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -159,53 +171,35 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     InputError
         If an option or the text cannot be used.
     """
-    kind = Path(arguments.file).suffix.lower()
-    if kind in (".brf", ".brl", ".pef"):
-        return _build_braille(arguments)
-    table = build_table(arguments)
+    if arguments.file == "-" and arguments.form is None:
+        build_table(arguments)  # nobody types a text for a table that is not there
+    source = _open(arguments)
+    if source.in_cells:
+        for option in ("table", "language", "grade"):
+            if getattr(arguments, option) is not None and option not in arguments.settled:
+                raise InputError(f"{source.name} is in braille already; leave out --{option}")
+        return Book(source)
+    table = build_table(arguments, source.language)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
-    keep_lines = arguments.keep_lines
-    if arguments.file == "-":
-        if sys.stdin is None:
-            raise InputError("standard input is closed; give a text there, or the name of a file")
-        if sys.stdin.isatty():
-            say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
-        document = Document.take(
-            sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
-        )
-    else:
-        document = Document.open(arguments.file, arguments.encoding, keep_lines=keep_lines)
-    return Book(document, table)
+    return Book(source, table)
 
 
-def _open(name: str) -> BinaryIO:
-    """Open a file of braille."""
-    try:
-        return Path(name).open("rb")
-    except FileNotFoundError:
-        raise InputError(f"there is no file {name}; check the name") from None
-    except IsADirectoryError:
-        raise InputError(f"{name} is a directory; give a file of braille in it") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{name} cannot be read: {reason}") from None
-
-
-def _build_braille(arguments: argparse.Namespace) -> Book:
-    for option in ("table", "language", "grade"):
-        if getattr(arguments, option) is not None and option not in arguments.settled:
-            raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
-    stream = _open(arguments.file)
-    if arguments.file.lower().endswith(".pef"):
-        return Book(PefBook.open(stream, arguments.file))
-    try:
-        if arguments.encoding is not None:
-            return Book(open_unicode_braille(stream, arguments.file, arguments.encoding))
-        return Book(open_brf(stream, arguments.file, table=arguments.brf_table))
-    except InputError:
-        stream.close()
-        raise
+def _open(arguments: argparse.Namespace) -> Source:
+    """Book of the options, from a file or from standard input."""
+    how = {
+        "encoding": arguments.encoding,
+        "keep_lines": arguments.keep_lines,
+        "brf_table": arguments.brf_table,
+        "form": arguments.form,
+    }
+    if arguments.file != "-":
+        return open_source(arguments.file, **how)
+    if sys.stdin is None:
+        raise InputError("standard input is closed; give a text there, or the name of a file")
+    if sys.stdin.isatty():
+        say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
+    return open_stream(sys.stdin.buffer, "standard input", **how)
 
 
 def lay_out(

@@ -29,7 +29,7 @@ from vbraille.translate.documents.epub import EpubBook
 from vbraille.translate.documents.markup.pieces import PART_BYTES
 from vbraille.translate.source import BlockKind, MarkKind
 
-FILES = Path(__file__).parent / "files"
+FILES = Path(__file__).parent / "files" / "small"
 TWO = {
     "one.xhtml": '<h1 id="h">One</h1><p>See <a href="t%20wo.xhtml#x">there</a>.</p>',
     "t wo.xhtml": '<h1>Two</h1><p id="x">here&nbsp;it is, <a href="one.xhtml">back</a></p>',

@@ -20,7 +20,7 @@ from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markup.pieces import PART_BYTES
 from vbraille.translate.source import BlockKind, MarkKind
 
-FILES = Path(__file__).parent / "files"
+FILES = Path(__file__).parent / "files" / "small"
 
 
 def opened(content, encoding=None):

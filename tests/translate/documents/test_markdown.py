@@ -13,7 +13,7 @@ from tests.translate.documents.epubs import blocks, texts
 from vbraille.errors import InputError
 from vbraille.translate.documents.markdown import read_markdown
 
-FILES = Path(__file__).parent / "files"
+FILES = Path(__file__).parent / "files" / "small"
 
 
 def read(text, encoding=None):

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
+    settle(arguments, TRANSLATION)
     embossing.check(arguments)
     settle(arguments, TRANSLATION)
     book = build_book(arguments, six_dots=arguments.format == "brf")

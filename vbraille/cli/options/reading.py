@@ -179,6 +179,7 @@ def structure(parser: ArgumentParser) -> None:
     _source(parser)
     parser.add_argument("--json", action="store_true", help="Print the same as JSON.")
     parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
+    parser.set_defaults(settled=frozenset())
 
 
 def render(parser: ArgumentParser) -> None:
@@ -316,7 +317,8 @@ def tables(parser: ArgumentParser) -> None:
 
 
 def _text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:
-    _source(parser, optional=optional, file=file)
+    if file:
+        _source(parser, optional=optional)
     _translation(parser)
     parser.add_argument(
         "--undefined",
@@ -340,18 +342,23 @@ def _text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) 
     )
 
 
-def _source(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:
-    if file:
-        parser.add_argument(
-            "file",
-            metavar="FILE",
-            nargs="?" if optional else None,
-            help="Take this text file, or standard input for -.",
-        )
+def _source(parser: ArgumentParser, *, optional: bool = False) -> None:
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="Take this text file, or standard input for -.",
+    )
     parser.add_argument(
         "--encoding",
         metavar="NAME",
         help="Read the file in this text encoding (default: what its bytes say).",
+    )
+    parser.add_argument(
+        "--form",
+        metavar="NAME",
+        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "unicode-braille or pef (default: what its content and then its name say).",
     )
     parser.add_argument(
         "--brf-table",

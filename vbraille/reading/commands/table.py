@@ -190,8 +190,6 @@ COMMANDS = (
     Command("DOT_SPACING_DOWN", ("S",), "dots closer together", turn("dot_spacing_mm", -1)),
     Command("CELL_GAP_UP", ("j",), "cells farther apart", turn("cell_gap_mm", 1)),
     Command("CELL_GAP_DOWN", ("J",), "cells closer together", turn("cell_gap_mm", -1)),
-    Command("CYCLES_UP", ("}",), "finer texture", turn("texture_cycles", 1)),
-    Command("CYCLES_DOWN", ("{",), "coarser texture", turn("texture_cycles", -1)),
     Command("MAPPING", ("#",), "another way to show dots by actuators", change_mapping),
     Command("UNDO", ("U",), "take back the last change of how braille feels", undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", save_settings),

@@ -8,10 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 from bisect import bisect_right
-from contextlib import ExitStack
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
@@ -27,14 +24,15 @@ from vbraille.translate.documents.encodings import (
     named_encoding,
 )
 from vbraille.translate.documents.paragraphs import split_paragraphs
+from vbraille.translate.documents.streams import CHUNK_BYTES, keep_stream, open_file
 from vbraille.translate.source import Index
 from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from vbraille.translate.source import Block
+    from pathlib import Path
 
-CHUNK_BYTES = 65_536
+    from vbraille.translate.source import Block
 
 
 class Document:
@@ -137,20 +135,7 @@ class Document:
         InputError
             If it is missing, unreadable, a directory, empty, binary, or of an unknown encoding.
         """
-        path = Path(path)
-        try:
-            stream = path.open("rb")
-            # A pipe cannot be read twice, and a file of /proc does not say how long it is.
-            if not stream.seekable() or (path.is_file() and not path.stat().st_size):
-                with stream:
-                    stream = _kept(stream)
-        except FileNotFoundError:
-            raise InputError(f"there is no file {path}; check the name") from None
-        except IsADirectoryError:
-            raise InputError(f"{path} is a directory; give a text file in it") from None
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise InputError(f"{path} cannot be read: {reason}") from None
+        stream = open_file(path)
         try:
             return cls(stream, str(path), encoding, keep_lines=keep_lines)
         except InputError:
@@ -173,10 +158,7 @@ class Document:
         InputError
             If the stream cannot be read or kept, or is empty, binary, or of an unknown encoding.
         """
-        try:
-            kept = _kept(stream)
-        except OSError as error:
-            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        kept = keep_stream(stream, name)
         try:
             return cls(kept, name, encoding, keep_lines=keep_lines)
         except InputError:
@@ -371,20 +353,6 @@ class Document:
             split.item,
         )
         return split.blocks, after
-
-
-def _kept(stream: BinaryIO) -> BinaryIO:
-    """Temporary file with all that a stream gives, since a text is read more than once."""
-    from tempfile import TemporaryFile
-
-    with ExitStack() as opened:
-        kept = opened.enter_context(TemporaryFile())
-        # Python's buffer is bypassed, which asks a terminal for more after its end was typed.
-        while chunk := os.read(stream.fileno(), CHUNK_BYTES):
-            kept.write(chunk)
-        kept.flush()
-        opened.pop_all()  # closing it is left to the caller
-    return kept
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:
