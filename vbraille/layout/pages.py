@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.layout.lines import Line, locate, place_of
-from vbraille.layout.runs import Run
+from vbraille.layout.runs import LaidRun
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -66,7 +66,7 @@ class Layout:
         if start and lines_before is not None:
             self._known[start] = lines_before
         self._begun = 0
-        self._front = Run(book, width)  # where the book begins
+        self._front = LaidRun(book, width)  # where the book begins
         self._runs = [self._front]  # the one that was used last stands last
         self._home = self._begin(start) if start else self._front
 
@@ -152,7 +152,7 @@ class Layout:
         """About how much of the book stands before a line, 0 to 1."""
         return self.book.source.progress(self.block_of(line))
 
-    def _of_number(self, number: int) -> tuple[Run, int] | None:
+    def _of_number(self, number: int) -> tuple[LaidRun, int] | None:
         """Find the run that a line's number leads to, and the number that it has there now."""
         key = (number + _PROVISIONAL // 2) // _PROVISIONAL
         if key > 0:  # given before the lines were counted, if they are counted now
@@ -161,8 +161,8 @@ class Layout:
         counted = (run for run in reversed(self._runs) if run.counted)
         return min(counted, key=lambda run: run.lines_to(number)), number
 
-    def _towards(self, block: int, character: int) -> Run:
-        """Run from which a block is reached soonest, which may be a new one."""
+    def _towards(self, block: int, character: int) -> LaidRun:
+        """LaidRun from which a block is reached soonest, which may be a new one."""
         latest = self._runs[::-1]
         holding = next((run for run in latest if run.holds(block)), None)
         if holding is None:
@@ -172,7 +172,7 @@ class Layout:
             return self._begin(block)
         return self._use(holding)
 
-    def _begin(self, block: int) -> Run:
+    def _begin(self, block: int) -> LaidRun:
         """Begin anew at a block."""
         lines = self._known.get(block)
         if lines is None:
@@ -180,7 +180,7 @@ class Layout:
             key, lines = self._begun, self._begun * _PROVISIONAL
         else:
             key = 0
-        run = Run(self.book, self.width, block, lines, key=key)
+        run = LaidRun(self.book, self.width, block, lines, key=key)
         self._runs[-1].forget()
         self._runs.append(run)
         if len(self._runs) > _RUNS:
@@ -188,7 +188,7 @@ class Layout:
             self._runs.remove(next(s for s in self._runs if s not in kept))
         return run
 
-    def _use(self, run: Run) -> Run:
+    def _use(self, run: LaidRun) -> LaidRun:
         """Keep what is laid out of this run, and of no other."""
         if run is not self._runs[-1]:
             self._runs[-1].forget()

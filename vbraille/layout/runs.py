@@ -20,7 +20,7 @@ _REMEMBERED = 16  # blocks
 _PIECES_BACK = 2
 
 
-class Run:
+class LaidRun:
     """Blocks in lines, without a gap, as many as somebody has looked at.
 
     Parameters
