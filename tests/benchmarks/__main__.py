@@ -7,6 +7,7 @@ PARTS = (
     "render",
     "text",
     "seek",
+    "books",
     "lines",
     "wire",
     "engine",

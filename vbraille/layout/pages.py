@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.layout.lines import Line, locate, place_of
-from vbraille.layout.stretches import Stretch
+from vbraille.layout.runs import LaidRun
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +20,7 @@ __all__ = ["NEAR", "Layout", "Line", "locate", "place_of"]
 NEAR = 65_536
 # Lines that nobody has counted are numbered from a multiple of this; no book has half as many.
 _PROVISIONAL = 1 << 40
-_STRETCHES = 256
+_RUNS = 256
 
 
 class Layout:
@@ -66,14 +66,14 @@ class Layout:
         if start and lines_before is not None:
             self._known[start] = lines_before
         self._begun = 0
-        self._front = Stretch(book, width)  # where the book begins
-        self._stretches = [self._front]  # the one that was used last stands last
+        self._front = LaidRun(book, width)  # where the book begins
+        self._runs = [self._front]  # the one that was used last stands last
         self._home = self._begin(start) if start else self._front
 
     @property
     def counted(self) -> bool:
         """Whether the lines that were looked at last have their true numbers."""
-        return self._stretches[-1].counted
+        return self._runs[-1].counted
 
     @property
     def first_line(self) -> int:
@@ -87,17 +87,17 @@ class Layout:
         true numbers.
         """
         self._known[block] = lines
-        for stretch in self._stretches:
-            if not stretch.counted and stretch.first <= block <= stretch.after:
-                stretch.count_from(block, lines)
+        for run in self._runs:
+            if not run.counted and run.first <= block <= run.after:
+                run.count_from(block, lines)
 
     def line(self, number: int) -> Line | None:
         """Line of a number, from 1; None past the end, and before the beginning."""
         found = self._of_number(number)
         if found is None:
             return None
-        stretch, number = found
-        return self._use(stretch).line(number)
+        run, number = found
+        return self._use(run).line(number)
 
     def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
         """Lines of a range of numbers, both ends included."""
@@ -132,11 +132,11 @@ class Layout:
         """
         block = self.book.source.block_at(character)
         while block is not None:
-            stretch = self._towards(block, character)
-            if not stretch.reach_block(block):
+            run = self._towards(block, character)
+            if not run.reach_block(block):
                 return None
-            for n in range(stretch.before(block + 1) - stretch.before(block)):
-                line = stretch.line_of(block, n)
+            for n in range(run.before(block + 1) - run.before(block)):
+                line = run.line_of(block, n)
                 if len(line.cells) and character < line.cells.end:
                     return line, line.cell_of(max(character, int(line.cells.starts[0])))
             block += 1
@@ -152,27 +152,27 @@ class Layout:
         """About how much of the book stands before a line, 0 to 1."""
         return self.book.source.progress(self.block_of(line))
 
-    def _of_number(self, number: int) -> tuple[Stretch, int] | None:
-        """Find the stretch that a line's number leads to, and the number that it has there now."""
+    def _of_number(self, number: int) -> tuple[LaidRun, int] | None:
+        """Find the run that a line's number leads to, and the number that it has there now."""
         key = (number + _PROVISIONAL // 2) // _PROVISIONAL
         if key > 0:  # given before the lines were counted, if they are counted now
-            stretch = next((s for s in self._stretches if s.key == key), None)
-            return None if stretch is None else (stretch, number + stretch.shift)
-        counted = (stretch for stretch in reversed(self._stretches) if stretch.counted)
-        return min(counted, key=lambda stretch: stretch.lines_to(number)), number
+            run = next((s for s in self._runs if s.key == key), None)
+            return None if run is None else (run, number + run.shift)
+        counted = (run for run in reversed(self._runs) if run.counted)
+        return min(counted, key=lambda run: run.lines_to(number)), number
 
-    def _towards(self, block: int, character: int) -> Stretch:
-        """Stretch from which a block is reached soonest, which may be a new one."""
-        latest = self._stretches[::-1]
-        holding = next((stretch for stretch in latest if stretch.holds(block)), None)
+    def _towards(self, block: int, character: int) -> LaidRun:
+        """LaidRun from which a block is reached soonest, which may be a new one."""
+        latest = self._runs[::-1]
+        holding = next((run for run in latest if run.holds(block)), None)
         if holding is None:
-            nearest = min(latest, key=lambda stretch: stretch.characters_to(character))
+            nearest = min(latest, key=lambda run: run.characters_to(character))
             holding = nearest if nearest.characters_to(character) <= NEAR else None
         if holding is None:
             return self._begin(block)
         return self._use(holding)
 
-    def _begin(self, block: int) -> Stretch:
+    def _begin(self, block: int) -> LaidRun:
         """Begin anew at a block."""
         lines = self._known.get(block)
         if lines is None:
@@ -180,18 +180,18 @@ class Layout:
             key, lines = self._begun, self._begun * _PROVISIONAL
         else:
             key = 0
-        stretch = Stretch(self.book, self.width, block, lines, key=key)
-        self._stretches[-1].forget()
-        self._stretches.append(stretch)
-        if len(self._stretches) > _STRETCHES:
+        run = LaidRun(self.book, self.width, block, lines, key=key)
+        self._runs[-1].forget()
+        self._runs.append(run)
+        if len(self._runs) > _RUNS:
             kept = (self._front, self._home)
-            self._stretches.remove(next(s for s in self._stretches if s not in kept))
-        return stretch
+            self._runs.remove(next(s for s in self._runs if s not in kept))
+        return run
 
-    def _use(self, stretch: Stretch) -> Stretch:
-        """Keep what is laid out of this stretch, and of no other."""
-        if stretch is not self._stretches[-1]:
-            self._stretches[-1].forget()
-            self._stretches.remove(stretch)
-            self._stretches.append(stretch)
-        return stretch
+    def _use(self, run: LaidRun) -> LaidRun:
+        """Keep what is laid out of this run, and of no other."""
+        if run is not self._runs[-1]:
+            self._runs[-1].forget()
+            self._runs.remove(run)
+            self._runs.append(run)
+        return run

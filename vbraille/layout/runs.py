@@ -20,7 +20,7 @@ _REMEMBERED = 16  # blocks
 _PIECES_BACK = 2
 
 
-class Stretch:
+class LaidRun:
     """Blocks in lines, without a gap, as many as somebody has looked at.
 
     Parameters
@@ -34,7 +34,7 @@ class Stretch:
     before
         Number of lines before that block, or a provisional number.
     key
-        Number by which the stretch is found again as long as its lines have provisional numbers;
+        Number by which the run is found again as long as its lines have provisional numbers;
         0 if `before` is the true number.
 
     Attributes
