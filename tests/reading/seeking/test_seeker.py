@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 from itertools import pairwise
-from tempfile import TemporaryFile
 
 import pytest
 
@@ -24,7 +23,7 @@ from vbraille.reading.queries import (
     Searched,
 )
 from vbraille.reading.seeking import BookOpening, Seeker
-from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate import Book, BrailleTable, CellsSource, Document
 
 PATIENCE_S = 60.0
 LONG = "nothing to see here\n\n" * 30_000
@@ -89,13 +88,25 @@ def test_the_index_of_the_whole_book_comes_of_itself(book):
 
 
 def test_a_text_that_has_no_name(book):
-    with TemporaryFile() as spool:
-        spool.write(book.read_bytes())
-        spool.flush()
-        at = spool.tell()
-        with Seeker(BookOpening(descriptor=spool.fileno(), name="standard input")) as seeker:
-            assert isinstance(final(seeker, FindText("last", 0)), Found)
-        assert spool.tell() == at
+    with book.open("rb") as stream:
+        document = Document.take(stream, "standard input")
+    assert str(document.block(0).text) == "First words."
+    opening = BookOpening(descriptor=document.descriptor, name="standard input")
+    with Seeker(opening) as seeker:
+        assert isinstance(final(seeker, FindText("last", 0)), Found)
+    assert str(document.block(51).text) == "Last words."
+    assert Document.from_text("in memory").descriptor is None
+
+
+def test_lines_of_a_braille_file(tmp_path):
+    path = tmp_path / "book.brf"
+    path.write_text(",! FIR/ L9E\n,! SECOND\n,! ?IRD\n")
+    with Seeker(BookOpening(str(path), in_cells=True)) as seeker:
+        seeker.ask(CountLines(6, 2))
+        *_, counted = answers(seeker, until=Counted | Failed)
+    document = Document.open(path, keep_lines=True)
+    line, _ = Layout(Book(CellsSource(document)), 6).place(path.read_text().index(",! ?"))
+    assert counted.lines == line.number - 1 > 2
 
 
 def test_a_name_that_is_no_text(book):

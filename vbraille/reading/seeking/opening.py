@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from vbraille.layout.texts import choose_table
-from vbraille.translate import Book, Undefined
+from vbraille.translate import Book, CellsSource, Undefined
 from vbraille.translate.documents.document import Document
 from vbraille.translate.source import Index
 
@@ -62,12 +62,13 @@ def open_again(opening: BookOpening) -> Book:
     """
     # A path of its own gives the process a place of its own in the file.
     path = opening.file if opening.descriptor is None else f"/proc/self/fd/{opening.descriptor}"
-    source = Document.open(path, opening.encoding, keep_lines=opening.keep_lines)
+    keep_lines = opening.keep_lines or opening.in_cells
+    source = Document.open(path, opening.encoding, keep_lines=keep_lines)
     source.name = opening.name or opening.file
     if opening.index is not None:
         source.adopt(opening.index)
     if opening.in_cells:
-        return Book(source)
+        return Book(CellsSource(source))
     undefined = Undefined(opening.undefined)
     table = choose_table(opening.language, opening.grade, opening.table, undefined)
     return Book(

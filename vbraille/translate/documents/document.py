@@ -250,6 +250,14 @@ class Document:
             digest.update(chunk)
         return digest.hexdigest()
 
+    @property
+    def descriptor(self) -> int | None:
+        """Number of the open file, for another process; None if the text is in memory."""
+        try:
+            return self._stream.fileno()
+        except OSError:
+            return None
+
     def read(self, offset: int, size: int) -> bytes:
         """Bytes of the file from an offset on, as they are; fewer at its end.
 
