@@ -1,6 +1,7 @@
 """What all tests share: one seed, and hypothesis without chance or clocks."""
 
 import gc
+import os
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,9 @@ from tests.tiers import TIER, by_tier
 
 SEED = 20090618
 TEXTS = Path(__file__).parent.parent / "texts"
+
+# Nobody's own settings change what tests see; there is no such file.
+os.environ["VBRAILLE_SETTINGS"] = "/nonexistent/settings.toml"
 
 EXAMPLES = by_tier(30, 100, 5000)  # of a law that does not say how many it needs
 

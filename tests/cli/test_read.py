@@ -135,7 +135,7 @@ def test_keys_at_a_terminal(tmp_path, text):
         press(" ", "reading")
         press("Q", "no command: 'Q'; h says the keys")
         press("n", "line: 2")
-        press("\x1b[B", "line: 3")
+        press("\x1bOB", "line: 3")
         press("n", "last line")
         press("\x1bOA", "line: 2")
         press("\x1b[A", "line: 1")

@@ -171,7 +171,7 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
 
 def _build_brf(arguments: argparse.Namespace) -> Book:
     for option in ("table", "language", "grade"):
-        if getattr(arguments, option) is not None:
+        if getattr(arguments, option) is not None and option not in arguments.settled:
             raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
     return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
 

@@ -23,10 +23,25 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
+    "books": (
+        "List the books that were read, and where reading goes on.",
+        reading.books,
+        "vbraille books --json",
+    ),
     "keys": (
         "List the keys that are obeyed while reading.",
         reading.keys,
         "vbraille keys",
+    ),
+    "settings": (
+        "Print each setting of reading, and where it comes from.",
+        reading.settings,
+        "vbraille settings --profile evening",
+    ),
+    "tune": (
+        "Find out in five minutes how braille feels best, two ways at a time.",
+        reading.tune,
+        "vbraille tune --profile evening --device serial:/dev/ttyACM0",
     ),
     "page": (
         "Print the page as it is laid out.",

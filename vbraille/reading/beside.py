@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from vbraille.reading.bindings import Bound
     from vbraille.reading.cues import Cue
     from vbraille.reading.queries import Answer, Query
+    from vbraille.render import BrailleStyle
     from vbraille.translate.source import Source
 
 
@@ -150,6 +151,8 @@ class Beside:
         What brings lines by time when the reader asks for that; None if nothing does.
     cue
         Function that is called with short signals, beside the sentences.
+    save_style
+        Function that saves how braille feels, and gives a sentence on that; None if nothing does.
     verbose
         Whether more is said, such as how far a search has come.
     """
@@ -159,4 +162,5 @@ class Beside:
     kept: KeptLike | None = None
     scroll: ScrollLike | None = None
     cue: Callable[[Cue], None] = _no_cue
+    save_style: Callable[[BrailleStyle], str] | None = None
     verbose: bool = False

@@ -376,13 +376,13 @@ class OpenDevice:
         """Counts of what went wrong with the device, by name; known after `close`."""
         return self._engine.counts
 
-    def tune(self, **turned: float) -> None:
-        """Show lines with another texture or contrast from now on, each 0 to 1.
+    def tune(self, **turned: Any) -> None:
+        """Show lines in a style of which some values differ from now on; see `Reader.tune`.
 
         Raises
         ------
         InputError
-            If a value is out of range.
+            If a value is out of range, or leaves no room for a cell.
         """
         if self._reader is not None:
             self._reader.tune(**turned)

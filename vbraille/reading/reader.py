@@ -76,6 +76,8 @@ class Reader(LineReader):
         self.seeker = beside.seeker
         self.looking = Looking(say, verbose=beside.verbose, counted=self._take_count)
         self.keeping = Keeping(beside.kept)
+        self.save_style = beside.save_style
+        self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         self.context = Context.READING
         self.prompt: Prompt | None = None
         self.fold_accents = self.backward = False

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.bindings import Bindings, spoken
 from vbraille.reading.commands.table import bound_by
+from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
     import argparse
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
-    bound = bound_by(Bindings())
+    settings = load_settings(arguments.settings)
+    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
     if arguments.json:
         print(json.dumps(_rows(bound), ensure_ascii=False, indent=2))
         return 0

@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from vbraille.cli.build import build_page
+from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.errors import InputError
 from vbraille.wording import printable
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines."""
+    settle(arguments, TRANSLATION)
     page = build_page(arguments, six_dots=arguments.format == "brf")
     write = sys.stdout.write
     for line in page.lines():

@@ -11,13 +11,13 @@ import msgspec
 from msgspec import inspect
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.tomllines import lines_of
+from vbraille.toml.tomllines import lines_of
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
-    from vbraille.sessions.planning.tomllines import Path
+    from vbraille.toml.tomllines import Path
 
 _Value = TypeVar("_Value")
 
@@ -78,16 +78,21 @@ class TomlFile:
                 self._refuse(path, "a smaller number")
 
     def read(
-        self, kind: type[_Value], dec_hook: Callable[[type, Any], Any] | None = None
+        self,
+        kind: type[_Value],
+        dec_hook: Callable[[type, Any], Any] | None = None,
+        under: Path = (),
     ) -> _Value:
-        """Convert the file to a value of a type, which checks itself.
+        """Convert the file, or a part of it, to a value of a type, which checks itself.
 
         Parameters
         ----------
         kind
-            Type of the value, a `Table`.
+            Type of the value, such as a `Table`.
         dec_hook
             Function that makes values of types which msgspec does not know.
+        under
+            Keys that lead to the part, which is there; none for the whole file.
 
         Raises
         ------
@@ -95,14 +100,55 @@ class TomlFile:
             If a key is missing or not known, or a value has the wrong type or is out of range.
         """
         try:
-            return msgspec.convert(self._tree, kind, dec_hook=dec_hook)
+            return msgspec.convert(self._at(under), kind, dec_hook=dec_hook)
         except msgspec.ValidationError as error:
             message, _, steps = str(error).rpartition(" - at `$")
-            path = tuple(int(item) if item else key for key, item in _STEP.findall(steps))
+            if not message:  # msgspec names no place if it is the value as a whole
+                message, steps = steps, ""
+            found = tuple(int(item) if item else key for key, item in _STEP.findall(steps))
+            path = (*under, *found)
             if isinstance(error.__cause__, ValueError):
                 colon = "" if isinstance(self._at(path), dict) else ": "
                 self._fail(path, f"{colon}{error.__cause__}")
-            self._explain(path, message or steps, _types_at(kind, path))
+            self._explain(path, message, _types_at(kind, found))
+
+    def names(self, *path: str | int) -> tuple[str, ...]:
+        """Keys of a table of the file; none if it is not there.
+
+        Raises
+        ------
+        InputError
+            If there is something else than a table.
+        """
+        table = self._at(path)
+        if table is not None and not isinstance(table, dict):
+            self._refuse(path, "a table")
+        return tuple(table or ())
+
+    def is_table(self, *path: str | int) -> bool:
+        """Whether there is a table at a place of the file."""
+        return isinstance(self._at(path), dict)
+
+    def lines(self) -> dict[Path, int]:
+        """Lines of keys, tables and items, from 1, by the keys that lead to them."""
+        return lines_of(self._text)
+
+    def fail(self, path: Path, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in it.
+
+        Parameters
+        ----------
+        path
+            Keys that lead to the place.
+        problem
+            Rest of a sentence that begins with the name of the place.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        self._fail(path, problem)
 
     @contextmanager
     def checking(self) -> Iterator[None]:
@@ -176,8 +222,11 @@ class TomlFile:
 
     def _named(self, path: Path) -> str:
         """Table, as the file writes it, and key of a place in the file."""
-        if path and isinstance(self._at(path[:1]), dict):
-            label, rest = f"[{path[0]}]", path[1:]
+        depth = 0
+        while depth < len(path) and isinstance(self._at(path[: depth + 1]), dict):
+            depth += 1
+        if depth:
+            label, rest = f"[{'.'.join(map(str, path[:depth]))}]", path[depth:]
         elif path and isinstance(self._at(path[:2]), dict):
             label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
         else:

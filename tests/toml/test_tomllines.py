@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.sessions.planning import tomllines
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text
-from vbraille.sessions.planning.tomllines import lines_of
+from vbraille.toml import tomllines
+from vbraille.toml.tomllines import lines_of
 
 NASTY = (
     r"""# first = 0

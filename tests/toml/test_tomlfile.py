@@ -6,7 +6,7 @@ import pytest
 from msgspec import field
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.tomlfile import Table, TomlFile
+from vbraille.toml.tomlfile import Table, TomlFile
 
 
 class Point(Table, frozen=True, array_like=True):
@@ -118,5 +118,5 @@ def test_keys_that_look_like_something_else(key):
 def test_tables_without_end():
     says(
         f"\ndoor{'.speed' * 3000} = 1",
-        "room.toml line 2: [door] speed is too large a table; it must be a number",
+        "room.toml line 2: [door.speed] is too large a table; it must be a number",
     )
