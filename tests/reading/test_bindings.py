@@ -43,12 +43,12 @@ def test_a_key_of_reading_is_still_typed_and_enter_still_ends_a_text():
 @pytest.mark.parametrize(
     ("keys", "buttons", "sentence"),
     [
-        ({"LNDWN": ("n",)}, {}, "keys: there is no command 'LNDWN'; the nearest is LNDN"),
-        ({"lndn": ("n",)}, {}, "keys: there is no command 'lndn'; the nearest is LNDN"),
+        ({"LNDWN": ("n",)}, {}, "there is no command 'LNDWN'; the nearest is LNDN"),
+        ({"lndn": ("n",)}, {}, "there is no command 'lndn'; the nearest is LNDN"),
         ({"LNDN": ("x",), "LNUP": ("x",)}, {}, "key x calls both LNDN and LNUP"),
         ({"LNDN": ("x", "x")}, {}, "key x calls both LNDN and LNDN"),
         ({"QUIT": ()}, {}, "no key calls QUIT"),
-        ({}, {"1": "LNDWN"}, "buttons: there is no command 'LNDWN'; the nearest is LNDN"),
+        ({}, {"1": "LNDWN"}, "there is no command 'LNDWN'; the nearest is LNDN"),
         ({}, {"one": "LNDN"}, "'one' is no button; write a number"),
         ({}, {"knob 1": "CONTRST"}, "there is no value of the tuning 'CONTRST'; the nearest is"),
     ],

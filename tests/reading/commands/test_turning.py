@@ -111,7 +111,7 @@ class OneRow:
 
     def __init__(self):
         self.style, self.engine = VBD.style, SimpleNamespace(display=VBD.display)
-        self.said, self.cues = [], []
+        self.said, self.cues, self.styles_before = [], [], []
         self.say, self.cue = self.said.append, self.cues.append
 
     def tune(self, **turned):
