@@ -1,6 +1,10 @@
 """``vbraille settings``, and what a settings file does to reading."""
 
+import tomllib
+
 import pytest
+
+from tests.cli import program
 
 TEXT = """# mine
 [read]
@@ -82,3 +86,24 @@ def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, t
     assert (said.code, said.out.strip()) == (0, "ABC")
     said = call("page", braille, "--grade", "1")
     assert said.code == 2
+
+
+def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):
+    hand = tmp_path / "hand.csv"
+    hand.write_text("0,64.2\n0.1,64.2\n")
+    arguments = ("read", text, "--hand", f"recorded:{hand}", "--settings", settings)
+    with program.Terminal(*arguments) as terminal:
+        terminal.until("h says the keys\r\n")
+        for key, said in (
+            ("c", "contrast: 0.6"),
+            ("]", "dot spacing: 3.2 mm"),
+            ("U", "undo: dot spacing 3 mm"),
+            ("S", "saved: profile evening for the STReSS²"),
+        ):
+            terminal.type(key)
+            terminal.until(rf"(^|\n){said}\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+    saved = tomllib.loads(settings.read_text())["profile"]["evening"]["stress2"]
+    assert (saved["contrast"], saved["dot_spacing_mm"]) == (0.6, 3.0)
+    assert settings.read_text().startswith("# mine\n")
