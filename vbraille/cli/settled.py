@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 from vbraille.cli.options.reading import SETTLED
 from vbraille.cli.terminal import say_line
-from vbraille.reading.bindings import Bindings, Bound
-from vbraille.reading.commands.table import COMMANDS, TURNED, bound_by
 from vbraille.settings.applying import missing_profile
 from vbraille.settings.loading import load_settings
 
@@ -58,17 +56,3 @@ def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
     if note := missing_profile(settings, arguments.profile):
         say_line(note, aside=True)
     return arguments.profile
-
-
-def bind_settings(settings: Settings) -> Bound:
-    """Give commands the keys and buttons that the settings file has for them.
-
-    Raises
-    ------
-    InputError
-        If a command is not known, a key would call two commands, or a button is none.
-    """
-    names = [command.name for command in COMMANDS]
-    settings.check_names("keys", names)
-    settings.check_names("buttons", [*names, *TURNED])
-    return bound_by(Bindings(settings.keys, settings.buttons))

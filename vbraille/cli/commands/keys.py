@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from vbraille.reading.bindings import Bindings, spoken
-from vbraille.reading.commands.table import bound_by
+from vbraille.cli.binding import bind_settings
+from vbraille.reading.bindings import spoken
+from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
     import argparse
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
-    bound = bound_by(Bindings())
+    bound = bind_settings(load_settings(arguments.settings))
     if arguments.json:
         print(json.dumps(_rows(bound), ensure_ascii=False, indent=2))
         return 0

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
+from vbraille.cli.binding import bind_settings
 from vbraille.cli.build import (
     build_book,
     build_lengths,
@@ -15,7 +16,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.settled import bind_settings, chosen_profile, settle
+from vbraille.cli.settled import chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing

@@ -111,6 +111,7 @@ def keys(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="Print the commands as JSON, for other programs."
     )
+    _settings(parser)
 
 
 def page(parser: ArgumentParser) -> None:
@@ -305,6 +306,10 @@ def _translation(parser: ArgumentParser) -> None:
         help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
         "in the language).",
     )
+    _settings(parser)
+
+
+def _settings(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--settings",
         metavar="FILE.toml",
