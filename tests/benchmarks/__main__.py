@@ -6,6 +6,7 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
+    "seek",
     "lines",
     "wire",
     "engine",

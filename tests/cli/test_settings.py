@@ -96,9 +96,9 @@ def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):
         terminal.until("h says the keys\r\n")
         for key, said in (
             ("c", "contrast: 0.6"),
-            ("]", "dot spacing: 3.2 mm"),
+            ("s", "dot spacing: 3.2 mm"),
             ("U", "undo: dot spacing 3 mm"),
-            ("S", "saved: profile evening for the STReSS²"),
+            ("P", "saved: profile evening for the STReSS²"),
         ):
             terminal.type(key)
             terminal.until(rf"(^|\n){said}\r\n")

@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from vbraille.errors import InputError
+from vbraille.reading.bindings import Bindings
+from vbraille.reading.commands.table import bound_by
 from vbraille.render import STRESS2, VBD
 from vbraille.settings.applying import missing_profile, with_profile
 from vbraille.settings.chosen import display_name, settings_path
@@ -130,10 +132,9 @@ def test_what_a_display_cannot_show_is_said_with_its_line(table, model, says):
 
 def test_names_of_commands_are_checked_with_their_lines():
     settings = parse_settings('[keys]\nLNDM = ["n"]\n[buttons]\n1 = "LNUP"\n', FILE)
-    with pytest.raises(InputError, match=r"^settings.toml line 2: \[keys\] there is no command "
-                       r"'LNDM'; the nearest is LNDN$"):  # fmt: skip
-        settings.check_names("keys", ["LNDN", "HELP"])
-    settings.check_names("buttons", ["LNUP"])
+    bindings = Bindings(settings.keys, settings.buttons, settings.where)
+    with pytest.raises(InputError, match=r"^settings.toml line 2: there is no command 'LNDM'"):
+        bound_by(bindings)
 
 
 def test_where_the_file_is(tmp_path, monkeypatch):

@@ -23,6 +23,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
+    "books": (
+        "List the books that were read, and where reading goes on.",
+        reading.books,
+        "vbraille books --json",
+    ),
     "keys": (
         "List the keys that are obeyed while reading.",
         reading.keys,

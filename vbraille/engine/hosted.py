@@ -206,7 +206,9 @@ def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
                 f"vbraille.devices.events; tell whoever wrote its driver"
             )
         # Drivers may tell all they have to by one code; only what is alike stands for another.
-        notices.add(event, now_ns, event.kind and replace(event, times=1))
+        # Where a knob was is of no use once it is elsewhere.
+        alike = event.kind and not event.tells_place
+        notices.add(event, now_ns, replace(event, times=1) if alike else event.kind)
     for event in notices.take(now_ns):
         channel.tell(event)
 

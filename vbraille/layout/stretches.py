@@ -195,8 +195,7 @@ class Stretch:
         found = self._book.block(number)
         if found is None:
             return None
-        following = self._book.source.block(number + 1)
-        goes_on = following is not None and following.continues and number + 1 not in self._severed
+        goes_on = number + 1 not in self._severed and self._book.continues(number + 1)
         carried = self._carried.get(number)
         laid = LaidBlock(*found, self._width, carried, goes_on=goes_on)
         if laid.carries is not None:

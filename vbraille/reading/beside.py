@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from vbraille.reading.bindings import Bound
     from vbraille.reading.cues import Cue
     from vbraille.reading.queries import Answer, Query
+    from vbraille.render import BrailleStyle
+    from vbraille.translate.source import Source
 
 
 class SeekerLike(Protocol):
@@ -60,7 +62,7 @@ class KeptLike(Protocol):
         """Give all bookmarks, by their place."""
         ...
 
-    def mark(self, name: str, character: int, text: str) -> None:
+    def set_bookmark(self, bookmark: Any) -> None:
         """Set a bookmark; one with the same name is moved."""
         ...
 
@@ -68,22 +70,60 @@ class KeptLike(Protocol):
         """Delete a bookmark."""
         ...
 
-    def keep(self, character: int) -> None:
-        """Keep the place at which reading goes on another time."""
+    def keep_at(
+        self,
+        source: Source,
+        character: int,
+        *,
+        line: int | None = None,
+        width: int = 0,
+        table: str = "",
+        page: str = "",
+    ) -> None:
+        """Keep the place at which reading goes on another time.
+
+        Parameters
+        ----------
+        source
+            The book.
+        character
+            Place of the source.
+        line
+            Number of the line, in lines of a width by a table; None if nobody counted.
+        width, table
+            Width in cells, and name of the table.
+        page
+            Number of the page of print; empty if there is none.
+        """
         ...
 
 
 class ScrollLike(Protocol):
     """Brings the next line after a time that the reader chooses."""
 
-    on: bool
-
-    def faster(self) -> object:
-        """Have lines come sooner."""
+    @property
+    def on(self) -> bool:
+        """Whether lines come by time."""
         ...
 
-    def slower(self) -> object:
-        """Have lines come later."""
+    @on.setter
+    def on(self, on: bool) -> None: ...
+
+    @property
+    def sentence(self) -> str:
+        """Sentence that says the speed."""
+        ...
+
+    def begin(self, now_s: float) -> None:
+        """Note that a line has come under the hand."""
+        ...
+
+    def faster(self) -> str:
+        """Have lines come sooner; give words for the speed."""
+        ...
+
+    def slower(self) -> str:
+        """Have lines come later; give words for the speed."""
         ...
 
     def due(self, line_cells: int, now_s: float) -> bool:
@@ -111,6 +151,8 @@ class Beside:
         What brings lines by time when the reader asks for that; None if nothing does.
     cue
         Function that is called with short signals, beside the sentences.
+    save_style
+        Function that saves how braille feels, and gives a sentence on that; None if nothing does.
     verbose
         Whether more is said, such as how far a search has come.
     """
@@ -120,4 +162,5 @@ class Beside:
     kept: KeptLike | None = None
     scroll: ScrollLike | None = None
     cue: Callable[[Cue], None] = _no_cue
+    save_style: Callable[[BrailleStyle], str] | None = None
     verbose: bool = False

@@ -70,10 +70,13 @@ class Bindings:
     buttons
         Names of commands, by the button of the device: "1" or "button 1". "knob 1" names the value
         of the tuning that a knob turns, such as "CONTRAST".
+    where
+        Function that tells where the settings have a value, by its table and its key.
     """
 
     keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     buttons: Mapping[str, str] = field(default_factory=dict)
+    where: Callable[[str, str], str] = lambda *_: "settings"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +130,7 @@ def bind(commands: tuple[Command, ...], bindings: Bindings, turned: tuple[str, .
     """
     by_name = {command.name: command for command in commands}
     for name in bindings.keys:
-        _check_name(name, by_name, "keys")
+        _check_name(name, by_name, bindings.where("keys", name))
     given = {
         name: tuple(_TYPED.get(key.lower(), key) for key in keys)
         for name, keys in bindings.keys.items()
@@ -172,25 +175,26 @@ def _buttons(
     buttons: dict[int, Command] = {}
     knobs: dict[int, str] = {}
     for key, name in bindings.buttons.items():
+        where = bindings.where("buttons", key)
         found = _DEVICE_KEY.fullmatch(key.strip().lower())
         if found is None:
             raise InputError(
-                f'settings: {key!r} is no button; write a number such as "1", or "knob 1"'
+                f'{where}: {key!r} is no button; write a number such as "1", or "knob 1"'
             )
         if found[1] == "knob":
-            _check_name(name, turned, "knobs")
+            _check_name(name, turned, where)
             knobs[int(found[2])] = name
         else:
-            _check_name(name, by_name, "buttons")
+            _check_name(name, by_name, where)
             buttons[int(found[2])] = by_name[name]
     return buttons, knobs
 
 
-def _check_name(name: str, names: Mapping[str, Command] | tuple[str, ...], what: str) -> None:
+def _check_name(name: str, names: Mapping[str, Command] | tuple[str, ...], where: str) -> None:
     if name not in names:
-        kind = "value of the tuning" if what == "knobs" else "command"
+        kind = "value of the tuning" if isinstance(names, tuple) else "command"
         hint = f"; {nearest(name.upper(), names)}" if names else ""
-        raise InputError(f"settings: {what}: there is no {kind} {name!r}{hint}")
+        raise InputError(f"{where}: there is no {kind} {name!r}{hint}")
 
 
 def spoken(key: str) -> str:

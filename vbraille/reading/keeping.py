@@ -3,42 +3,59 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from vbraille.reading.whereabouts import first_character, is_counted, page_label
 
 if TYPE_CHECKING:
+    from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import BookmarkLike, KeptLike
+    from vbraille.translate.source import Source
 
 _EVERY_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Mark:
-    """A place with a name."""
+class Marked:
+    """A place with a name.
+
+    Parameters
+    ----------
+    name
+        Name that the reader gave it.
+    character
+        Place of the source.
+    text
+        A few words of the text there.
+    share
+        About how much of the book stands before it, 0 to 1.
+    """
 
     name: str
     character: int
     text: str
+    share: float = 0.0
 
 
 class Unkept:
     """What is kept of a book no longer than a reading lasts."""
 
     def __init__(self) -> None:
-        self._marks: dict[str, _Mark] = {}
+        self._marks: dict[str, Any] = {}
 
     def bookmarks(self) -> list[BookmarkLike]:
         """Give all bookmarks, by their place."""
         return sorted(self._marks.values(), key=lambda mark: mark.character)
 
-    def mark(self, name: str, character: int, text: str) -> None:
+    def set_bookmark(self, bookmark: Any) -> None:
         """Set a bookmark."""
-        self._marks[name] = _Mark(name, character, text)
+        self._marks[bookmark.name] = bookmark
 
     def delete_bookmark(self, name: str) -> None:
         """Delete a bookmark."""
         self._marks.pop(name, None)
 
-    def keep(self, character: int) -> None:
+    def keep_at(self, source: Source, character: int, **place: Any) -> None:
         """Keep no place: there is no other time."""
 
 
@@ -53,16 +70,16 @@ class Keeping:
 
     def __init__(self, kept: KeptLike | None) -> None:
         self.kept: KeptLike = Unkept() if kept is None else kept
-        self._character: int | None = None  # one that is not kept yet
+        self._place: tuple[Layout, Line] | None = None  # one that is not kept yet
         self._last_s: float | None = None
 
-    def moved(self, character: int) -> None:
-        """Take a place that is to be kept."""
-        self._character = character
+    def moved(self, layout: Layout, line: Line) -> None:
+        """Take a line at which reading is to go on."""
+        self._place = layout, line
 
     def step(self, now_s: float) -> None:
         """Keep the place if it is time; called again and again."""
-        if self._character is None:
+        if self._place is None:
             return
         if self._last_s is None or now_s - self._last_s >= _EVERY_S:
             self._last_s = now_s
@@ -70,6 +87,15 @@ class Keeping:
 
     def leave(self) -> None:
         """Keep the place now."""
-        if self._character is not None:
-            self.kept.keep(self._character)
-            self._character = None
+        if self._place is None:
+            return
+        (layout, line), self._place = self._place, None
+        source, table = layout.book.source, layout.book.table
+        self.kept.keep_at(
+            source,
+            first_character(line),
+            line=line.number if is_counted(layout) else None,
+            width=layout.width,
+            table="" if table is None else table.name,
+            page=page_label(source, line),
+        )

@@ -102,6 +102,7 @@ class LineReader:
         self._stay = stay
         self._finished = False  # whether the end was said, until a key brings another line
         self._prefetched = False
+        self._scrolled = 0  # how many times something was shown when scrolling began last
         self._echoed = False  # whether the line was said when it was put under the hand last
 
     @property
@@ -189,6 +190,9 @@ class LineReader:
     def attend(self, now_s: float, *, resting: bool) -> None:
         """Do what is done by time: scroll, where the reader asked for that."""
         scroll, window = self.scroll, self.window
+        if scroll is not None and self._scrolled != self.under.shown:
+            self._scrolled = self.under.shown
+            scroll.begin(now_s)
         if scroll is None or not scroll.on or resting or self._finished or window is None:
             return
         if scroll.due(len(window), now_s):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.nearby import EVERYTHING, look
-from vbraille.reading.queries import Failed, Found, NotFound, Searched
+from vbraille.reading.queries import Counted, Failed, Found, NotFound, Searched
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,9 +26,18 @@ class Looking:
         Function that is called with each thing to be said.
     verbose
         Whether to say how far the search has come.
+    counted
+        Function that is called when lines have been counted.
     """
 
-    def __init__(self, say: Callable[[str], None], *, verbose: bool = False) -> None:
+    def __init__(
+        self,
+        say: Callable[[str], None],
+        *,
+        verbose: bool = False,
+        counted: Callable[[Counted], None] = lambda _: None,
+    ) -> None:
+        self._counted = counted
         self._verbose = verbose
         self._say = say
         self._then: Callable[[int | None], None] | None = None
@@ -79,9 +88,11 @@ class Looking:
             index = getattr(answer, "index", None)
             if index is not None:
                 source.adopt(index)
-            if self._then is None:
+            if isinstance(answer, Counted):
+                self._counted(answer)
+            elif self._then is None:
                 continue
-            if isinstance(answer, Searched):
+            elif isinstance(answer, Searched):
                 if self._verbose and now_s - self._said_s >= _PROGRESS_S:
                     self._said_s = now_s
                     self._say(f"searching: {100 * answer.share:.0f} %")

@@ -33,10 +33,13 @@ class Reach:
         Largest number of blocks.
     seconds
         Longest time.
+    least
+        Number of blocks that are looked at whatever time that takes.
     """
 
     blocks: float = 2_000
     seconds: float = 0.010
+    least: int = 100
 
 
 EVERYTHING = Reach(float("inf"), float("inf"))
@@ -85,7 +88,7 @@ def blocks_from(
     end_s = time.perf_counter() + reach.seconds
     seen = 0
     while number >= 0 and (block := source.block(number)) is not None:
-        if seen >= reach.blocks or (seen and time.perf_counter() > end_s):
+        if seen >= reach.blocks or (seen >= reach.least and time.perf_counter() > end_s):
             raise _OutOfReachError(number)
         yield number, block
         seen += 1

@@ -37,11 +37,12 @@ class FindKind(msgspec.Struct, frozen=True, tag="kind"):
     Parameters
     ----------
     kind
-        Value of a `BlockKind`.
+        Value of a `BlockKind`, or "link" for a block with a link in it.
     block
         Number of the block after which, or before which, it is looked for.
     backward
-        Whether the nearest block before is wanted.
+        Whether the nearest block before is wanted; if it is part of a list or a table of which
+        no row was wanted, the first of that.
     level
         Greatest level of a heading that is wanted; 0 for any.
     group
@@ -111,10 +112,14 @@ class Counted(msgspec.Struct, frozen=True, tag="counted"):
         Number of lines.
     index
         Where the blocks up to there are.
+    width, block
+        Width and block that were asked for.
     """
 
     lines: int
     index: Index
+    width: int = 0
+    block: int = 0
 
 
 class Failed(msgspec.Struct, frozen=True, tag="failed"):
@@ -123,4 +128,10 @@ class Failed(msgspec.Struct, frozen=True, tag="failed"):
     sentence: str
 
 
-Answer = Found | NotFound | Searched | Counted | Failed
+class Indexed(msgspec.Struct, frozen=True, tag="indexed"):
+    """Where all blocks are: nobody asked, and it came of itself once the whole source was read."""
+
+    index: Index
+
+
+Answer = Found | NotFound | Searched | Counted | Failed | Indexed

@@ -10,6 +10,7 @@ from vbraille.reading.keeping import Keeping
 from vbraille.reading.linereader import LineReader
 from vbraille.reading.looking import Looking
 from vbraille.reading.prompt import Prompt
+from vbraille.reading.queries import CountLines
 from vbraille.reading.window import Window
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Layout
-    from vbraille.reading.beside import KeptLike
-    from vbraille.reading.queries import Query
+    from vbraille.reading.beside import KeptLike, SeekerLike
+    from vbraille.reading.queries import Counted, Query
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
 
@@ -73,14 +74,18 @@ class Reader(LineReader):
         super().__init__(layout, engine, model=model, say=say, beside=beside, **how)
         beside = Beside() if beside is None else beside
         self.seeker = beside.seeker
-        self.looking = Looking(say, verbose=beside.verbose)
+        self.looking = Looking(say, verbose=beside.verbose, counted=self._take_count)
         self.keeping = Keeping(beside.kept)
+        self.save_style = beside.save_style
+        self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         self.context = Context.READING
         self.prompt: Prompt | None = None
         self.fold_accents = self.backward = False
         self.sought = ""
         # Whether lines are as wide as somebody says, and not as wide as the hand can go.
         self._fixed = layout.width != self.under.width
+        self._book = layout.book  # which is the one that the other process knows
+        self._counting = False
         self._at = at
         self._trail: list[int] = []
         self._hit: int | None = None
@@ -103,13 +108,27 @@ class Reader(LineReader):
         """Do what is done by time: take what was found, keep the place, scroll."""
         if self.seeker is not None:
             self.looking.poll(self.seeker, self.layout.book.source, now_s)
+            self._count(self.seeker)
         self.keeping.step(now_s)
         super().attend(now_s, resting=resting)
+
+    def _count(self, seeker: SeekerLike) -> None:
+        """Have the lines before this one counted, where their number is not known."""
+        layout, line = self.layout, self.line
+        if self._counting or layout.counted or line is None or layout.book is not self._book:
+            return
+        self._counting = True
+        seeker.ask(CountLines(layout.width, layout.block_of(line)))
+
+    def _take_count(self, counted: Counted) -> None:
+        self._counting = False
+        if counted.width == self.layout.width and self.layout.book is self._book:
+            self.layout.count_from(counted.block, counted.lines)
 
     def put(self, window: Window) -> None:
         """Put a part of a line under the hand."""
         super().put(window)
-        self.keeping.moved(self.character_of(None))
+        self.keeping.moved(self.layout, window.line)
 
     def jump(self, character: int, *, back: bool = True) -> bool:
         """Put the line of a place of the source under the hand; False if it is none of those.

@@ -21,7 +21,7 @@ _LEAST_SHARE = 1e-4  # of a book, from which the rest is estimated
 
 def is_counted(layout: Layout) -> bool:
     """Whether line numbers are counted from the beginning of the book."""
-    return getattr(layout, "counted", True)
+    return layout.counted
 
 
 def first_character(line: Line) -> int:
@@ -55,6 +55,12 @@ def has_pages(source: Source, line: Line) -> bool:
     return any(block.kind is BlockKind.PAGE for _, block in blocks)
 
 
+def page_label(source: Source, line: Line) -> str:
+    """Number of the page of print that a line is on, as the book writes it; empty if none."""
+    page = before(source, line, BlockKind.PAGE)
+    return "" if page is None else str(page.text).strip()
+
+
 def percent(layout: Layout, line: Line) -> int:
     """About how many hundredths of the book stand before a line."""
     return int(100 * layout.progress(line))
@@ -69,8 +75,7 @@ def place_sentence(layout: Layout, line: Line) -> str:
     """Where a line is: its number, or its share and page while the lines are not counted."""
     if is_counted(layout):
         return f"line: {line.number}"
-    page = before(layout.book.source, line, BlockKind.PAGE)
-    label = _label(page)
+    label = page_label(layout.book.source, line)
     return f"place: {percent(layout, line)} %" + (f", page {label}" if label else "")
 
 
@@ -80,7 +85,7 @@ def whereabouts(layout: Layout, line: Line) -> Iterator[str]:
     counted = is_counted(layout)
     if counted:
         yield f"line: {line.number}"
-    label = _label(before(source, line, BlockKind.PAGE))
+    label = page_label(source, line)
     if label:
         yield f"page: {label}"
     elif counted and not has_pages(source, line):
@@ -112,7 +117,3 @@ def words_left(source: Source, line: Line) -> tuple[int, bool]:
     share = max(after_it - before_it, _LEAST_SHARE)
     estimate = int(words / share * (1 - before_it))
     return round(estimate, 2 - max(len(str(estimate)), 2)), False
-
-
-def _label(page: Block | None) -> str:
-    return "" if page is None else str(page.text).strip()

@@ -8,11 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vbraille.errors import InputError
-from vbraille.wording import nearest
-
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Mapping
 
     from vbraille.render import Model
 
@@ -63,30 +60,6 @@ class Settings:
     def tuning(self, profile: str, model: Model) -> Values:
         """Values of a profile for a display; none if it has none."""
         return dict(self.profiles.get(profile, {}).get(display_name(model), {}))
-
-    def check_names(self, table: str, known: Collection[str]) -> None:
-        """Check that a table of keys or buttons names only what there is.
-
-        Parameters
-        ----------
-        table
-            "keys", whose keys are names, or "buttons", whose values are.
-        known
-            All names that there are.
-
-        Raises
-        ------
-        InputError
-            If a name is not known; the message says the line and the nearest name.
-        """
-        named = self.keys if table == "keys" else self.buttons
-        for key, value in named.items():
-            name = key if table == "keys" else str(value)
-            if name not in known:
-                raise InputError(
-                    f"{self.where(table, key)}: [{table}] there is no command {name!r}; "
-                    f"{nearest(name.upper(), known)}"
-                )
 
 
 def settings_path(given: str | None = None) -> Path:

@@ -71,6 +71,11 @@ class Book:
             self._recent[number] = found
         return found
 
+    def continues(self, number: int) -> bool:
+        """Whether a block goes on where the one before broke off; False past the end."""
+        block = self.source.block(number)
+        return block is not None and block.continues
+
     def notes(self) -> Iterator[str]:
         """Notes on the source and the table that are due now; each is given once."""
         tables = () if self.translator is None else self.translator.tables

@@ -56,6 +56,12 @@ class Translator:
         self._named = {table.name: table}
 
     @property
+    def how(self) -> tuple[str, str, tuple[str, ...], int | None, bool]:
+        """What another process needs to make a translator like this one."""
+        own = tuple(sorted(self._own))
+        return self.table.name, str(self.table.how), own, self._grade, self._switch
+
+    @property
     def tables(self) -> tuple[BrailleTable, ...]:
         """Tables that were used so far, the book's own first."""
         return tuple(self._named.values())
@@ -116,9 +122,8 @@ class Translator:
     def _name_for(self, language: str) -> str:
         """Name of the table for a language."""
         own = self._own
-        if not own:
-            info = self.table.info
-            own = self._own = {info.language.lower()} if info is not None else set()
+        if not own and (info := self.table.info) is not None:
+            own = {info.language.lower()}
         if language.lower() in own:
             return self.table.name
         try:

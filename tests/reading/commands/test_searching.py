@@ -8,7 +8,15 @@ from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.nearby import EVERYTHING, look
-from vbraille.reading.queries import Failed, FindText, Found, NotFound, Searched
+from vbraille.reading.queries import (
+    Counted,
+    CountLines,
+    Failed,
+    FindText,
+    Found,
+    NotFound,
+    Searched,
+)
 from vbraille.translate import Document
 
 TEXT = "The Café is here.\n\nno\n\nA cafe, two\ncafés, and THE\nstreet Straße.\n"
@@ -96,7 +104,12 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert bench.press("n") == ["line: 2"]
     seeker.answers = [Searched(0.5), Found(text.index("needle"), document.index())]
     bench.run(0.05)
-    assert bench.said[-1] == "line: 5001"
+    assert bench.said[-1] == "place: 99 %"  # nobody has counted the lines before
+    count = seeker.asked[-1]
+    assert count == CountLines(20, 5_000)
+    seeker.answers = [Counted(5_000, document.index(), count.width, count.block)]
+    bench.run(0.05)
+    assert bench.press("p") == ["line: 5000"]
     assert bench.press("b") == ["line: 2"]
     assert not bench.reader.looking.busy
 
@@ -133,7 +146,7 @@ def test_escape_gives_a_search_up_and_a_failure_is_said():
 
 def test_without_such_a_process_the_reader_looks_to_the_end_itself():
     bench, *_ = far(None)
-    assert bench.press("/needle\n")[-1] == "line: 5001"
+    assert bench.press("/needle\n")[-1] == "place: 99 %"
     assert bench.press("/nowhere\n")[-1] == "not found after this: nowhere"
 
 

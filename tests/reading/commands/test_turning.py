@@ -13,7 +13,6 @@ from tests.tiers import examples
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.commands.turning import (
     change_mapping,
-    keep_by,
     save_settings,
     turn,
     undo_turn,
@@ -114,6 +113,7 @@ class OneRow:
         self.style, self.engine = VBD.style, SimpleNamespace(display=VBD.display)
         self.said, self.cues = [], []
         self.say, self.cue = self.said.append, self.cues.append
+        self.styles_before = []
 
     def tune(self, **turned):
         self.style = self.style.replace(**turned)
@@ -151,7 +151,7 @@ def test_save_says_what_was_saved():
     one = bench()
     assert does(one, save_settings) == ["saved: nothing, since no settings file is in use"]
     kept = []
-    keep_by(one.reader, lambda style: kept.append(style) or "saved: profile evening")
+    one.reader.save_style = lambda style: kept.append(style) or "saved: profile evening"
     assert does(one, save_settings) == ["saved: profile evening"]
     assert kept == [one.reader.style]
 

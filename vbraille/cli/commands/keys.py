@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from vbraille.cli.binding import bind_settings
-from vbraille.reading.bindings import spoken
+from vbraille.reading.bindings import Bindings, spoken
+from vbraille.reading.commands.table import bound_by
 from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each command: its name, its keys, and what it does."""
-    bound = bind_settings(load_settings(arguments.settings))
+    settings = load_settings(arguments.settings)
+    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
     if arguments.json:
         print(json.dumps(_rows(bound), ensure_ascii=False, indent=2))
         return 0

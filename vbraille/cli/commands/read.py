@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.binding import bind_settings
 from vbraille.cli.build import (
     build_book,
     build_lengths,
@@ -26,12 +25,15 @@ from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
-from vbraille.reading.commands.table import press
-from vbraille.reading.commands.turning import keep_by
+from vbraille.reading.bindings import Bindings
+from vbraille.reading.commands.table import bound_by, press
 from vbraille.reading.context import Context
+from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.echo import Echo
+from vbraille.reading.hearing import Hearing, language_of
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
+from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
 from vbraille.settings.saving import save_profile
@@ -59,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
-    bound = bind_settings(settings)
+    bound = bound_by(Bindings(settings.keys, settings.buttons, settings.where))
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
@@ -73,11 +75,17 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
+        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
+        echo = _echo(arguments.echo)
+        hearing = listening.enter_context(Hearing(say_line, cues, echo=echo))
+        say = hearing.say
         device = OpenDevice(
-            arguments.device, wanted, hand=hand, seed=seed, say=say_line, attended=keyboard.attached
+            arguments.device, wanted, hand=hand, seed=seed, say=say, attended=keyboard.attached
         )
         try:
             book = build_book(arguments)
+            if arguments.speech:
+                hearing.speak(language_of(book, arguments.language))
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
@@ -96,14 +104,18 @@ def run(arguments: argparse.Namespace) -> int:
                 first=page.first,
                 last=page.last,
                 advance=arguments.advance == "return",
-                echo=_echo(arguments.echo),
-                beside=Beside(bound=bound, verbose=arguments.verbose),
+                echo=echo,
+                beside=Beside(
+                    bound=bound,
+                    scroll=Scroll(),
+                    cue=hearing.cue,
+                    save_style=lambda style: save_profile(
+                        settings.path, profile, replace(model, style=style)
+                    ),
+                    verbose=arguments.verbose,
+                ),
             )
-            keep_by(
-                device.reader,
-                lambda style: save_profile(settings.path, profile, replace(model, style=style)),
-            )
-            _Reading(page, device, keyboard, suspension).run()
+            _Reading(page, device, keyboard, suspension, hearing).run()
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
@@ -119,12 +131,18 @@ class _Reading:
     """One reading, with its device and its keyboard."""
 
     def __init__(
-        self, page: Page, device: OpenDevice, keyboard: Keyboard, suspension: Suspension
+        self,
+        page: Page,
+        device: OpenDevice,
+        keyboard: Keyboard,
+        suspension: Suspension,
+        hearing: Hearing,
     ) -> None:
         self._page = page
         self._device = device
         self._keyboard = keyboard
         self._suspension = suspension
+        self._hearing = hearing
 
     def run(self) -> None:
         """Read to the end."""
@@ -137,7 +155,7 @@ class _Reading:
         device = self._device
         self._say_notes()
         if self._keyboard.attached:
-            say_line(f"{device.reader.key('HELP', 'h')} says the keys")
+            self._hearing.say(f"{device.reader.key('HELP', 'h')} says the keys")
         while not device.done:
             for key in self._pressed():
                 self._press(key)
@@ -149,6 +167,7 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
+            self._hearing.see(device.line)
             if device.reader.layout is self._page.layout:
                 self._page.see(device.reader.line_number)
             self._say_notes()
@@ -161,7 +180,7 @@ class _Reading:
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:
             raise InputError("the device must be told where its left stop is; read at a terminal")
-        say_line(_PLACES.get(self._device.placing, "place: known"))
+        self._hearing.say(_PLACES.get(self._device.placing, "place: known"))
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""
@@ -176,12 +195,12 @@ class _Reading:
         """Stop, with the array at rest, until the shell says to go on."""
         device = self._device
         paused, device.paused = device.paused, True
-        say_line("stopped: the array rests; fg goes on")
+        self._hearing.say("stopped: the array rests; fg goes on")
         self._keyboard.release()
         self._suspension.stop()
         self._keyboard.take()
         device.paused = paused
-        say_line("paused" if paused else "reading")
+        self._hearing.say("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
         placing = self._device.placing is Placing.STOP
@@ -202,7 +221,7 @@ class _Reading:
         """
         if not self._keyboard.attached:
             raise fault
-        say_line(f"fault: {fault}; space begins again, q stops")
+        self._hearing.say(f"fault: {fault}; space begins again, q stops")
         while True:
             keys = self._pressed()
             if "q" in keys:
@@ -211,9 +230,9 @@ class _Reading:
             if " " in keys:
                 break
             if keys:
-                say_line("fault: nothing drives the device; space begins again, q stops")
+                self._hearing.say("fault: nothing drives the device; space begins again, q stops")
         self._device.start_again()
-        say_line("reading")
+        self._hearing.say("reading")
 
 
 def _echo(chosen: str | None) -> Echo:

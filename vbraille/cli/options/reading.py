@@ -91,6 +91,18 @@ def _reading(parser: ArgumentParser) -> None:
         "or both (default: none at a terminal, otherwise both).",
     )
     parser.add_argument(
+        "--speech",
+        action="store_true",
+        help="Speak lines, settings and all else that is said, through Speech Dispatcher.",
+    )
+    parser.add_argument(
+        "--cues",
+        choices=("sound", "bell", "none"),
+        help="Signal the end of a line or page, a limit, and what is not found: by tones, by the "
+        "terminal's bell, or not (default: tones at a terminal, the bell through SSH, otherwise "
+        "none).",
+    )
+    parser.add_argument(
         "--cells",
         type=whole,
         metavar="N",
@@ -104,6 +116,20 @@ def _reading(parser: ArgumentParser) -> None:
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
     _leave_to_settings(parser)
+
+
+def books(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille books``."""
+    parser.add_argument(
+        "--forget",
+        type=whole,
+        metavar="N",
+        help="Delete all that is kept of the book with this number in the list; the book's file "
+        "stays (default: nothing is deleted).",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="Print the list as JSON, for another program."
+    )
 
 
 def keys(parser: ArgumentParser) -> None:
@@ -204,6 +230,13 @@ def simulate(parser: ArgumentParser) -> None:
     )
     parser.add_argument(
         "--travel", type=number, metavar="MM", help="Let the carriage go so far (default: 300 mm)."
+    )
+    parser.add_argument(
+        "--press",
+        default="",
+        metavar="N@TIME,…",
+        help="Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold "
+        "it for a while, as in 1@2.5s-4s (default: no button).",
     )
     for name, text in (
         ("drop", "Lose this share of the messages, both ways"),

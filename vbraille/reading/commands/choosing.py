@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate import Book, BrailleTable, Undefined, find_table
+from vbraille.reading.cues import Cue
+from vbraille.translate import Book, BrailleTable, find_table
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def scroll(reader: Reader) -> None:
     scrolling = _scroll(reader)
     if scrolling is not None:
         scrolling.on = not scrolling.on
-        reader.say(f"scrolling: {'on' if scrolling.on else 'off'}")
+        reader.say(scrolling.sentence if scrolling.on else "autoscroll: off")
 
 
 def faster(reader: Reader) -> None:
@@ -67,13 +68,14 @@ def slower(reader: Reader) -> None:
 
 def _scroll(reader: Reader) -> ScrollLike | None:
     if reader.scroll is None:
-        reader.say("scrolling: there is none here")
+        reader.say("autoscroll: there is none here")
     return reader.scroll
 
 
-def _say_speed(reader: Reader, said: object) -> None:
-    if said:
-        reader.say(f"scrolling: {said}")
+def _say_speed(reader: Reader, words: str) -> None:
+    if "," in words:  # as fast or as slow as it can be
+        reader.cue(Cue.LIMIT)
+    reader.say(f"autoscroll: {words}")
 
 
 def _change(reader: Reader, language: str, grade: int | None = None) -> None:
@@ -85,8 +87,8 @@ def _change(reader: Reader, language: str, grade: int | None = None) -> None:
         if name == book.table.name:
             reader.say(f"table: {name}, as before")
             return
-        how = getattr(book.table, "how", Undefined.MARK)
-        reader.lay_out_again(book=Book(book.source, BrailleTable(name, how)))
+        other = BrailleTable(name, book.table.how)
+        reader.lay_out_again(book=Book(book.source, other, language=language, grade=grade))
     except InputError as error:
         reader.say(f"table: {spelled(str(error))}")
         return

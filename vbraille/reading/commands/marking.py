@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
+from vbraille.reading.keeping import Marked
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def _set(reader: Reader, name: str) -> None:
     place = reader.character
     text = str(line.block.text)[line.block.text.index(place) :]
     words = " ".join(text[:200].split()[:_WORDS])
-    reader.kept.mark(name, place, words)
+    share = reader.layout.progress(line)
+    reader.kept.set_bookmark(Marked(name, place, words, share))
     reader.say(f"bookmark {name}: set")
 
 

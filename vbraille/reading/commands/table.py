@@ -18,12 +18,7 @@ from vbraille.reading.commands import (
     structure,
 )
 from vbraille.reading.commands.structure import HEADING, LIST, TABLE, go_to, go_to_link
-from vbraille.reading.commands.turning import (
-    change_mapping,
-    save_settings,
-    turn,
-    undo_turn,
-)
+from vbraille.reading.commands.turning import change_mapping, save_settings, turn, undo_turn
 from vbraille.reading.context import Context
 from vbraille.reading.keys import PASTE
 
@@ -185,21 +180,19 @@ COMMANDS = (
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("TEXTURE_UP", ("t",), "more texture", turn("texture", 1)),
     Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -1)),
-    Command("TEXTURE_FINER", ("}",), "finer texture", turn("texture_cycles", 1)),
-    Command("TEXTURE_COARSER", ("{",), "coarser texture", turn("texture_cycles", -1)),
     Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", 1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -1)),
     Command("DOT_WIDTH_UP", ("d",), "wider dots", turn("dot_width_mm", 1)),
     Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", turn("dot_width_mm", -1)),
-    Command("DOT_SPACING_UP", ("]",), "dots of a cell farther apart", turn("dot_spacing_mm", 1)),
-    Command("DOT_SPACING_DOWN", ("[",), "dots of a cell closer", turn("dot_spacing_mm", -1)),
-    Command("CELL_GAP_UP", (")",), "cells farther apart", turn("cell_gap_mm", 1)),
-    Command("CELL_GAP_DOWN", ("(",), "cells closer together", turn("cell_gap_mm", -1)),
-    Command("LINE_PITCH_UP", ("j",), "lines of a page farther apart", turn("line_pitch_mm", 1)),
-    Command("LINE_PITCH_DOWN", ("J",), "lines of a page closer", turn("line_pitch_mm", -1)),
-    Command("MAPPING", ("G",), "the next way to show dots, or row of dots", change_mapping),
-    Command("UNDO", ("U",), "take the last of these turns back", undo_turn),
-    Command("SAVE", ("S",), "save how it feels now in the profile in use", save_settings),
+    Command("DOT_SPACING_UP", ("s",), "dots farther apart", turn("dot_spacing_mm", 1)),
+    Command("DOT_SPACING_DOWN", ("S",), "dots closer together", turn("dot_spacing_mm", -1)),
+    Command("CELL_GAP_UP", ("j",), "cells farther apart", turn("cell_gap_mm", 1)),
+    Command("CELL_GAP_DOWN", ("J",), "cells closer together", turn("cell_gap_mm", -1)),
+    Command("CYCLES_UP", ("}",), "finer texture", turn("texture_cycles", 1)),
+    Command("CYCLES_DOWN", ("{",), "coarser texture", turn("texture_cycles", -1)),
+    Command("MAPPING", ("#",), "another way to show dots by actuators", change_mapping),
+    Command("UNDO", ("U",), "take back the last change of how braille feels", undo_turn),
+    Command("PREFSAVE", ("P",), "save how braille feels", save_settings),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),
     Command(
         "LEARN",

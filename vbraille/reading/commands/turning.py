@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 from vbraille.errors import VbrailleError
 from vbraille.reading.cues import Cue
@@ -21,10 +20,6 @@ if TYPE_CHECKING:
 
     from vbraille.reading.reader import Reader
     from vbraille.render.braille.style import BrailleStyle
-
-# Beside each reader: the styles before each turn, the last one last, and what saves a style.
-_BEFORE: WeakKeyDictionary[Reader, list[BrailleStyle]] = WeakKeyDictionary()
-_KEEPERS: WeakKeyDictionary[Reader, Callable[[BrailleStyle], str]] = WeakKeyDictionary()
 
 
 def turn(name: str, steps: int) -> Callable[[Reader], None]:
@@ -65,11 +60,10 @@ def change_mapping(reader: Reader) -> None:
 
 def undo_turn(reader: Reader) -> None:
     """Take back the last turn that was not taken back yet."""
-    before = _BEFORE.get(reader)
-    if not before:
+    if not reader.styles_before:
         _stop(reader, "undo: nothing was turned")
         return
-    style = before.pop()
+    style = reader.styles_before.pop()
     said = _differences(reader.style, style)
     reader.tune(**_fields(style))
     reader.say(f"undo: {said}")
@@ -77,34 +71,20 @@ def undo_turn(reader: Reader) -> None:
 
 def save_settings(reader: Reader) -> None:
     """Save the present tuning in the profile in use."""
-    keep = _KEEPERS.get(reader)
-    if keep is None:
+    if reader.save_style is None:
         _stop(reader, "saved: nothing, since no settings file is in use")
     else:
         try:
-            reader.say(keep(reader.style))
+            reader.say(reader.save_style(reader.style))
         except VbrailleError as error:  # reading goes on
             reader.say(f"not saved: {spelled(str(error))}")
-
-
-def keep_by(reader: Reader, keep: Callable[[BrailleStyle], str]) -> None:
-    """Say how `save_settings` saves a reader's style.
-
-    Parameters
-    ----------
-    reader
-        The reader.
-    keep
-        Function that saves a style, and gives a sentence on that.
-    """
-    _KEEPERS[reader] = keep
 
 
 def _turn(reader: Reader, field: str, value: object, said: str) -> None:
     """Show another style, and say what has changed."""
     before = reader.style
     reader.tune(**{field: value})
-    _BEFORE.setdefault(reader, []).append(before)
+    reader.styles_before.append(before)
     reader.say(said)
 
 

@@ -268,6 +268,16 @@ class Document:
             digest.update(chunk)
         return digest.hexdigest()
 
+    def read(self, offset: int, size: int) -> bytes:
+        """Bytes of the file from an offset on, as they are; fewer at its end.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        """
+        return self._read(offset, size)
+
     def close(self) -> None:
         """Close the file; it is closed in any case when the document is forgotten."""
         self._stream.close()

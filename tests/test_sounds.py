@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vbraille.sessions.planning.conduct import Tone
-from vbraille.sessions.running.sounds import wave
+from vbraille.sounds import wave
 
 # A sound card that hears everything and says nothing.
 NULL_CARD = "pcm.!default { type null }\nctl.!default { type null }\n"
@@ -17,7 +17,7 @@ MISSING_CARD = "pcm.!default { type hw card 77 }\nctl.!default { type hw card 77
 PLAY = """
 import time
 from vbraille.sessions.planning.conduct import Tone
-from vbraille.sessions.running.sounds import Tones
+from vbraille.sounds import Tones
 tones = Tones()
 begun = time.monotonic()
 tones.play(Tone(880.0, 2000.0))
@@ -54,7 +54,7 @@ def test_a_tone_is_begun_and_not_waited_for(tmp_path):
 
 def test_without_an_output_it_is_one_error_and_nothing_on_stderr(tmp_path):
     script = """
-from vbraille.sessions.running.sounds import Tones
+from vbraille.sounds import Tones
 try:
     Tones()
 except OSError as error:

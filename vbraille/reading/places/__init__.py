@@ -1,0 +1,20 @@
+"""Places in books, kept from one reading to the next."""
+
+from vbraille.reading.places.book import KeptBook
+from vbraille.reading.places.reading import KeptReading
+from vbraille.reading.places.resuming import ResumedBook, last_book, open_kept
+from vbraille.reading.places.shelf import KeptPlaces
+from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, ListedBook
+
+__all__ = [
+    "BookOptions",
+    "Bookmark",
+    "KeptBook",
+    "KeptPlace",
+    "KeptPlaces",
+    "KeptReading",
+    "ListedBook",
+    "ResumedBook",
+    "last_book",
+    "open_kept",
+]

@@ -1,0 +1,54 @@
+"""How far a source is known, and knowing more of it a step at a time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.translate.source import Source
+
+
+def known_blocks(source: Source) -> int:
+    """Number of blocks that can be reached without reading up to them.
+
+    A row of an index begins with the number of the block at which its part of the source begins.
+    """
+    rows = source.index().rows
+    first = rows[-1][0] if rows and rows[-1] else 0
+    return first if isinstance(first, int) else 0
+
+
+def extend(source: Source) -> bool:
+    """Read the next part of a source that is not known yet; False if all of it is."""
+    if source.complete:
+        return False
+    source.block(known_blocks(source))
+    return True
+
+
+def extended(source: Source, share: float = 1.0) -> Iterator[float]:
+    """Read a source till so much of it is known, and tell after each step how much is, 0 to 1."""
+    while True:
+        known = share_known(source)
+        if known >= share or not extend(source):
+            return
+        yield known
+
+
+def share_known(source: Source) -> float:
+    """About how much of the source is known, 0 to 1."""
+    return 1.0 if source.complete else source.progress(max(known_blocks(source) - 1, 0))
+
+
+def block_at_share(source: Source, share: float) -> int:
+    """Number of the first block before which so much of the source stands, among the known ones."""
+    low, high = 0, max(known_blocks(source) - 1, 0)
+    while low < high:
+        middle = (low + high) // 2
+        if source.progress(middle) >= share:
+            high = middle
+        else:
+            low = middle + 1
+    return low
