@@ -66,16 +66,17 @@ def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
         )
 
 
-def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, settings):
-    said = call("read", text, *FAST, "--lines", "1", "--settings", settings)
-    assert said.code == 0
+def test_reading_goes_by_the_file_unless_an_option_says_otherwise(text, settings):
+    command = ("read", text, *FAST, "--lines", "1", "--settings", settings)
+    said = program.run(*command)
+    assert said.returncode == 0
     # Dots that stand closer leave room for more cells; grade and echo are the file's.
-    assert said.err == "line width: 28 cells, table en-ueb-g1.ctb\n"
-    assert said.out.startswith("line: 1\ntext: one two three\n")
+    assert said.stderr == "line width: 28 cells, table en-ueb-g1.ctb\n"
+    assert said.stdout.startswith("line: 1\ntext: one two three\n")
     options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
-    said = call("read", text, *FAST, "--lines", "1", "--settings", settings, *options)
-    assert said.err == "line width: 26 cells, table fr-bfu-comp6.utb\n"
-    assert not said.out.startswith("line")
+    said = program.run(*command, *options)
+    assert said.stderr == "line width: 26 cells, table fr-bfu-comp6.utb\n"
+    assert not said.stdout.startswith("line")
 
 
 def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
