@@ -19,12 +19,15 @@ from vbraille.translate import Book, BrailleTable, Document
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from vbraille.render.program import Program
+
 BAR_MS = 50.0
-TURNS = 60
+TURNS = 40
 KNOBS = ("contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm")
 _NS_PER_MS = 1_000_000
 _SETTLED_S = 0.25  # fades take 0.1 s
 _FELT = 0.002  # of the full swing
+_DIFFERENT = 0.05  # between two styles that can be told apart where the hand is
 
 
 def run() -> Iterator[Result]:
@@ -35,34 +38,43 @@ def run() -> Iterator[Result]:
         device.start(STRESS2)
         device.show(layout)
         for name in KNOBS:
-            latencies, jumps = _turns(device, name)
+            latencies = _turns(device, name)
             turns = len(latencies)
             p99 = float(np.percentile(latencies, 99))
             yield Result(
                 f"from a turn of {name} to the first frame that differs, {turns} turns, p99",
                 f"≤ {BAR_MS:g} ms",
-                f"{p99:.1f} ms (median {np.median(latencies):.1f}); largest step of an actuator "
-                f"beyond the hand's own {max(jumps):.3f} of the swing in 1 ms",
+                f"{p99:.1f} ms (median {np.median(latencies):.1f})",
                 met=p99 <= BAR_MS,
             )
 
 
-def _turns(device: OpenDevice, name: str) -> tuple[list[float], list[float]]:
-    """Milliseconds from each turn to the first frame of the other style, and largest steps."""
-    latencies, jumps = [], []
+def _turns(device: OpenDevice, name: str) -> list[float]:
+    """Milliseconds from each turn to the first frame of the other style."""
+    latencies = []
     handlers = turn(name, -1), turn(name, 1)
     for number in range(TURNS):
-        steady = _record(device, _SETTLED_S)
+        _record(device, _SETTLED_S)
         reader = device.reader
-        program = reader.style.render(reader.line.masks, device.display)
+        before = _program(device)
         pressed_ns = time.monotonic_ns()
         handlers[number % 2](reader)
         ticks = _record(device, _SETTLED_S)
-        first = _first_of_the_other(ticks, program.path(ticks["x_mm"]), pressed_ns)
+        frames, others = (made.path(ticks["x_mm"]) for made in (before, _program(device)))
+        after = ticks["time_ns"] >= pressed_ns
+        if not np.abs(others - frames)[after][:10].max(initial=0.0) > _DIFFERENT:
+            continue  # over a blank, both are alike
+        first = _first_of_the_other(ticks, frames, pressed_ns)
         if first is not None:
             latencies.append((int(ticks["time_ns"][first]) - pressed_ns) / _NS_PER_MS)
-            jumps.append(_step(ticks) - _step(steady))
-    return latencies, jumps
+    return latencies
+
+
+def _program(device: OpenDevice) -> Program:
+    """Program of what is under the hand."""
+    window, display = device.reader.window, device.display
+    program = device.reader.style.render(window.masks, display)
+    return program.with_anchor(display.span_mm / 2 + window.start_mm)
 
 
 def _record(device: OpenDevice, seconds: float) -> np.ndarray:
@@ -81,8 +93,3 @@ def _first_of_the_other(ticks: np.ndarray, before: np.ndarray, pressed_ns: int) 
     differs = np.abs(ticks["frame"] - before).max(axis=(1, 2)) > _FELT
     found = np.flatnonzero(differs & (ticks["time_ns"] >= pressed_ns))
     return int(found[0]) if found.size else None
-
-
-def _step(ticks: np.ndarray) -> float:
-    """Largest step of an actuator from one tick to the next."""
-    return float(np.abs(np.diff(ticks["frame"], axis=0)).max())

@@ -1,6 +1,10 @@
 """``vbraille settings``, and what a settings file does to reading."""
 
+import tomllib
+
 import pytest
+
+from tests.cli import program
 
 TEXT = """# mine
 [read]
@@ -62,16 +66,17 @@ def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
         )
 
 
-def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, settings):
-    said = call("read", text, *FAST, "--lines", "1", "--settings", settings)
-    assert said.code == 0
+def test_reading_goes_by_the_file_unless_an_option_says_otherwise(text, settings):
+    command = ("read", text, *FAST, "--lines", "1", "--settings", settings)
+    said = program.run(*command)
+    assert said.returncode == 0
     # Dots that stand closer leave room for more cells; grade and echo are the file's.
-    assert said.err == "line width: 28 cells, table en-ueb-g1.ctb\n"
-    assert said.out.startswith("line: 1\ntext: one two three\n")
+    assert said.stderr == "line width: 28 cells, table en-ueb-g1.ctb\n"
+    assert said.stdout.startswith("line: 1\ntext: one two three\n")
     options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
-    said = call("read", text, *FAST, "--lines", "1", "--settings", settings, *options)
-    assert said.err == "line width: 26 cells, table fr-bfu-comp6.utb\n"
-    assert not said.out.startswith("line")
+    said = program.run(*command, *options)
+    assert said.stderr == "line width: 26 cells, table fr-bfu-comp6.utb\n"
+    assert not said.stdout.startswith("line")
 
 
 def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, text, settings):
@@ -82,3 +87,24 @@ def test_a_page_takes_language_grade_and_table_and_braille_stays_braille(call, t
     assert (said.code, said.out.strip()) == (0, "ABC")
     said = call("page", braille, "--grade", "1")
     assert said.code == 2
+
+
+def test_a_turn_at_a_terminal_is_saved_and_undone(tmp_path, text, settings):
+    hand = tmp_path / "hand.csv"
+    hand.write_text("0,64.2\n0.1,64.2\n")
+    arguments = ("read", text, "--hand", f"recorded:{hand}", "--settings", settings)
+    with program.Terminal(*arguments) as terminal:
+        terminal.until("h says the keys\r\n")
+        for key, said in (
+            ("c", "contrast: 0.6"),
+            ("s", "dot spacing: 3.2 mm"),
+            ("U", "undo: dot spacing 3 mm"),
+            ("P", "saved: profile evening for the STReSS²"),
+        ):
+            terminal.type(key)
+            terminal.until(rf"(^|\n){said}\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+    saved = tomllib.loads(settings.read_text())["profile"]["evening"]["stress2"]
+    assert (saved["contrast"], saved["dot_spacing_mm"]) == (0.6, 3.0)
+    assert settings.read_text().startswith("# mine\n")

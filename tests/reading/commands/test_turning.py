@@ -113,6 +113,7 @@ class OneRow:
         self.style, self.engine = VBD.style, SimpleNamespace(display=VBD.display)
         self.said, self.cues, self.styles_before = [], [], []
         self.say, self.cue = self.said.append, self.cues.append
+        self.styles_before = []
 
     def tune(self, **turned):
         self.style = self.style.replace(**turned)

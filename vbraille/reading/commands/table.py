@@ -180,8 +180,6 @@ COMMANDS = (
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
     Command("TEXTURE_UP", ("t",), "more texture", turn("texture", 1)),
     Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -1)),
-    Command("TEXTURE_FINER", ("}",), "finer texture", turn("texture_cycles", 1)),
-    Command("TEXTURE_COARSER", ("{",), "coarser texture", turn("texture_cycles", -1)),
     Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", 1)),
     Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -1)),
     Command("DOT_WIDTH_UP", ("d",), "wider dots", turn("dot_width_mm", 1)),
