@@ -15,7 +15,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
-from vbraille.cli.settled import chosen_profile, settle
+from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing

@@ -5,8 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from vbraille.layout.texts import choose_table
-from vbraille.translate import Book, CellsSource, Undefined
-from vbraille.translate.documents.document import Document
+from vbraille.translate import Book, Undefined
+from vbraille.translate.opening import open_source
 from vbraille.translate.source import Index
 
 
@@ -30,8 +30,6 @@ class BookOpening(msgspec.Struct, frozen=True):
         Whether passages in other languages are translated by the tables of those languages.
     undefined
         What is written for characters that the table does not know.
-    in_cells
-        Whether the book is in braille, so that it has no table.
     index
         Index of the source, as far as it is known.
     """
@@ -48,7 +46,6 @@ class BookOpening(msgspec.Struct, frozen=True):
     grade: int | None = None
     switch: bool = True
     undefined: str = "mark"
-    in_cells: bool = False
     index: Index | None = None
 
 
@@ -62,13 +59,18 @@ def open_again(opening: BookOpening) -> Book:
     """
     # A path of its own gives the process a place of its own in the file.
     path = opening.file if opening.descriptor is None else f"/proc/self/fd/{opening.descriptor}"
-    keep_lines = opening.keep_lines or opening.in_cells
-    source = Document.open(path, opening.encoding, keep_lines=keep_lines)
+    source = open_source(
+        path,
+        encoding=opening.encoding,
+        keep_lines=opening.keep_lines,
+        brf_table=opening.brf_table,
+        form=opening.form,
+    )
     source.name = opening.name or opening.file
     if opening.index is not None:
         source.adopt(opening.index)
-    if opening.in_cells:
-        return Book(CellsSource(source))
+    if source.in_cells:
+        return Book(source)
     undefined = Undefined(opening.undefined)
     table = choose_table(opening.language, opening.grade, opening.table, undefined)
     return Book(
