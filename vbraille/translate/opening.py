@@ -22,6 +22,7 @@ _HAVE_ENCODINGS = (Form.TEXT, Form.MARKDOWN, Form.HTML, Form.BRF, Form.UNICODE_B
 def open_source(
     file: str,
     *,
+    name: str = "",
     encoding: str | None = None,
     keep_lines: bool = False,
     brf_table: str | None = None,
@@ -33,6 +34,8 @@ def open_source(
     ----------
     file
         Name of the file.
+    name
+        Name of the book in messages; empty for that of the file.
     encoding
         Text encoding that overrides what the bytes say, for forms that are text.
     keep_lines
@@ -47,7 +50,9 @@ def open_source(
     InputError
         If there is no such file or form, the book cannot be read, or an option is not for it.
     """
-    return _open(open_file(file), str(file), encoding, brf_table, form, keep_lines=keep_lines)
+    return _open(
+        open_file(file), name or str(file), encoding, brf_table, form, keep_lines=keep_lines
+    )
 
 
 def open_stream(

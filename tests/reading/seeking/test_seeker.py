@@ -101,7 +101,7 @@ def test_a_text_that_has_no_name(book):
 def test_lines_of_a_braille_file(tmp_path):
     path = tmp_path / "book.brf"
     path.write_text(",! FIR/ L9E\n,! SECOND\n,! ?IRD\n")
-    with Seeker(BookOpening(str(path), in_cells=True)) as seeker:
+    with Seeker(BookOpening(str(path), form="brf")) as seeker:
         seeker.ask(CountLines(6, 2))
         *_, counted = answers(seeker, until=Counted | Failed)
     document = Document.open(path, keep_lines=True)

@@ -61,12 +61,12 @@ def open_again(opening: BookOpening) -> Book:
     path = opening.file if opening.descriptor is None else f"/proc/self/fd/{opening.descriptor}"
     source = open_source(
         path,
+        name=opening.name or opening.file,
         encoding=opening.encoding,
         keep_lines=opening.keep_lines,
         brf_table=opening.brf_table,
         form=opening.form,
     )
-    source.name = opening.name or opening.file
     if opening.index is not None:
         source.adopt(opening.index)
     if source.in_cells:
