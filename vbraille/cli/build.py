@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.layout.pages import Line
+    from vbraille.reading.places import KeptPlace
     from vbraille.translate import Source
 
 
@@ -203,11 +204,16 @@ def _open(arguments: argparse.Namespace) -> Source:
 
 
 def lay_out(
-    arguments: argparse.Namespace, book: Book, model: Model, width: int | None = None
+    arguments: argparse.Namespace,
+    book: Book,
+    model: Model,
+    width: int | None = None,
+    place: KeptPlace | None = None,
 ) -> Page:
     """Page of a text for a display and a style, whose width is said on stderr.
 
-    With a `width`, in cells, lines are so long whatever the display.
+    With a `width`, in cells, lines are so long whatever the display. With a `place` they are laid
+    out from there.
 
     Raises
     ------
@@ -216,8 +222,8 @@ def lay_out(
     """
     width = width or cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
-    layout = Layout(book, width)
-    if layout.line(first) is None:
+    layout = Layout(book, width) if place is None else _layout_at(book, width, place)
+    if place is None and layout.line(first) is None:
         lines = layout.count()
         name = book.source.name
         if not lines:
@@ -229,6 +235,16 @@ def lay_out(
     say_line(f"line width: {cells}, {written}", aside=True)
     unknown = None if table is None else Unknown(table, Undefined(arguments.undefined))
     return Page(layout, model, first, last, unknown)
+
+
+def _layout_at(book: Book, width: int, place: KeptPlace) -> Layout:
+    """Lines of a book from a place on, or from the beginning if there is no such place any more."""
+    table = "" if book.table is None else book.table.name
+    before = place.lines_before_for(width, table)
+    try:
+        return Layout(book, width, start=place.block, lines_before=before)
+    except ValueError:
+        return Layout(book, width)
 
 
 def _eight_dots(table: BrailleTable) -> str:

@@ -160,6 +160,7 @@ class Host:
         self._paused = self._ready = False
         self._heard = b""
         spawned, self._spawned = self._spawned or spawn(self._pass_fds), None
+        spawned.taken = True
         self._process, self._descriptor = spawned.process, spawned.descriptor
         _log.info("started process %d to drive %s", self._process.pid, self._device)
         os.set_blocking(self._answers(), False)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Spawned:
     """A host process that waits to be told what to drive.
 
@@ -26,13 +26,22 @@ class Spawned:
         The process, which is told by its standard input.
     descriptor
         Descriptor of the memory that it is to share, which is empty as yet.
+
+    Attributes
+    ----------
+    taken : bool
+        Whether a host has it, which then ends it.
     """
 
     process: subprocess.Popen[bytes]
     descriptor: int
+    taken: bool = False
 
     def end(self) -> None:
-        """End the process, which was told nothing; once a host has it, that host ends it."""
+        """End the process if it was told nothing; further calls do nothing."""
+        if self.taken:
+            return
+        self.taken = True
         for pipe in (self.process.stdin, self.process.stdout):
             assert pipe is not None
             pipe.close()

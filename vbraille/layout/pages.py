@@ -148,6 +148,13 @@ class Layout:
         assert found is not None, "a line of this layout"
         return found[0].block_of(found[1])
 
+    def lines_before(self, line: Line) -> int | None:
+        """Number of lines before the block that a line is of; None if they were not counted."""
+        found = self._of_number(line.number)
+        assert found is not None, "a line of this layout"
+        run, number = found
+        return run.before(run.block_of(number)) if run.counted else None
+
     def progress(self, line: Line) -> float:
         """About how much of the book stands before a line, 0 to 1."""
         return self.book.source.progress(self.block_of(line))

@@ -76,6 +76,7 @@ class KeptLike(Protocol):
         character: int,
         *,
         line: int | None = None,
+        lines_before: int | None = None,
         width: int = 0,
         table: str = "",
         page: str = "",
@@ -88,8 +89,9 @@ class KeptLike(Protocol):
             The book.
         character
             Place of the source.
-        line
-            Number of the line, in lines of a width by a table; None if nobody counted.
+        line, lines_before
+            Number of the line, and that of lines before its block, in lines of a width by a table;
+            None if nobody counted.
         width, table
             Width in cells, and name of the table.
         page

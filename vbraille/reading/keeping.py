@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vbraille.reading.whereabouts import first_character, is_counted, page_label
@@ -13,28 +12,6 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _EVERY_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Marked:
-    """A place with a name.
-
-    Parameters
-    ----------
-    name
-        Name that the reader gave it.
-    character
-        Place of the source.
-    text
-        A few words of the text there.
-    share
-        About how much of the book stands before it, 0 to 1.
-    """
-
-    name: str
-    character: int
-    text: str
-    share: float = 0.0
 
 
 class Unkept:
@@ -85,17 +62,25 @@ class Keeping:
             self._last_s = now_s
             self.leave()
 
+    def start_over(self, layout: Layout) -> None:
+        """Keep the beginning, since the text was read to its end."""
+        self._place = None
+        self._keep(layout, 0, line=1, lines_before=0)
+
     def leave(self) -> None:
         """Keep the place now."""
         if self._place is None:
             return
         (layout, line), self._place = self._place, None
-        source, table = layout.book.source, layout.book.table
-        self.kept.keep_at(
-            source,
+        self._keep(
+            layout,
             first_character(line),
             line=line.number if is_counted(layout) else None,
-            width=layout.width,
-            table="" if table is None else table.name,
-            page=page_label(source, line),
+            lines_before=layout.lines_before(line),
+            page=page_label(layout.book.source, line),
         )
+
+    def _keep(self, layout: Layout, character: int, **told: Any) -> None:
+        source, table = layout.book.source, layout.book.table
+        name = "" if table is None else table.name
+        self.kept.keep_at(source, character, width=layout.width, table=name, **told)

@@ -74,9 +74,9 @@ class OpenDevice:
         Function that is called with each thing that the reader should hear.
     attended
         Whether somebody is at a keyboard, who can end a line that no hand ends.
-    spawned, steering
+    begun
         Host process that was begun for the device, and the steering of a simulated hand that it
-        inherited; None to begin it when the device is started.
+        inherited; None to begin it now.
 
     Attributes
     ----------
@@ -94,8 +94,7 @@ class OpenDevice:
         clock: Clock | None = None,
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
-        spawned: Spawned | None = None,
-        steering: Steering | None = None,
+        begun: tuple[Spawned, Steering] | None = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted
@@ -124,7 +123,9 @@ class OpenDevice:
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
-            self._steering = steering_of(device) if steering is None else steering
+            spawned, self._steering = begun or (None, steering_of(device))
+            if not self._simulated and not device.startswith("sim:?"):
+                self._steering = None  # a person moves the device
             self._engine = Host(
                 device_spec(device, hand, seed, self._steering),
                 wanted,
@@ -217,7 +218,8 @@ class OpenDevice:
             width = cells_per_line(model.style.geometry, model.display)
             chosen = choose_table(language, grade, table)
             text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
-        check_lines(text, first, last)
+        if at is None:
+            check_lines(text, first, last)
         self._reader = Reader(
             text,
             self._engine,

@@ -148,6 +148,11 @@ class Reader(LineReader):
         self.put(Window(line, self.under.width).showing(cell))
         return True
 
+    def finish(self) -> None:
+        """Come to the end of the text; another reading begins at its beginning."""
+        super().finish()
+        self.keeping.start_over(self.layout)
+
     def keep_way_back(self, character: int | None = None) -> None:
         """Have `jump_back` go to a place, the present one if none is given."""
         self._trail.append(self.character if character is None else character)

@@ -1,7 +1,7 @@
 """Bookmarks: set, told, gone to, deleted."""
 
 from tests.reading.test_reader import Bench
-from vbraille.reading.keeping import Marked
+from vbraille.reading.places.values import Bookmark
 
 TEXT = "\n\n".join(f"paragraph {n} says something of its own" for n in range(1, 9))
 
@@ -42,5 +42,5 @@ def test_a_bookmark_is_moved_and_deleted():
 
 def test_a_bookmark_outside_of_what_is_read_is_told():
     bench = Bench(TEXT, width=60, first=2, last=4)
-    bench.reader.kept.set_bookmark(Marked("far", TEXT.index("paragraph 8"), "paragraph"))
+    bench.reader.kept.set_bookmark(Bookmark("far", TEXT.index("paragraph 8"), "paragraph"))
     assert bench.press("ofar\n")[-1] == "bookmark far: not in the lines that are read"

@@ -8,13 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.build import (
-    build_book,
-    build_lengths,
-    build_show,
-    lay_out,
-    note_unseen_dots,
-)
+from vbraille.cli.build import build_lengths, build_show, lay_out, note_unseen_dots
+from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
@@ -32,6 +27,7 @@ from vbraille.reading.echo import Echo
 from vbraille.reading.hearing import Hearing, language_of
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
+from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
@@ -77,35 +73,48 @@ def run(arguments: argparse.Namespace) -> int:
         cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
         echo = _echo(arguments.echo)
         hearing = listening.enter_context(Hearing(say_line, cues, echo=echo))
-        say = hearing.say
         device = OpenDevice(
-            arguments.device, wanted, hand=hand, seed=seed, say=say, attended=keyboard.attached
+            arguments.device,
+            wanted,
+            hand=hand,
+            seed=seed,
+            say=hearing.say,
+            attended=keyboard.attached,
+            begun=arguments.begun,
         )
         try:
-            book = build_book(arguments)
+            places = listening.enter_context(KeptPlaces.open())
+            opened = open_to_resume(arguments, places)
             if arguments.speech:
-                hearing.speak(language_of(book, arguments.language))
+                hearing.speak(language_of(opened.book, arguments.language))
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            model = build_show(arguments, with_profile(settings, profile, model_of(display)))
+            own = with_profile(settings, profile, model_of(display))
+            model = build_show(arguments, opened.tuned(own))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
-            page = lay_out(arguments, book, model, arguments.cells)
+            page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
             device.start(page.model)
             # Till now Ctrl-Z may do what it does elsewhere.
             suspension = listening.enter_context(Suspension())
             keyboard.take()
+            seeker = opened.seeker(arguments)
+            if seeker is not None:
+                listening.enter_context(seeker)
             device.show(
                 page.layout,
                 first=page.first,
                 last=page.last,
+                at=None if opened.place is None else opened.place.character,
                 advance=arguments.advance == "return",
                 echo=echo,
                 beside=Beside(
                     bound=bound,
+                    seeker=seeker,
+                    kept=opened.kept,
                     scroll=Scroll(),
                     cue=hearing.cue,
                     save_style=lambda style: save_profile(
@@ -114,7 +123,10 @@ def run(arguments: argparse.Namespace) -> int:
                     verbose=arguments.verbose,
                 ),
             )
-            _Reading(page, device, keyboard, suspension, hearing).run()
+            try:
+                _Reading(page, device, keyboard, suspension, hearing).run()
+            finally:
+                opened.leave(device.reader, model, page.model.style)
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()

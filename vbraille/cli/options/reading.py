@@ -42,8 +42,13 @@ def nothing(_parser: ArgumentParser) -> None:
 
 def read(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille read``."""
-    _text(parser)
+    _text(parser, optional=True)
     _reading(parser)
+    parser.add_argument(
+        "--no-places",
+        action="store_true",
+        help="Begin at the beginning, and keep neither the place nor anything else of the book.",
+    )
 
 
 def settings(parser: ArgumentParser) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.keeping import Marked
+from vbraille.reading.places.anchoring import place_in
+from vbraille.reading.places.values import Bookmark
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -51,8 +52,9 @@ def _set(reader: Reader, name: str) -> None:
     place = reader.character
     text = str(line.block.text)[line.block.text.index(place) :]
     words = " ".join(text[:200].split()[:_WORDS])
-    share = reader.layout.progress(line)
-    reader.kept.set_bookmark(Marked(name, place, words, share))
+    # What the reader is told of it are some words; to find it again in a changed book takes more.
+    kept = place_in(reader.layout.book.source, place)
+    reader.kept.set_bookmark(Bookmark(name, place, words, kept.share, kept.after))
     reader.say(f"bookmark {name}: set")
 
 

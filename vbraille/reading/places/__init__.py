@@ -1,7 +1,6 @@
 """Places in books, kept from one reading to the next."""
 
 from vbraille.reading.places.book import KeptBook
-from vbraille.reading.places.reading import KeptReading
 from vbraille.reading.places.resuming import ResumedBook, last_book, open_kept
 from vbraille.reading.places.shelf import KeptPlaces
 from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, ListedBook
@@ -12,7 +11,6 @@ __all__ = [
     "KeptBook",
     "KeptPlace",
     "KeptPlaces",
-    "KeptReading",
     "ListedBook",
     "ResumedBook",
     "last_book",

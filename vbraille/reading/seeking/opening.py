@@ -25,7 +25,8 @@ class BookOpening(msgspec.Struct, frozen=True):
     encoding, keep_lines, form, brf_table
         As the reader opened the book.
     table, language, grade
-        Braille table, or the language and grade by which it is chosen; None for the usual.
+        Braille table; or None, and the language and grade by which it is chosen. With a table,
+        these are what the reader chose, by which passages in other languages are translated.
     switch
         Whether passages in other languages are translated by the tables of those languages.
     undefined
@@ -72,7 +73,8 @@ def open_again(opening: BookOpening) -> Book:
     if source.in_cells:
         return Book(source)
     undefined = Undefined(opening.undefined)
-    table = choose_table(opening.language, opening.grade, opening.table, undefined)
+    named = None if opening.table else opening.language
+    table = choose_table(named, None if opening.table else opening.grade, opening.table, undefined)
     return Book(
         source,
         table,

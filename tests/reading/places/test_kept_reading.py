@@ -1,7 +1,8 @@
 """What a reader keeps, kept for the next reading."""
 
 from vbraille.layout.pages import Layout
-from vbraille.reading.places import BookOptions, KeptPlaces, KeptReading, open_kept
+from vbraille.reading.keeping import Keeping
+from vbraille.reading.places import BookOptions, KeptPlaces, open_kept
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind
@@ -20,55 +21,46 @@ def read(folder, then):
             before = resumed.place.lines_before_for(20, "en-ueb-g2.ctb")
             line = resumed.place.line_for(20, "en-ueb-g2.ctb")
         layout = Layout(book, 20, start=start, lines_before=before)
-        then(KeptReading(resumed.kept, layout), layout)
+        then(Keeping(resumed.kept), layout)
         resumed.kept.keep_index(resumed.source.index())
         return resumed.place, line
 
 
+def leave_at(at):
+    """Read on to a character, and leave."""
+
+    def leave(keeping, layout):
+        keeping.moved(layout, layout.place(at)[0])
+        keeping.leave()
+
+    return leave
+
+
 def test_a_place_and_its_line(tmp_path):
     (tmp_path / "book.txt").write_text(TEXT)
-    at = TEXT.index("number 30 ")
-    read(tmp_path, lambda kept, _: kept.keep(at))
+    at = TEXT.index("Paragraph number 30 ")
+    read(tmp_path, leave_at(at))
     seen = []
     place, line = read(tmp_path, lambda _, layout: seen.append(layout.place(at)[0].number))
     assert place.character == at
-    assert place.after.startswith("number 30 says 900")
+    assert place.after.startswith("Paragraph number 30 says 900")
     whole = Layout(Book(Document.open(tmp_path / "book.txt"), BrailleTable("en-ueb-g2.ctb")), 20)
     assert seen == [line] == [whole.place(at)[0].number]
 
 
 def test_a_place_whose_line_nobody_counted(tmp_path):
     (tmp_path / "book.txt").write_text(TEXT)
-    at = TEXT.index("number 2900 ")
+    at = TEXT.index("Paragraph number 2900 ")
 
-    def keep(kept, layout):
-        layout.place(at)
+    def leave(keeping, layout):
+        leave_at(at)(keeping, layout)
         assert not layout.counted
-        kept.keep(at)
 
-    read(tmp_path, keep)
-    place, line = read(tmp_path, lambda kept, _: kept.keep(at))
+    read(tmp_path, leave)
+    place, line = read(tmp_path, leave_at(at))
     assert place.character == at
     assert line is None
     assert 0.9 < place.share < 1
-
-
-def test_bookmarks_are_found_again_by_more_than_the_reader_is_told(tmp_path):
-    (tmp_path / "book.txt").write_text(TEXT)
-    at = TEXT.index("Paragraph number 700 ")
-
-    def mark(kept, _):
-        kept.mark("a", at, "Paragraph number")
-        kept.mark("b", 0, "gone")
-        kept.delete_bookmark("b")
-        assert [mark.name for mark in kept.bookmarks()] == ["a"]
-
-    read(tmp_path, mark)
-    changed = "A foreword. " + TEXT
-    (tmp_path / "book.txt").write_text(changed)
-    seen = []
-    read(tmp_path, lambda kept, _: seen.extend(kept.bookmarks()))
-    assert [(m.name, m.character, m.text) for m in seen] == [("a", at + 12, "Paragraph number")]
 
 
 class Paged(PartedSource):
@@ -89,9 +81,18 @@ def test_the_page_of_print(tmp_path):
     layout = Layout(Book(source, BrailleTable("en-ueb-g2.ctb")), 20)
     with KeptPlaces.open(tmp_path / "places.sqlite") as places:
         book = places.book(None, source.sha256())
-        kept = KeptReading(book, layout)
+        keeping = Keeping(book)
         pages = []
         for number in (1, 2, 4, 5):
-            kept.keep(int(source.block(number).text.places[3]))
+            keeping.moved(layout, layout.place(int(source.block(number).text.places[3]))[0])
+            keeping.leave()
             pages.append(book.place.page)
         assert pages == ["xii", "xii", "13", "13"]
+
+
+def test_a_book_that_was_read_to_its_end_begins_anew(tmp_path):
+    (tmp_path / "book.txt").write_text(TEXT)
+    read(tmp_path, leave_at(TEXT.index("number 40 ")))
+    read(tmp_path, lambda keeping, layout: keeping.start_over(layout))
+    place, line = read(tmp_path, lambda *_: None)
+    assert (place.character, line) == (0, 1)
