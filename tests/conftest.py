@@ -48,7 +48,9 @@ def pytest_collection_finish(session: pytest.Session) -> None:  # noqa: ARG001
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Give each test places of its own, and none that another has kept."""
-    folder = item.config.stash.setdefault(_FOLDER, TemporaryDirectory(prefix="vbraille-places-"))
+    if _FOLDER not in item.config.stash:
+        item.config.stash[_FOLDER] = TemporaryDirectory(prefix="vbraille-places-")
+    folder = item.config.stash[_FOLDER]
     _places.append(item.nodeid)
     os.environ["VBRAILLE_PLACES"] = f"{folder.name}/{len(_places)}/places.sqlite"
 

@@ -30,7 +30,13 @@ def test_a_place_is_kept_once_a_second_and_at_the_end():
     bench.press("p")
     bench.reader.leave()
     assert kept.places == [starts[0], starts[2], starts[1]]
-    assert kept.how == {"line": 2, "width": 20, "table": "en-ueb-g2.ctb", "page": ""}
+    assert kept.how == {
+        "line": 2,
+        "lines_before": 1,
+        "width": 20,
+        "table": "en-ueb-g2.ctb",
+        "page": "",
+    }
 
 
 def test_reading_begins_at_a_place():

@@ -221,3 +221,7 @@ class Source(Protocol):
     def sha256(self) -> str:
         """SHA-256 of the bytes that the source was read from, in hexadecimal."""
         ...
+
+    def close(self) -> None:
+        """Let go of the file, after which no block can be read; further calls do nothing."""
+        ...

@@ -1,12 +1,15 @@
 """Another table while reading, and lines that come by time."""
 
+from io import BytesIO
+
 import pytest
 
 from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import TEXT, Bench
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
-from vbraille.translate import Book, CellsSource, Document
+from vbraille.translate import Book
+from vbraille.translate.braillefiles.lines import open_brf
 
 
 class Scroll:
@@ -66,7 +69,7 @@ def test_a_language_that_there_is_not_changes_nothing():
 
 
 def test_braille_that_is_read_as_it_is_has_no_table():
-    braille = CellsSource(Document.from_text(",read ,me", keep_lines=True))
+    braille = open_brf(BytesIO(b",read ,me"), "braille")
     bench = Bench(book=Book(braille))
     assert bench.press("xy") == ["table: the text is in braille already"] * 2
 

@@ -85,6 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             places = listening.enter_context(KeptPlaces.open())
             opened = open_to_resume(arguments, places)
+            listening.callback(opened.book.source.close)
             if arguments.speech:
                 hearing.speak(language_of(opened.book, arguments.language))
             display = device.find()

@@ -211,6 +211,9 @@ class PartedSource(ABC):
         """SHA-256 of the bytes that the source was read from, in hexadecimal."""
         return self._digest
 
+    def close(self) -> None:
+        """Let go of the file, where one is open; further calls do nothing."""
+
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
         return f"{type(self).__name__} 1", (self._digest, self.parts)
 
