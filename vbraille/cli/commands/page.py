@@ -22,7 +22,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
     settle(arguments, TRANSLATION)
     embossing.check(arguments)
-    settle(arguments, TRANSLATION)
     book = build_book(arguments, six_dots=arguments.format == "brf")
     if _keeps_pages(arguments, book) and arguments.format == "brf":
         return embossing.write_kept(arguments, book)
