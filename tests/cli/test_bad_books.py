@@ -1,10 +1,9 @@
 """Bad books of every form, by the command itself: one sentence, exit code 2, no end of memory."""
 
 import io
-import os
 import re
-import resource
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -294,24 +293,28 @@ def run_page(*arguments, **options):
     )
 
 
+# A process between: the memory of a child counts from what its parent has when it is started.
+MEASURED = """
+import resource, subprocess, sys
+resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
+process = subprocess.Popen(sys.argv[1:], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+tail = b""
+while chunk := process.stdout.read(1 << 16):
+    tail = (tail + chunk)[-4096:]
+code = process.wait()
+usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(code, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3, flush=True)
+sys.stdout.buffer.write(tail)
+"""
+
+
 def bounded(path, *arguments):
     """Run the command on a file; how long it computed, and how much memory it took, in MB."""
-    reader, writer = os.pipe()
-    process = subprocess.Popen(
-        [*PROGRAM, "page", str(path), *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=writer,
-        stderr=writer,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (60, 60)),
-    )
-    os.close(writer)
-    with os.fdopen(reader, "rb") as stream:
-        tail = b""
-        while chunk := stream.read(1 << 16):
-            tail = (tail + chunk)[-4096:]
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, tail.decode(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3
+    command = [sys.executable, "-c", MEASURED, *PROGRAM, "page", str(path), *arguments]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=True)
+    numbers, _, said = done.stdout.decode().partition("\n")
+    code, seconds, megabytes = map(float, numbers.split())
+    return int(code), said, seconds, megabytes
 
 
 CHAPTER_BOMB = epub(

@@ -101,7 +101,7 @@ def output(arguments: argparse.Namespace) -> Iterator[Callable[[bytes], object]]
         If the disk cannot take it.
     """
     if arguments.out is None:
-        yield lambda content: sys.stdout.write(content.decode())
+        yield lambda content: sys.stdout.write(content.decode("utf-8", "surrogatepass"))
         return
     with output_file(arguments.out, replace=arguments.force) as file:
         yield file.write

@@ -8,7 +8,6 @@ from vbraille.cli.options.reading import SETTLED
 from vbraille.cli.terminal import say_line
 from vbraille.reading.bindings import Bindings, Bound
 from vbraille.reading.commands.table import bound_by
-from vbraille.settings.applying import missing_profile
 from vbraille.settings.loading import load_settings
 
 if TYPE_CHECKING:
@@ -53,6 +52,8 @@ def settle(arguments: argparse.Namespace, names: tuple[str, ...] = SETTLED) -> S
 
 def chosen_profile(arguments: argparse.Namespace, settings: Settings) -> str:
     """Name of the profile in use; one that an option names and is not there is said on stderr."""
+    from vbraille.settings.applying import missing_profile
+
     if arguments.profile is None:
         return settings.profile
     if note := missing_profile(settings, arguments.profile):

@@ -49,7 +49,7 @@ _OTHER_ROOTS = {
     "fulfillmentToken": "a ticket for a book that Adobe locks, not the book; "
     "get the book as EPUB without a lock",
 }
-_HTML_BEGINS = ("html", "head", "body")
+_HTML_BEGINS = ("html", "head", "title", "body")  # a file may leave the first two out
 _OTHER_ZIPS = (
     ("xl/", "an Excel workbook; save its table as HTML or text"),
     ("ppt/", "a PowerPoint presentation; save it as HTML or text"),

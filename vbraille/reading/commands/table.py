@@ -8,22 +8,29 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.reading.bindings import ANY, Bindings, Bound, Command, bind, spoken
-from vbraille.reading.commands import (
-    asking,
-    choosing,
-    control,
-    marking,
-    moving,
-    searching,
-    structure,
-)
-from vbraille.reading.commands.structure import HEADING, LIST, TABLE, go_to, go_to_link
-from vbraille.reading.commands.turning import change_mapping, save_settings, turn, undo_turn
+from vbraille.reading.commands.deferred import Deferred, made
 from vbraille.reading.context import Context
 from vbraille.reading.keys import PASTE
 
 if TYPE_CHECKING:
+    from vbraille.reading.commands import (
+        asking,
+        choosing,
+        control,
+        marking,
+        moving,
+        searching,
+        structure,
+        turning,
+    )
     from vbraille.reading.reader import Reader
+else:
+    asking, choosing, control, marking = map(Deferred, ("asking", "choosing", "control", "marking"))
+    moving, searching, structure, turning = map(
+        Deferred, ("moving", "searching", "structure", "turning")
+    )
+
+HEADING, LIST, TABLE = "heading", "item", "row"  # kinds of blocks
 
 _LEVELS = 6
 # Values of the tuning that a knob of the device may turn.
@@ -122,7 +129,7 @@ def _levels(*, backward: bool) -> tuple[Command, ...]:
             (f"alt-{level}" if backward else str(level),),
             f"{'previous' if backward else 'next'} heading of level {level}"
             + (" or above" if level > 1 else ""),
-            go_to(HEADING, backward=backward, level=level),
+            made(structure.go_to, HEADING, backward=backward, level=level),
         )
         for level in range(1, _LEVELS + 1)
     )
@@ -140,16 +147,16 @@ COMMANDS = (
     Command("PRPGRPH", ("A", "ctrl-up"), "previous paragraph", structure.previous_paragraph),
     Command("NXPAGE", ("f", "pagedown"), "next page", structure.next_page),
     Command("PRPAGE", ("F", "pageup"), "previous page", structure.previous_page),
-    Command("NXHEADING", ("e",), "next heading", go_to(HEADING)),
-    Command("PRHEADING", ("E",), "previous heading", go_to(HEADING, backward=True)),
+    Command("NXHEADING", ("e",), "next heading", made(structure.go_to, HEADING)),
+    Command("PRHEADING", ("E",), "previous heading", made(structure.go_to, HEADING, backward=True)),
     *_levels(backward=False),
     *_levels(backward=True),
-    Command("NXLIST", ("l",), "next list", go_to(LIST)),
-    Command("PRLIST", ("L",), "previous list", go_to(LIST, backward=True)),
-    Command("NXTABLE", ("r",), "next table", go_to(TABLE)),
-    Command("PRTABLE", ("R",), "previous table", go_to(TABLE, backward=True)),
-    Command("NXLINK", ("k",), "next link or note", go_to_link()),
-    Command("PRLINK", ("K",), "previous link or note", go_to_link(backward=True)),
+    Command("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
+    Command("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
+    Command("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
+    Command("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
+    Command("NXLINK", ("k",), "next link or note", made(structure.go_to_link)),
+    Command("PRLINK", ("K",), "previous link or note", made(structure.go_to_link, backward=True)),
     Command("FOLLOW", ("\n",), "follow the link or note under the finger", structure.follow),
     Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
     Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
@@ -178,19 +185,23 @@ COMMANDS = (
     Command("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", choosing.faster),
     Command("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", choosing.slower),
     Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
-    Command("TEXTURE_UP", ("t",), "more texture", turn("texture", 1)),
-    Command("TEXTURE_DOWN", ("T",), "less texture", turn("texture", -1)),
-    Command("CONTRAST_UP", ("c",), "more contrast", turn("contrast", 1)),
-    Command("CONTRAST_DOWN", ("C",), "less contrast", turn("contrast", -1)),
-    Command("DOT_WIDTH_UP", ("d",), "wider dots", turn("dot_width_mm", 1)),
-    Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", turn("dot_width_mm", -1)),
-    Command("DOT_SPACING_UP", ("s",), "dots farther apart", turn("dot_spacing_mm", 1)),
-    Command("DOT_SPACING_DOWN", ("S",), "dots closer together", turn("dot_spacing_mm", -1)),
-    Command("CELL_GAP_UP", ("j",), "cells farther apart", turn("cell_gap_mm", 1)),
-    Command("CELL_GAP_DOWN", ("J",), "cells closer together", turn("cell_gap_mm", -1)),
-    Command("MAPPING", ("#",), "another way to show dots by actuators", change_mapping),
-    Command("UNDO", ("U",), "take back the last change of how braille feels", undo_turn),
-    Command("PREFSAVE", ("P",), "save how braille feels", save_settings),
+    Command("TEXTURE_UP", ("t",), "more texture", made(turning.turn, "texture", 1)),
+    Command("TEXTURE_DOWN", ("T",), "less texture", made(turning.turn, "texture", -1)),
+    Command("CONTRAST_UP", ("c",), "more contrast", made(turning.turn, "contrast", 1)),
+    Command("CONTRAST_DOWN", ("C",), "less contrast", made(turning.turn, "contrast", -1)),
+    Command("DOT_WIDTH_UP", ("d",), "wider dots", made(turning.turn, "dot_width_mm", 1)),
+    Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", made(turning.turn, "dot_width_mm", -1)),
+    Command("DOT_SPACING_UP", ("s",), "dots wider apart", made(turning.turn, "dot_spacing_mm", 1)),
+    Command(
+        "DOT_SPACING_DOWN", ("S",), "dots closer together", made(turning.turn, "dot_spacing_mm", -1)
+    ),
+    Command("CELL_GAP_UP", ("j",), "cells farther apart", made(turning.turn, "cell_gap_mm", 1)),
+    Command(
+        "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
+    ),
+    Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
+    Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
+    Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),
     Command(
         "LEARN",
