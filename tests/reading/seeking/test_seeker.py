@@ -23,7 +23,8 @@ from vbraille.reading.queries import (
     Searched,
 )
 from vbraille.reading.seeking import BookOpening, Seeker
-from vbraille.translate import Book, BrailleTable, CellsSource, Document
+from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate.braillefiles.lines import open_brf
 
 PATIENCE_S = 60.0
 LONG = "nothing to see here\n\n" * 30_000
@@ -104,8 +105,8 @@ def test_lines_of_a_braille_file(tmp_path):
     with Seeker(BookOpening(str(path), form="brf")) as seeker:
         seeker.ask(CountLines(6, 2))
         *_, counted = answers(seeker, until=Counted | Failed)
-    document = Document.open(path, keep_lines=True)
-    line, _ = Layout(Book(CellsSource(document)), 6).place(path.read_text().index(",! ?"))
+    with path.open("rb") as stream:
+        line, _ = Layout(Book(open_brf(stream, "book")), 6).place(path.read_text().index(",! ?"))
     assert counted.lines == line.number - 1 > 2
 
 

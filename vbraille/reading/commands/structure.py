@@ -6,8 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.nearby import LINK, first_place, links_of, within
+from vbraille.reading.nearby import within
 from vbraille.reading.queries import FindKind, FindPage, FindShare
+from vbraille.reading.seeking.kinds import LINK, first_place, links_of
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import count
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -42,13 +43,28 @@ def share_known(source: Source) -> float:
     return 1.0 if source.complete else source.progress(max(known_blocks(source) - 1, 0))
 
 
-def block_at_share(source: Source, share: float) -> int:
-    """Number of the first block before which so much of the source stands, among the known ones."""
+def find_share(source: Source, share: float) -> Iterator[int | float]:
+    """Look for the text before which so much of the source stands.
+
+    Yields
+    ------
+    int or float
+        How much of the source is known, 0 to 1, as floats; then the place of the last block, not
+        an empty one, that begins no later, if any.
+    """
+    yield from extended(source, share)
     low, high = 0, max(known_blocks(source) - 1, 0)
     while low < high:
-        middle = (low + high) // 2
-        if source.progress(middle) >= share:
-            high = middle
+        middle = (low + high + 1) // 2
+        if source.progress(middle) <= share:
+            low = middle
         else:
-            low = middle + 1
-    return low
+            high = middle - 1
+    for numbers in (range(low, -1, -1), count(low + 1)):
+        for number in numbers:
+            block = source.block(number)
+            if block is None:
+                return
+            if len(block.text):
+                yield int(block.text.places[0])
+                return
