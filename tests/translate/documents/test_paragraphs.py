@@ -2,6 +2,7 @@
 
 import random
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -228,6 +229,29 @@ class TestInParts:
     def test_with_lines_kept_an_indent_waits_for_its_text(self):
         found = split_paragraphs(at("\n\n   "), final=False, keep_lines=True)
         assert (found.blocks, found.used) == ([], 2)
+
+
+class TestCounting:
+    @examples(200)
+    @given(awkward_texts, st.booleans(), st.booleans(), st.booleans(), st.integers(0, 3))
+    def test_counting_tells_what_making_the_paragraphs_tells(
+        self, text, final, keep_lines, continues, item
+    ):
+        how = {"final": final, "keep_lines": keep_lines, "continues": continues, "item": item}
+        made = split_paragraphs(at(text, 5), **how)
+        counted = split_paragraphs(at(text, 5), **how, count=True)
+        assert counted.blocks == []
+        assert made.count == len(made.blocks)
+        assert made.end == (made.blocks[-1].text.end if made.blocks else 0)
+        assert replace(made, blocks=[]) == counted
+
+    @pytest.mark.parametrize("final", [False, True])
+    def test_a_paragraph_that_is_cut_counts_as_its_pieces(self, final):
+        stretch = at("one\n\n" + "word " * PIECE_CHARACTERS)
+        made = split_paragraphs(stretch, final=final)
+        counted = split_paragraphs(stretch, final=final, count=True)
+        assert made.count > 4
+        assert replace(counted, blocks=[]) == replace(made, blocks=[])
 
 
 class TestLongBlanks:

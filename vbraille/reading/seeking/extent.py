@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import count
 from typing import TYPE_CHECKING
 
+from vbraille.translate.documents.document import Document
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -25,6 +27,8 @@ def extend(source: Source) -> bool:
     """Read the next part of a source that is not known yet; False if all of it is."""
     if source.complete:
         return False
+    if isinstance(source, Document):
+        return source.extend()
     source.block(known_blocks(source))
     return True
 
