@@ -6,7 +6,15 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vbraille.reading.queries import CountLines, FindKind, FindPage, FindShare, FindText, Query
+from vbraille.reading.queries import (
+    CountLines,
+    FindKind,
+    FindLine,
+    FindPage,
+    FindShare,
+    FindText,
+    Query,
+)
 from vbraille.reading.seeking.kinds import blocks_from
 from vbraille.reading.seeking.steps import steps
 from vbraille.translate.text import to_text
@@ -59,7 +67,7 @@ def look(source: Source, query: Query) -> int | Query | None:
         Place of the source where it is; None if it is nowhere; or the question, if that is not
         known yet.
     """
-    if isinstance(query, CountLines):
+    if isinstance(query, CountLines | FindLine):
         return query
     reach, since_s = _REACHES[type(query)], time.perf_counter()
     for seen, step in enumerate(steps(source, query, near=True), 1):
@@ -78,7 +86,7 @@ def look_everywhere(source: Source, query: Query) -> int | None:
     int or None
         Place of the source where it is; None if it is nowhere.
     """
-    if isinstance(query, CountLines):
+    if isinstance(query, CountLines | FindLine):
         return None
     found = (step for step in steps(source, query) if not isinstance(step, float))
     return next(found, None)

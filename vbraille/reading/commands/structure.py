@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
 from vbraille.reading.nearby import within
-from vbraille.reading.queries import FindKind, FindPage, FindShare
+from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
 from vbraille.reading.seeking.kinds import LINK, first_place, links_of
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table"}
+_NEAR_LINES = 500  # that are laid out while somebody waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
 
@@ -191,8 +192,12 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
 
 
 def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
-    before = reader.character
-    if page >= 1 and reader.go((page - 1) * LINES_PER_PAGE + 1):
+    before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
+    if page >= 1 and reader.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
+        table = "" if layout.book.table is None else layout.book.table.name
+        query = FindLine(number, layout.width, table)
+        reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
+    elif page >= 1 and reader.go(number):
         reader.keep_way_back(before)
         reader.announce()
     else:
@@ -217,7 +222,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
     elif not typed.isdecimal():
         reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
-    elif not is_counted(reader.layout):
+    elif reader.seeker is None and not is_counted(reader.layout):
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)

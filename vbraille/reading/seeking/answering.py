@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.queries import CountLines, Found, Indexed, NotFound, Searched
+from vbraille.reading.queries import (
+    CountLines,
+    Failed,
+    FindLine,
+    Found,
+    Indexed,
+    NotFound,
+    Searched,
+)
 from vbraille.reading.seeking.counting import LineCounts
 from vbraille.reading.seeking.extent import extended
 from vbraille.reading.seeking.steps import steps
@@ -41,11 +49,25 @@ class Answering:
         VbrailleError
             If the book cannot be read any more.
         """
-        if not isinstance(query, CountLines):
-            return _find(self.book.source, query)
-        if query.width not in self._counts:
-            self._counts[query.width] = LineCounts(self.book, query.width)
-        return self._counts[query.width].count(query.block)
+        match query:
+            case CountLines():
+                return self._lines(query.width).count(query.block)
+            case FindLine():
+                return self._find_line(query)
+        return _find(self.book.source, query)
+
+    def _lines(self, width: int) -> LineCounts:
+        if width not in self._counts:
+            self._counts[width] = LineCounts(self.book, width)
+        return self._counts[width]
+
+    def _find_line(self, query: FindLine) -> Iterator[Answer]:
+        table = "" if self.book.table is None else self.book.table.name
+        if query.table == table:
+            yield from self._lines(query.width).find(query.line)
+        else:
+            by = table or "the file's own cells"
+            yield Failed(f"lines are counted by {by} only; type percent as in 40%")
 
     def index(self) -> Iterator[Answer]:
         """Find out where all blocks are: `Searched` any number of times, then `Indexed`."""
