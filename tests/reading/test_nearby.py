@@ -16,7 +16,7 @@ from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind
 
 WORDS = ("one", "two", "One  two", "caf\u00e9", "cafe\u0301", "Stra\u00dfe", "x" * 9_000)
-KINDS = [kind.value for kind in BlockKind] + ["link"]
+KINDS = [kind.value for kind in BlockKind] + ["link", "start"]
 
 
 class Pages(PartedSource):
@@ -115,6 +115,19 @@ def test_what_is_far_is_handed_over_within_a_moment(query):
     assert look(document, query) is query
     assert process_time() - before < 0.25  # of which reading it all takes far more
     assert len(document.index().rows) < 20
+
+
+def test_a_paragraph_begins_after_an_empty_line_or_a_long_one():
+    document = Document.from_text("one\ntwo\n\nthree\nfour\n", keep_lines=True)
+    assert look(document, FindKind("start", 0)) == 9
+    assert look(document, FindKind("start", 4, backward=True)) == 9
+    assert look(document, FindKind("start", 3, backward=True)) == 0
+    assert look(document, FindKind("start", 3)) is None
+    long = "word " * 5_000
+    document = Document.from_text(f"{long}\n\nnext")
+    assert look(document, FindKind("start", 0)) == len(long) + 2
+    last = document.block_at(len(long) + 2)
+    assert look(document, FindKind("start", last, backward=True)) == 0
 
 
 def test_blocks_around_a_place():

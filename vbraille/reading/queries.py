@@ -37,7 +37,8 @@ class FindKind(msgspec.Struct, frozen=True, tag="kind"):
     Parameters
     ----------
     kind
-        Value of a `BlockKind`, or "link" for a block with a link in it.
+        Value of a `BlockKind`, "link" for a block with a link in it, or "start" for one, of
+        whatever kind, with which a paragraph begins.
     block
         Number of the block after which, or before which, it is looked for.
     backward

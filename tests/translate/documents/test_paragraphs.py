@@ -111,6 +111,7 @@ class TestProse:
         [
             ("Buy\n- milk\n- eggs\n  of hens\n- tea", ["Buy", "- milk", "- eggs of hens", "- tea"]),
             ("• one\n• two", ["• one", "• two"]),
+            ("Buy\n-\u202fmilk\n-\u2007tea", ["Buy", "-\xa0milk", "-\xa0tea"]),
             ("* one\n* two\nand more", ["* one", "* two and more"]),
             ("Steps\n1. go\n2. come\nback\n3. stay", ["Steps", "1. go", "2. come back", "3. stay"]),
             ("9) nine\n10) ten\n12) no", ["9) nine", "10) ten 12) no"]),

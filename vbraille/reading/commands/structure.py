@@ -6,9 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.nearby import within
 from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
-from vbraille.reading.seeking.kinds import LINK, first_place, links_of
+from vbraille.reading.seeking.kinds import LINK, START, first_place, links_of
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
-    from vbraille.translate.source import Block, Mark, Source
+    from vbraille.translate.source import Block, Mark
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table"}
@@ -152,30 +151,12 @@ def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
     if line is None:
         return
     source = reader.layout.book.source
-    here = block_of(source, line)
-    starts = _starts(source, here, first_character(line), backward=backward)
-    arrive(reader, starts, "paragraph", backward=backward)
-
-
-def _starts(source: Source, here: int, place: int, *, backward: bool) -> int | None:
-    """Place of the nearest beginning of a paragraph after a place, or before it.
-
-    Lines that the source keeps make a paragraph until an empty one.
-    """
-    for number, block in within(source, here if backward else here + 1, backward=backward):
-        if block.continues or not str(block.text).strip():
-            continue
-        if backward and first_place(block) >= place:
-            continue
-        before = source.block(number - 1) if number else None
-        if (
-            before is not None
-            and block.kind is before.kind is BlockKind.LINE
-            and str(before.text).strip()
-        ):
-            continue
-        return first_place(block)
-    return None
+    number = block_of(source, line)
+    here = source.block(number)
+    if backward and here is not None and not _begins_here(line, here):
+        number += 1  # the beginning of this one is before the reader, too
+    query = FindKind(START, number, backward)
+    reader.find(query, lambda place: arrive(reader, place, "paragraph", backward=backward))
 
 
 def _go_to_page(reader: Reader, *, backward: bool) -> None:

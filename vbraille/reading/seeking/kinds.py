@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from vbraille.reading.queries import FindKind
     from vbraille.translate.source import Block, Mark, Source
 
-LINK = MarkKind.LINK.value  # a kind that `FindKind` is asked for beside those of blocks
+# Kinds that `FindKind` is asked for beside those of blocks.
+LINK = MarkKind.LINK.value
+START = "start"
 _LINKS = (MarkKind.LINK, MarkKind.NOTE)
 _GROUPED = (BlockKind.ITEM.value, BlockKind.ROW.value)
 _NOT_PLAIN = frozenset(kind.value for kind in BlockKind) - {"paragraph", "line"} | {LINK}
@@ -59,6 +61,10 @@ def find_kind(source: Source, query: FindKind) -> Iterator[int | float]:
             if links:
                 yield links[-1 if query.backward else 0].start
                 return
+        elif query.kind == START:
+            if _is_start(source, number, block):
+                yield first_place(block)
+                return
         elif _is_wanted(block, query):
             yield first_place(block)
             return
@@ -83,6 +89,14 @@ def _is_wanted(block: Block, query: FindKind) -> bool:
         and not block.continues
         and (not query.level or block.level <= query.level)
     )
+
+
+def _is_start(source: Source, number: int, block: Block) -> bool:
+    """Whether a paragraph begins; lines that the source keeps are one until an empty one."""
+    if block.continues or not str(block.text).strip():
+        return False
+    before = source.block(number - 1) if number and block.kind is BlockKind.LINE else None
+    return before is None or before.kind is not BlockKind.LINE or not str(before.text).strip()
 
 
 def _find_group(source: Source, query: FindKind) -> Iterator[int | float]:

@@ -106,6 +106,9 @@ def split_paragraphs(
     if words.first < 0:
         used = int((words.newlines[-1:] + 1).sum()) if keep_lines else codes.size
         return Split([], used, continues, item)
+    codes = codes.copy()
+    for space in _NO_BREAK_SPACES:
+        codes[codes == space] = NO_BREAK_SPACE
     newlines = words.counted(words.newlines)
     ended = final
     if keep_lines:
@@ -175,7 +178,7 @@ def _blanks_folded(
     *,
     keep_lines: bool,
 ) -> tuple[NDArray[np.uint32], NDArray[np.bool_]]:
-    """Code points with one kind of space, and whether each belongs to a paragraph.
+    """Code points with one kind of blank, and whether each belongs to a paragraph.
 
     Parameters
     ----------
@@ -183,8 +186,6 @@ def _blanks_folded(
         Number of line ends in each gap, and whether a paragraph ends there.
     """
     codes = codes.copy()
-    for space in _NO_BREAK_SPACES:
-        codes[codes == space] = NO_BREAK_SPACE
     if keep_lines:
         keep = _keep_blanks(kinds)
         codes[keep & (kinds == BLANK)] = SPACE
