@@ -91,6 +91,11 @@ class Layout:
             if not run.counted and run.first <= block <= run.after:
                 run.count_from(block, lines)
 
+    def lines_to(self, number: int) -> int:
+        """Number of lines that would have to be laid out to reach the line of a number."""
+        found = self._of_number(number)
+        return 0 if found is None else found[0].lines_to(found[1])
+
     def line(self, number: int) -> Line | None:
         """Line of a number, from 1; None past the end, and before the beginning."""
         found = self._of_number(number)

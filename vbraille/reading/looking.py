@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.nearby import EVERYTHING, look
+from vbraille.reading.nearby import look, look_everywhere
 from vbraille.reading.queries import Counted, Failed, Found, NotFound, Searched
 
 if TYPE_CHECKING:
@@ -73,8 +73,7 @@ class Looking:
         if isinstance(found, int) or found is None:
             then(found)
         elif seeker is None:
-            found = look(source, found, EVERYTHING)
-            then(found if isinstance(found, int) else None)
+            then(look_everywhere(source, query))
         else:
             self._then, self._said_s = then, None
             self._say("searching")

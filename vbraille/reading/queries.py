@@ -37,7 +37,8 @@ class FindKind(msgspec.Struct, frozen=True, tag="kind"):
     Parameters
     ----------
     kind
-        Value of a `BlockKind`, or "link" for a block with a link in it.
+        Value of a `BlockKind`, "link" for a block with a link in it, or "start" for one, of
+        whatever kind, with which a paragraph begins.
     block
         Number of the block after which, or before which, it is looked for.
     backward
@@ -83,7 +84,25 @@ class CountLines(msgspec.Struct, frozen=True, tag="count"):
     block: int
 
 
-Query = FindText | FindKind | FindShare | FindPage | CountLines
+class FindLine(msgspec.Struct, frozen=True, tag="line"):
+    """Where a line begins, by its number.
+
+    Parameters
+    ----------
+    line
+        Number of the line, from 1, in lines of the width.
+    width
+        Number of cells in a line.
+    table
+        Name of the braille table that the lines are in; empty for a book that is in cells.
+    """
+
+    line: int
+    width: int
+    table: str = ""
+
+
+Query = FindText | FindKind | FindShare | FindPage | FindLine | CountLines
 
 
 class Found(msgspec.Struct, frozen=True, tag="found"):

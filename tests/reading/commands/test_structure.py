@@ -4,10 +4,12 @@ import pytest
 
 from tests.reading.chapters import BOOK, Chapters
 from tests.reading.commands.test_moving import finger_at
+from tests.reading.commands.test_searching import Seeker
 from tests.reading.test_reader import Bench
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
+from vbraille.reading.seeking.answering import Answering
 from vbraille.translate import Book, BrailleTable
 from vbraille.translate.documents.parted import Passage
 
@@ -135,3 +137,27 @@ def test_words_left_of_a_long_book_are_told_by_those_that_are_near():
     label, _, number = said[3].rpartition(" ")
     assert label == "words left: about"
     assert 60_000 < int(number) < 100_000
+
+
+def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
+    text = "\n\n".join(f"line {n}" for n in range(1, 12_000))
+    seeker = Seeker()
+    bench = Bench(text, beside=Beside(seeker=seeker))
+    assert bench.press("g3\n")[-1] == "line: 51"
+    assert bench.press("g400\n")[1:] == ["page: 400", "searching"]
+    asked = seeker.asked[-1]
+    assert (asked.line, asked.width) == (399 * 25 + 1, bench.layout.width)
+    assert bench.layout.lines_to(asked.line) > 9_000  # which nobody waits for
+    assert bench.press("n") == ["line: 52"]
+    answering = Answering(bench.layout.book)
+    seeker.answers = list(answering.answer(asked))[-1:]
+    bench.run(0.05)
+    assert bench.said[-1].startswith("place: ")
+    assert bench.reader.line.text == "line 9976"
+    seeker.answers = list(answering.answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.press("b") == ["line: 52"]
+    bench.press("g500\n")
+    seeker.answers = list(answering.answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.said[-1] == "page 500: there is no such page"

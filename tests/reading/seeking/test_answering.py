@@ -9,6 +9,7 @@ from vbraille.reading.queries import (
     Counted,
     CountLines,
     FindKind,
+    FindLine,
     FindPage,
     FindShare,
     Found,
@@ -142,3 +143,30 @@ def test_the_index_is_complete_at_the_end():
     assert isinstance(last, Indexed)
     assert last.index.complete
     assert steps
+
+
+@pytest.mark.parametrize("width", [20, 31])
+def test_a_line_is_found_by_its_number_where_the_layout_has_it(width):
+    text = "\n\n".join(f"Paragraph {n} " + "and more words " * n for n in range(40))
+    book = Book(Document.from_text(text), BrailleTable("en-ueb-g1.ctb"))
+    layout = Layout(book, width)
+    answering = Answering(book)
+    for number in (1, 2, 300, 17, layout.count()):
+        *steps, found = answering.answer(FindLine(number, width, "en-ueb-g1.ctb"))
+        assert isinstance(found, Found)
+        assert layout.place(found.character)[0].number == number
+        assert not steps or number != 17  # which was counted before
+    for number in (0, layout.count() + 1):
+        *_, last = answering.answer(FindLine(number, width, "en-ueb-g1.ctb"))
+        assert isinstance(last, NotFound)
+    *_, last = answering.answer(FindLine(3, width, "de-g1.ctb"))
+    assert "en-ueb-g1.ctb" in last.sentence
+
+
+def test_a_line_of_a_very_long_paragraph_is_found_near_it():
+    text = "one more word " * 10_000
+    book = Book(Document.from_text(text), BrailleTable("en-ueb-g1.ctb"))
+    layout = Layout(Book(Document.from_text(text), BrailleTable("en-ueb-g1.ctb")), 20)
+    number = layout.count() - 100
+    *_, found = Answering(book).answer(FindLine(number, 20, "en-ueb-g1.ctb"))
+    assert layout.place(found.character)[0].number == pytest.approx(number, abs=1)

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.reading.cues import Cue
-from vbraille.reading.nearby import LINK, first_place, links_of, within
-from vbraille.reading.queries import FindKind, FindPage, FindShare
+from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
+from vbraille.reading.seeking.kinds import LINK, START, first_place, links_of
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     block_of,
@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
-    from vbraille.translate.source import Block, Mark, Source
+    from vbraille.translate.source import Block, Mark
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table"}
+_NEAR_LINES = 500  # that are laid out while somebody waits; farther ones are looked for meanwhile
 _PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
 
 
@@ -150,30 +151,12 @@ def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
     if line is None:
         return
     source = reader.layout.book.source
-    here = block_of(source, line)
-    starts = _starts(source, here, first_character(line), backward=backward)
-    arrive(reader, starts, "paragraph", backward=backward)
-
-
-def _starts(source: Source, here: int, place: int, *, backward: bool) -> int | None:
-    """Place of the nearest beginning of a paragraph after a place, or before it.
-
-    Lines that the source keeps make a paragraph until an empty one.
-    """
-    for number, block in within(source, here if backward else here + 1, backward=backward):
-        if block.continues or not str(block.text).strip():
-            continue
-        if backward and first_place(block) >= place:
-            continue
-        before = source.block(number - 1) if number else None
-        if (
-            before is not None
-            and block.kind is before.kind is BlockKind.LINE
-            and str(before.text).strip()
-        ):
-            continue
-        return first_place(block)
-    return None
+    number = block_of(source, line)
+    here = source.block(number)
+    if backward and here is not None and not _begins_here(line, here):
+        number += 1  # the beginning of this one is before the reader, too
+    query = FindKind(START, number, backward)
+    reader.find(query, lambda place: arrive(reader, place, "paragraph", backward=backward))
 
 
 def _go_to_page(reader: Reader, *, backward: bool) -> None:
@@ -190,8 +173,12 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
 
 
 def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
-    before = reader.character
-    if page >= 1 and reader.go((page - 1) * LINES_PER_PAGE + 1):
+    before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
+    if page >= 1 and reader.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
+        table = "" if layout.book.table is None else layout.book.table.name
+        query = FindLine(number, layout.width, table)
+        reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
+    elif page >= 1 and reader.go(number):
         reader.keep_way_back(before)
         reader.announce()
     else:
@@ -216,7 +203,7 @@ def _go_to_typed(reader: Reader, typed: str) -> None:
         reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
     elif not typed.isdecimal():
         reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
-    elif not is_counted(reader.layout):
+    elif reader.seeker is None and not is_counted(reader.layout):
         reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
     else:
         _go_to_braille_page(reader, int(typed), typed)

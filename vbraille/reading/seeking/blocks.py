@@ -55,8 +55,10 @@ class _Span:
     length: int
 
 
-def forward(source: Source, first: int, sought: Sought) -> Iterator[int | float]:
-    """Look for the first hit from a block on.
+def forward(
+    source: Source, first: int, sought: Sought, characters: int = SPAN_CHARACTERS
+) -> Iterator[int | float]:
+    """Look for the first hit from a block on, in spans of at least so many characters.
 
     Yields
     ------
@@ -65,7 +67,7 @@ def forward(source: Source, first: int, sought: Sought) -> Iterator[int | float]
     """
     number = first
     while source.block(number) is not None:
-        span, after = _span(source, number, None, sought)
+        span, after = _span(source, number, None, sought, characters=characters)
         found = first_hit(span, sought)
         if found is not None:
             yield found
@@ -74,13 +76,15 @@ def forward(source: Source, first: int, sought: Sought) -> Iterator[int | float]
         yield source.progress(number)
 
 
-def backward(source: Source, last: int, sought: Sought) -> Iterator[int | float]:
+def backward(
+    source: Source, last: int, sought: Sought, characters: int = SPAN_CHARACTERS
+) -> Iterator[int | float]:
     """Look for the last hit that begins in a block or before it, as `forward` does."""
     after = last + 1
     while after > 0:
         first = after
         size = 0
-        while first > 0 and size < SPAN_CHARACTERS:
+        while first > 0 and size < characters:
             first -= 1
             block = source.block(first)
             size += 1 if block is None else len(block.text) + 1
@@ -142,11 +146,12 @@ def _span(
     after: int | None,
     sought: Sought,
     upto: int | None = None,
+    characters: int = SPAN_CHARACTERS,
 ) -> tuple[_Span, int]:
     """Blocks from a number on, and the number of the first that is not in the span.
 
     They go up to the number `after`; if that is None, up to the place `upto`; if that is None,
-    too, they are as many as a span is long.
+    too, they are as many as have so many characters.
     """
     texts: list[str] = []
     places: list[NDArray[np.int64]] = []
@@ -171,7 +176,7 @@ def _span(
             elif upto is not None:
                 inside = block.text.end <= upto
             else:
-                inside = size < SPAN_CHARACTERS
+                inside = size < characters
             following = number
         else:
             more += len(fold(texts[-1], accents=sought.accents))

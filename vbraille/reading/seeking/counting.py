@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from array import array
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from vbraille.layout.blocks import LaidBlock
-from vbraille.reading.queries import Counted, Searched
+from vbraille.layout.runs import LaidRun
+from vbraille.reading.queries import Counted, Found, NotFound, Searched
+from vbraille.reading.seeking.kinds import first_place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,6 +42,22 @@ class LineCounts:
             yield Searched((len(self._before) - 1) / max(block, 1))
         lines = self._before[min(block, len(self._before) - 1)]
         yield Counted(lines, self._book.source.index(), self._width, block)
+
+    def find(self, line: int) -> Iterator[Answer]:
+        """Count up to a line, and tell after each block how far that is; then where it begins."""
+        while self._before[-1] < line and self._lay_out_next():
+            yield Searched(min(self._before[-1] / line, 1.0))
+        if not 1 <= line <= self._before[-1]:
+            yield NotFound()
+            return
+        block = bisect_right(self._before, line - 1) - 1
+        run = LaidRun(self._book, self._width, block, self._before[block])
+        found = run.line(line)
+        if found is None:  # a piece of a very long paragraph, entered in its middle
+            found = run.line_of(block, 0)
+        cells = found.cells
+        place = int(cells.starts[0]) if len(cells) else first_place(found.block)
+        yield Found(place, self._book.source.index())
 
     def _lay_out_next(self) -> bool:
         number = len(self._before) - 1

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import count
 from typing import TYPE_CHECKING
+
+from vbraille.translate.documents.document import Document
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,6 +27,8 @@ def extend(source: Source) -> bool:
     """Read the next part of a source that is not known yet; False if all of it is."""
     if source.complete:
         return False
+    if isinstance(source, Document):
+        return source.extend()
     source.block(known_blocks(source))
     return True
 
@@ -42,13 +47,28 @@ def share_known(source: Source) -> float:
     return 1.0 if source.complete else source.progress(max(known_blocks(source) - 1, 0))
 
 
-def block_at_share(source: Source, share: float) -> int:
-    """Number of the first block before which so much of the source stands, among the known ones."""
+def find_share(source: Source, share: float) -> Iterator[int | float]:
+    """Look for the text before which so much of the source stands.
+
+    Yields
+    ------
+    int or float
+        How much of the source is known, 0 to 1, as floats; then the place of the last block, not
+        an empty one, that begins no later, if any.
+    """
+    yield from extended(source, share)
     low, high = 0, max(known_blocks(source) - 1, 0)
     while low < high:
-        middle = (low + high) // 2
-        if source.progress(middle) >= share:
-            high = middle
+        middle = (low + high + 1) // 2
+        if source.progress(middle) <= share:
+            low = middle
         else:
-            low = middle + 1
-    return low
+            high = middle - 1
+    for numbers in (range(low, -1, -1), count(low + 1)):
+        for number in numbers:
+            block = source.block(number)
+            if block is None:
+                return
+            if len(block.text):
+                yield int(block.text.places[0])
+                return

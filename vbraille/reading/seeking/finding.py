@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.reading.queries import Found, NotFound, Searched
-from vbraille.reading.seeking.blocks import Sought, backward, forward, within
+from vbraille.reading.seeking.blocks import SPAN_CHARACTERS, Sought, backward, forward, within
 from vbraille.reading.seeking.extent import extend
 from vbraille.reading.seeking.folding import needle_of
 from vbraille.reading.seeking.sieve import Sieve, ahead, behind
@@ -14,41 +13,48 @@ from vbraille.translate.documents.document import Document
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
-    from vbraille.reading.queries import Answer, FindText
+    from vbraille.reading.queries import FindText
     from vbraille.reading.seeking.sieve import Suspect
     from vbraille.translate.source import Source
 
+_NEAR_CHARACTERS = 4_096  # that are looked through before the time is looked at
 
-def find_text(source: Source, query: FindText) -> Iterator[Answer]:
-    """Answer a query: how far it is, and at the end where the text is."""
+
+def find_text(source: Source, query: FindText, *, near: bool = False) -> Iterator[int | float]:
+    """Look for a text.
+
+    Parameters
+    ----------
+    near
+        Whether only what is near matters: the steps are then small, and far more are needed for
+        a long plain text. The answer is the same.
+
+    Yields
+    ------
+    int or float
+        How much of the source was seen, 0 to 1, as floats; then the place of the text, if any.
+    """
     needle = needle_of(query.text, accents=query.fold_accents)
     if not needle:
-        yield NotFound()
         return
     sought = Sought(needle, query.fold_accents, query.start)
-    if isinstance(source, Document):
-        steps = _back_in(source, sought) if query.backward else _on_in(source, sought)
-    elif query.backward:
-        steps = _before(source, sought)
-    else:
-        first = source.block_at(query.start)
-        steps = iter(()) if first is None else forward(source, first, sought)
-    for step in steps:
-        if isinstance(step, float):
-            yield Searched(step)
-        else:
-            yield Found(step, source.index())
-            return
-    yield NotFound()
+    if isinstance(source, Document) and not near:
+        yield from (_back_in if query.backward else _on_in)(source, sought)
+        return
+    characters = _NEAR_CHARACTERS if near else SPAN_CHARACTERS
+    if query.backward:
+        yield from _before(source, sought, characters)
+    elif (first := source.block_at(query.start)) is not None:
+        yield from forward(source, first, sought, characters)
 
 
-def _before(source: Source, sought: Sought) -> Iterator[int | float]:
+def _before(source: Source, sought: Sought, characters: int) -> Iterator[int | float]:
     while sought.start >= _known_character(source) and extend(source):
         yield 0.0
     last = source.block_at(sought.start)
     if last is None:
         last = _last(source)
-    yield from backward(source, last, sought)
+    yield from backward(source, last, sought, characters)
 
 
 def _last(source: Source) -> int:

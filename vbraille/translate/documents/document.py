@@ -32,7 +32,10 @@ from vbraille.wording import setting
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from vbraille.translate.documents.paragraphs import Split
     from vbraille.translate.source import Block
+
+_NEXT = 64  # blocks; what is no farther is likely to be in the next chunk
 
 
 class Document:
@@ -210,7 +213,10 @@ class Document:
             If the file has changed since it was opened.
         """
         while number >= self._marks[-1].block and not self._complete:
-            self._read_chunk(len(self._marks) - 1)
+            if number - self._marks[-1].block < _NEXT:
+                self._read_chunk(len(self._marks) - 1)
+            else:
+                self._pass_chunk()
         if number >= self._marks[-1].block or number < 0:
             return None
         chunk = bisect_right(self._marks, number, key=lambda mark: mark.block) - 1
@@ -225,7 +231,7 @@ class Document:
     def block_at(self, character: int) -> int | None:
         """Number of the block that holds a character, or of the next block; None past the end."""
         while character >= self._marks[-1].character and not self._complete:
-            self._read_chunk(len(self._marks) - 1)
+            self._pass_chunk()
         chunk = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
         chunk = min(max(chunk, 0), len(self._marks) - 2)
         number = self._marks[chunk].block
@@ -234,6 +240,13 @@ class Document:
                 return number
             number += 1
         return None
+
+    def extend(self) -> bool:
+        """Find where the next chunk ends, without making its blocks; False if all are known."""
+        if not self._complete:
+            self._pass_chunk()
+            return True
+        return False
 
     def progress(self, number: int) -> float:
         """About how much of the file stands before a block that was read, 0 to 1."""
@@ -291,28 +304,43 @@ class Document:
 
     def _read_chunk(self, chunk: int) -> list[Block]:
         """Read the blocks of a chunk, and mark where the next begins if that is not known yet."""
-        mark = self._marks[chunk]
-        blocks, after = self._parse(mark)
+        split, after = self._parse(self._marks[chunk])
         if chunk == len(self._marks) - 1:
-            if after is None:
-                self._complete = True
-                self._grown = self._end() > self.size
-                after = ChunkMark(
-                    mark.block + len(blocks),
-                    blocks[-1].text.end if blocks else mark.character,
-                    self.size,
-                    (b"", 0),
-                    0,
-                    continues=False,
-                )
-            self._marks.append(after)
+            self._take_mark(split, after)
+        blocks = split.blocks
         if len(self._recent) >= 3:
             self._recent.pop(next(iter(self._recent)))
         self._recent[chunk] = blocks
         return blocks
 
-    def _parse(self, mark: ChunkMark) -> tuple[list[Block], ChunkMark | None]:
-        """Blocks from a mark on, none only if a stretch is blank; and the mark after them."""
+    def _pass_chunk(self) -> None:
+        """Mark where the chunk after the last one that is known begins."""
+        self._take_mark(*self._parse(self._marks[-1], count=True))
+
+    def _take_mark(self, split: Split, after: ChunkMark | None) -> None:
+        """Mark where the next chunk begins, given what the last one was split into."""
+        mark = self._marks[-1]
+        if after is None:
+            self._complete = True
+            self._grown = self._end() > self.size
+            after = ChunkMark(
+                mark.block + split.count,
+                split.end or mark.character,
+                self.size,
+                (b"", 0),
+                0,
+                continues=False,
+            )
+        self._marks.append(after)
+
+    def _parse(self, mark: ChunkMark, *, count: bool = False) -> tuple[Split, ChunkMark | None]:
+        """Blocks from a mark on, none only if a stretch is blank; and the mark after them.
+
+        Parameters
+        ----------
+        count
+            Whether blocks are only to be counted.
+        """
         self._decoder.restore(mark.state)
         parts: list[Stretch] = []
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
@@ -342,17 +370,18 @@ class Document:
                 item=mark.item,
                 final=final,
                 keep_lines=self.keep_lines,
+                count=count,
             )
             if final:
-                return split.blocks, None
-            if split.blocks or split.used:
+                return split, None
+            if split.count or split.used:
                 break
             # Each time twice as much is read, since an unfinished block is parsed again.
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
         after = ChunkMark(
-            mark.block + len(split.blocks),
+            mark.block + split.count,
             used,
             offset,
             state,
@@ -360,7 +389,7 @@ class Document:
             split.continues,
             split.item,
         )
-        return split.blocks, after
+        return split, after
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:
