@@ -224,6 +224,8 @@ class MarkupReader:
         """Begin a link, or a reference to a note."""
         if name not in {"a", "noteref", "annoref"}:
             return ()
+        if "number" in roles:  # a note's own, which leads back
+            return (self.writing.flow.blank,)
         address = attribute.target(found)
         if not address:
             return ()
