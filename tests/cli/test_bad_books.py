@@ -1,26 +1,18 @@
 """Bad books of every form, by the command itself: one sentence, exit code 2, no end of memory."""
 
-import io
 import re
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import pytest
 
 from tests.cli import books
 from tests.cli.books import BOMB, ODT, WORD, XHTML, docx, epub, item, locked, odt, with_bomb
+from tests.cli.judging import FILES, SAMPLES, sentence, usable
 from tests.cli.program import PROGRAM
 from tests.tiers import by_tier, heavy
 
-FILES = Path(__file__).parent.parent / "translate" / "documents" / "files"
-SAMPLES = sorted(
-    path.name
-    for path in FILES.iterdir()
-    if path.name != "README.md"
-    and path.suffix in (".epub", ".docx", ".odt", ".rtf", ".html", ".md", ".xml", ".brf", ".pef")
-)
 OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(2000)
 DEEP = "<w:p>" * 5_000 + "<w:r><w:t>x</w:t></w:r>" + "</w:p>" * 5_000
 CHAPTER = XHTML.format("<p>one</p>")
@@ -30,29 +22,6 @@ ENCRYPTION = (
     '<EncryptionMethod Algorithm="http://www.w3.org/2001/04/xmlenc#aes128-cbc"/>'
     '<CipherData><CipherReference URI="a.xhtml"/></CipherData></EncryptedData></encryption>'
 )
-
-
-def sentence(said, *, partly=False):
-    """The sentence of what was refused, perhaps after a part of it that could be read."""
-    assert partly or said.out == ""
-    *before, last = said.err.split("\n")[:-1]
-    assert not [line for line in before if not line.startswith(("line width: ", "device: "))]
-    assert last.startswith("vbraille: ")
-    assert "fault of vbraille" not in last
-    assert "Traceback" not in said.err
-    assert last.isprintable()
-    return last.removeprefix("vbraille: ")
-
-
-def usable(said):
-    """Whether it was read: something is printed, or else one sentence says why not."""
-    if said.code == 0:
-        assert said.out.strip(), "an empty book without a word about it"
-        assert "fault of vbraille" not in said.err
-        return True
-    assert said.code in (1, 2)
-    sentence(said, partly=True)  # what is damaged may come late in the book
-    return False
 
 
 BAD = {
@@ -360,77 +329,3 @@ def test_time_and_memory_have_bounds(tmp_path, name):
     assert code == 2 or (code == 0 and "one" in said), said
     assert seconds < 30
     assert megabytes < 700
-
-
-def rezipped(content, change):
-    """The archive with each of its members changed, as far as that is so."""
-    packed = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as source, zipfile.ZipFile(packed, "w") as out:
-        for info in source.infolist():
-            out.writestr(info, change(source.read(info)))
-    return packed.getvalue()
-
-
-def mutated(content, rng):
-    """Bytes with a few things wrong: changed, left out, twice, or something put in."""
-    pieces = [
-        b"<",
-        b">",
-        b"&",
-        b"\0",
-        b"\xff",
-        b"</p>",
-        b"<table>",
-        b"&#0;",
-        b"{",
-        b"}",
-        b"]]>",
-        b"\\u99999",
-        b"\\bin9999 ",
-        b'"',
-        b"<!--",
-        b"\f",
-        b"<li>",
-        b"-1",
-        b"999999999",
-    ]
-    for _ in range(rng.integers(1, 6)):
-        if not content:
-            break
-        at = int(rng.integers(len(content)))
-        length = int(rng.integers(1, 40))
-        match int(rng.integers(5)):
-            case 0:
-                content = content[:at] + bytes([rng.integers(256)]) + content[at + 1 :]
-            case 1:
-                content = content[:at] + content[at + length :]
-            case 2:
-                content = content[:at] + content[at : at + length] * 3 + content[at + length :]
-            case 3:
-                piece = pieces[rng.integers(len(pieces))]
-                content = content[:at] + piece + content[at:]
-            case 4:
-                other = int(rng.integers(len(content)))
-                content = content[:at] + content[other : other + length] + content[at:]
-    return content
-
-
-@pytest.mark.parametrize("name", SAMPLES)
-def test_any_change_to_a_book_is_read_or_refused(call, tmp_path, rng, name):
-    content = (FILES / name).read_bytes()
-    path = tmp_path / name
-    packed = content.startswith(b"PK")
-    read = 0
-    tries = by_tier(3, 100, 3_000)
-    for number in range(tries):
-        if packed and number % 3:
-            share = rng.random()
-            changed = rezipped(
-                content, lambda c, s=share: mutated(c, rng) if rng.random() < s else c
-            )
-        else:
-            changed = mutated(content, rng)
-        path.write_bytes(changed)
-        read += usable(call("page", path, "--format", "text"))
-    if tries > 50:
-        assert 0 < read < tries or not packed

@@ -153,13 +153,21 @@ def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTab
         Language of the text as its own source says, whose usual table is taken if no option of
         the command line names a language or a table, and there is one.
     """
+    named, grade, table = _translation(arguments, language)
+    return choose_table(named, grade, table, arguments.undefined)
+
+
+def _translation(
+    arguments: argparse.Namespace, language: str
+) -> tuple[str | None, int | None, str | None]:
+    """Language, grade and table that the reader chose for a text whose own language is this."""
     named, grade, table = arguments.language, arguments.grade, arguments.table
     usual = {"language", "table"} - arguments.settled  # what the settings say is for other texts
     asked = any(getattr(arguments, name) is not None for name in usual)
     if not asked and language and has_tables(language):
         named, table = language, None
         grade = None if "table" in arguments.settled else grade
-    return choose_table(named, grade, table, arguments.undefined)
+    return named, grade, table
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
@@ -183,7 +191,8 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     table = build_table(arguments, source.language)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
-    return Book(source, table)
+    chosen, grade, _ = _translation(arguments, source.language)
+    return Book(source, table, language=chosen or "", grade=grade)
 
 
 def _open(arguments: argparse.Namespace) -> Source:

@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 from collections import deque
 from contextlib import suppress
+from dataclasses import dataclass
+from select import select
 from subprocess import PIPE, Popen
 from typing import TYPE_CHECKING, Self
 
 from vbraille.errors import VbrailleError
-from vbraille.translate.batches import Batch
+from vbraille.translate.batches import Batch, Translated
 from vbraille.translate.book import Book
+from vbraille.translate.passing import receive, send
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.braille.cells import Cells
-    from vbraille.translate.batches import Translated
     from vbraille.translate.source import Block
 
-BATCH_CHARACTERS = 65_536
-_AHEAD = 2  # batches that each process has been given
+BATCH_CHARACTERS = 16_384  # so that the cells of one find room in a pipe
+_AHEAD = 4  # batches that are under way for each process, this one too
+_GIVEN = 2  # batches that another process has been given at a time
 _BEHIND = 16  # blocks that are kept after they were read
 
 
-class BookAhead(Book):
-    """A book that other processes translate ahead of who reads it, block after block.
+@dataclass(slots=True)
+class _Under:
+    """A batch under way: who translates it, if it has been given to anybody, and what came back."""
 
-    It has the same blocks and cells as the book that it is made of. The processes begin when a
+    blocks: list[Block]
+    process: Popen[bytes] | None = None
+    cells: list[Cells] | None = None
+
+
+class BookAhead(Book):
+    """A book that several processes translate ahead of who reads it, block after block.
+
+    It has the same blocks and cells as the book that it is made of. This process is one of those
+    that translate: it does so whenever it would have to wait for the others. They begin when a
     block is read, and only if the book is long; a context manager ends them. What is read in
     another order is translated here.
 
@@ -37,7 +49,8 @@ class BookAhead(Book):
     book
         Book to translate. From now on its source is read by this one only.
     processes
-        Number of processes that translate; with fewer than two, this process does.
+        Number of processes that translate, this one among them; with fewer than two, it does
+        everything.
     batch
         Number of characters that a process is given at a time, about.
     """
@@ -48,11 +61,10 @@ class BookAhead(Book):
         self._wanted = processes if book.translator is not None else 1
         self._size = batch
         self._processes: list[Popen[bytes]] = []
-        self._sent = 0  # batches that were sent, to each process in turn
         self._read = 0  # number of the next block to be read from the source
         self._ended = False
-        # What is under way, in order; and blocks that are translated and those read last.
-        self._batches: deque[tuple[list[Block], Popen[bytes]]] = deque()
+        # What is under way, in order; and blocks that are being translated and those read last.
+        self._batches: deque[_Under] = deque()
         self._waiting: dict[int, Block] = {}
         self._ready: dict[int, tuple[Block, Cells]] = {}
         self._next = 0  # number of the first block of the first batch
@@ -61,7 +73,7 @@ class BookAhead(Book):
 
     @property
     def processes(self) -> tuple[Popen[bytes], ...]:
-        """The processes that translate now."""
+        """The other processes that translate now."""
         return tuple(self._processes)
 
     def block(self, number: int) -> tuple[Block, Cells] | None:
@@ -118,16 +130,20 @@ class BookAhead(Book):
         """Have processes translate as far ahead as they may."""
         while not self._ended and len(self._batches) < _AHEAD * self._wanted:
             blocks = self._gather()
-            if self._ended and not self._processes:
-                self.close()  # the book is short
-            if not blocks or self._wanted < 2:
+            if blocks:
+                self._batches.append(_Under(blocks))
+        if not self._processes:
+            if self._ended:  # the book is short
+                self.close()
                 return
-            if not self._processes:
-                self._start()
-            process = self._processes[self._sent % self._wanted]
-            self._sent += 1
-            self._send(process, Batch.of(blocks))
-            self._batches.append((blocks, process))
+            self._start()
+        # What is wanted next is translated here, unless another process has it already.
+        left = [under for under in list(self._batches)[1:] if under.process is under.cells is None]
+        for process in self._processes:
+            for under in left[: max(_GIVEN - len(self._given(process)), 0)]:
+                left.remove(under)
+                under.process = process
+                self._send(process, Batch.of(under.blocks))
 
     def _gather(self) -> list[Block]:
         """Read blocks of about the text of a batch."""
@@ -145,24 +161,50 @@ class BookAhead(Book):
         return blocks
 
     def _take(self) -> None:
-        """Wait for the next batch that was translated."""
-        blocks, process = self._batches.popleft()
-        done = self._answer(process)
-        assert self.table is not None
-        self.table.undefined |= done.undefined
-        for note in done.notes:
-            self._due.setdefault(note)
+        """Take the next batch, when it is translated; until then, translate others."""
+        under = self._batches[0]
+        while under.cells is None:
+            self._hear(0)
+            free = (other for other in self._batches if other.process is other.cells is None)
+            mine = None if under.cells is not None else next(free, None)
+            if mine is not None:
+                mine.cells = [self._cells_of(block) for block in mine.blocks]
+            elif under.cells is None:
+                self._hear(None)
+            self._go_on()
+        self._batches.popleft()
         for number in list(self._ready)[:-_BEHIND]:
             del self._ready[number]
-        for block, cells in zip(blocks, done.cells(blocks), strict=True):
+        for block, cells in zip(under.blocks, under.cells, strict=True):
             del self._waiting[self._next]
-            self._ready[self._next] = block, cells if block.cells is None else block.cells
+            self._ready[self._next] = block, cells
             self._next += 1
 
+    def _cells_of(self, block: Block) -> Cells:
+        return self._translate(block) if block.cells is None else block.cells
+
+    def _given(self, process: Popen[bytes]) -> list[_Under]:
+        """Batches that a process has been given and has not answered, in order."""
+        return [u for u in self._batches if u.process is process and u.cells is None]
+
+    def _hear(self, seconds: float | None) -> None:
+        """Take what other processes have translated; wait so long for the first to answer."""
+        streams = {p.stdout: p for p in self._processes if self._given(p)}
+        for stream in select(list(streams), (), (), seconds)[0]:
+            process = streams[stream]
+            done = self._answer(process)
+            assert self.table is not None
+            self.table.undefined |= done.undefined
+            for note in done.notes:
+                self._due.setdefault(note)
+            under = self._given(process)[0]
+            pairs = zip(under.blocks, done.cells(under.blocks), strict=True)
+            under.cells = [c if block.cells is None else block.cells for block, c in pairs]
+
     def _start(self) -> None:
-        """Start the processes."""
+        """Start the other processes."""
         assert self.translator is not None
-        for _ in range(self._wanted):
+        for _ in range(self._wanted - 1):
             command = [sys.executable, "-m", "vbraille.translate.translating"]
             process = Popen(command, stdin=PIPE, stdout=PIPE)
             self._processes.append(process)
@@ -171,19 +213,19 @@ class BookAhead(Book):
     def _send(self, process: Popen[bytes], what: object) -> None:
         assert process.stdin is not None
         try:
-            pickle.dump(what, process.stdin, pickle.HIGHEST_PROTOCOL)
-            process.stdin.flush()
+            send(process.stdin, what)
         except BrokenPipeError:
             raise self._ended_by_itself() from None
 
     def _answer(self, process: Popen[bytes]) -> Translated:
         assert process.stdout is not None
         try:
-            done = pickle.load(process.stdout)
-        except (EOFError, pickle.UnpicklingError):
+            done = receive(process.stdout)
+        except EOFError:
             raise self._ended_by_itself() from None
         if isinstance(done, VbrailleError):
             raise done
+        assert isinstance(done, Translated)
         return done
 
     def _ended_by_itself(self) -> VbrailleError:

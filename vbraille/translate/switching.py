@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Block
 
 
+# What another process needs to make a translator: the table's name, what is written for characters
+# that it does not know, the book's own languages, a grade, and whether others are switched to.
+How = tuple[str, str, tuple[str, ...], int | None, bool]
+
+
 class Translator:
     """A braille table for a book, and the tables of other languages that the book says it has.
 
@@ -56,7 +61,7 @@ class Translator:
         self._named = {table.name: table}
 
     @property
-    def how(self) -> tuple[str, str, tuple[str, ...], int | None, bool]:
+    def how(self) -> How:
         """What another process needs to make a translator like this one."""
         own = tuple(sorted(self._own))
         return self.table.name, str(self.table.how), own, self._grade, self._switch

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import os
-import pickle
 import signal
 import sys
 from queue import SimpleQueue
 from threading import Thread
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from vbraille.errors import VbrailleError
-from vbraille.translate.batches import Batch, translated
+from vbraille.translate.batches import translated
 from vbraille.translate.liblouis import BrailleTable
+from vbraille.translate.passing import receive, send
 from vbraille.translate.switching import Translator
 from vbraille.translate.undefined import Undefined
 
 if TYPE_CHECKING:
     from typing import BinaryIO
 
+    from vbraille.translate.batches import Batch
+    from vbraille.translate.switching import How
+
 
 def main() -> None:
     """Translate until the input ends, as it does when the program ends that wants the cells."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever stops the program stops that one
-    name, undefined, own, grade, switch = pickle.load(sys.stdin.buffer)
+    name, undefined, own, grade, switch = cast("How", receive(sys.stdin.buffer))
     table = BrailleTable(name, Undefined(undefined))
     translator = Translator(table, own, grade, switch=switch)
     batches: SimpleQueue[Batch] = SimpleQueue()
@@ -36,8 +39,7 @@ def main() -> None:
         except VbrailleError as error:
             done = error
         try:
-            pickle.dump(done, sys.stdout.buffer, pickle.HIGHEST_PROTOCOL)
-            sys.stdout.buffer.flush()
+            send(sys.stdout.buffer, done)
         except BrokenPipeError:
             os._exit(0)
 
@@ -45,8 +47,8 @@ def main() -> None:
 def _take(stream: BinaryIO, batches: SimpleQueue[Batch]) -> None:
     try:
         while True:
-            batches.put(pickle.load(stream))
-    except (EOFError, pickle.UnpicklingError):
+            batches.put(cast("Batch", receive(stream)))
+    except EOFError:
         os._exit(0)
 
 

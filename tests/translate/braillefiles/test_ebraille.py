@@ -3,6 +3,7 @@
 import io
 import zipfile
 from datetime import UTC, datetime
+from pathlib import Path
 
 import pytest
 from lxml import etree
@@ -12,8 +13,11 @@ from vbraille.translate import BlockKind, Book, BrailleTable
 from vbraille.translate.braillefiles.ebraille import Edition, write_ebraille
 from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.writing import Imprint
+from vbraille.translate.documents.epub import EpubBook
 from vbraille.translate.documents.parted import PartedSource, Passage
+from vbraille.translate.opening import open_source
 
+FILES = Path(__file__).parents[1] / "documents/files"
 NOW = datetime(2026, 11, 22, 10, 15, 1, tzinfo=UTC)
 NAMES = {
     "o": "http://www.idpf.org/2007/opf",
@@ -195,14 +199,49 @@ def test_blocks_are_what_they_were(files):
     bodies = [xhtml(files, f"part000{n}.html").find("h:body", NAMES) for n in (1, 2, 3)]
     assert [element.tag.partition("}")[2] for element in bodies[0]] == ["div"]
     tags = [element.tag.partition("}")[2] for element in bodies[1]]
-    assert tags == ["h1", "p", "ul", "ul", "div", "h3", "blockquote", "aside", "p", "h2", "p"]
+    assert tags == ["h1", "p", "ul", "ul", "div", "h3", "blockquote", "aside", "pre", "h2", "table"]
     first, second = bodies[1].findall("h:ul", NAMES)
     for items, wanted in ((first, [1, 2, 3, 1]), (second, [1, 2])):
         assert [len(list(li.iterancestors("{*}ul"))) for li in items.iter("{*}li")] == wanted
     quote = bodies[1].find("h:blockquote/h:p", NAMES)
     assert quote.get("lang") == "fr-Brai-CA"
-    line, row = bodies[1].findall("h:p[@class]", NAMES)
-    assert (line.get("class"), row.get("class")) == ("line", "row")
-    assert line.text == "  ⠁  ⠇⠔⠑"
+    assert bodies[1].find("h:pre", NAMES).text == "  ⠁  ⠇⠔⠑"
+    (cell,) = bodies[1].iterfind("h:table/h:tr/h:td", NAMES)
+    assert cell.text == "⠁ ⠗⠪"
     (paragraph,) = bodies[2].findall("h:p", NAMES)
     assert paragraph.text.split() == ["⠘⠺"] * 4_000
+
+
+def read_back(book):
+    """Kind, level and cells of each block, from the file that is written of a book, and its own."""
+    file = io.BytesIO()
+    imprint = Imprint("A book", "en", "urn:uuid:1")
+    write_ebraille(file, blocks_of(book), imprint, Edition(book.table, NOW))
+    return kept(Book(EpubBook.open(io.BytesIO(file.getvalue()), "x.ebrl"))), kept(book)
+
+
+def kept(book):
+    found = []
+    for block, cells in blocks_of(book):
+        text = cells.to_unicode()
+        if block.kind not in (K.LINE, K.ROW):
+            text = "⠀".join(text.replace("⠀", " ").split())
+        row = (block.kind, block.level, text)
+        if block.continues:
+            row = (block.kind, block.level, f"{found.pop()[2]}⠀{text}")
+        found.append(row)
+    return found
+
+
+def test_our_own_reader_reads_the_same_cells():
+    again, own = read_back(Book(Made(*TEXT), BrailleTable("en-ueb-g2.ctb")))
+    assert again == own
+    assert {kind for kind, _, _ in own} == set(K)
+
+
+@pytest.mark.parametrize("name", ["pandoc-3.epub", "dtbook.xml", "hand.html", "libreoffice.html"])
+def test_our_own_reader_reads_the_same_cells_of_books_of_others(name):
+    book = Book(open_source(str(FILES / name)), BrailleTable("en-ueb-g2.ctb"))
+    again, own = read_back(book)
+    assert again == own
+    assert {K.HEADING, K.ITEM, K.ROW, K.NOTE, K.LINE} <= {kind for kind, _, _ in own}

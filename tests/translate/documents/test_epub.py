@@ -67,6 +67,50 @@ def test_only_the_chapters_read_are_parsed():
     assert list(book._open) == [21]
 
 
+PAGED = {
+    "one.xhtml": "<p>first <span id='p2'></span>and second</p><p id='p3'>third</p>",
+    "two.xhtml": "<p>fourth</p><span epub:type='pagebreak' id='p5' title='5'/><p>fifth</p>"
+    "<span epub:type='pagebreak' id='p6'/><p>sixth</p>",
+}
+PAGES = {
+    "one.xhtml": "1",
+    "one.xhtml#p2": "2",
+    "one.xhtml#p3": "iii",
+    "two.xhtml": "4",
+    "two.xhtml#p5": "5",
+    "two.xhtml#p6": "6",
+    "gone.xhtml#p7": "7",
+}
+
+
+@pytest.mark.parametrize("form", ["nav", "ncx"])
+def test_a_list_of_pages_says_where_they_begin(form):
+    if form == "nav":
+        items = "".join(f'<li><a href="{at}">{number}</a></li>' for at, number in PAGES.items())
+        listed = xhtml(f'<nav epub:type="page-list"><ol>{items}</ol></nav>')
+        item = '<item id="n" href="n" media-type="application/xhtml+xml" properties="nav"/>'
+    else:
+        items = "".join(
+            f'<pageTarget><navLabel><text>{number}</text></navLabel><content src="{at}"/>'
+            f"</pageTarget>"
+            for at, number in PAGES.items()
+        )
+        listed = (
+            f'<ncx xmlns="http://www.daisy.org/z3986/2005/ncx/"><pageList>{items}</pageList></ncx>'
+        )
+        item = '<item id="n" href="n" media-type="application/x-dtbncx+xml"/>'
+    book = opened(epub(PAGED, items=item, **{"OPS/n": listed}))
+    found = [(block.kind is BlockKind.PAGE, str(block.text)) for block in blocks(book)]
+    pages = [text for is_page, text in found if is_page]
+    assert pages == ["1", "2", "iii", "4", "5", "6"]
+    assert found[0] == (True, "1")
+    assert found[found.index((True, "iii")) + 1] == (False, "third")
+    assert found[found.index((True, "4")) + 1] == (False, "fourth")
+    assert found[found.index((True, "6")) + 1] == (False, "sixth")
+    whole = " ".join(text for is_page, text in found if not is_page)
+    assert whole == "first and second third fourth fifth sixth"
+
+
 def test_contents_of_a_navigation_document_and_of_an_ncx():
     nav = xhtml(
         '<nav epub:type="toc"><ol><li><a href="one.xhtml#h">One</a><ol><li><a href="t%20wo.xhtml">'

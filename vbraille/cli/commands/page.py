@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 from vbraille.cli import embossing
@@ -9,6 +10,7 @@ from vbraille.cli.build import build_book, build_lengths, lay_out
 from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.errors import InputError
 from vbraille.render import MODELS
+from vbraille.translate.ahead import BookAhead
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
@@ -17,12 +19,20 @@ if TYPE_CHECKING:
     from vbraille.layout.pages import Line
     from vbraille.translate import Book
 
+_USUAL_WORKERS, _MOST_WORKERS = 4, 64  # with more than four, laying out takes the longest
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the lines, or write them to a file."""
     settle(arguments, TRANSLATION)
     embossing.check(arguments)
+    workers = _workers(arguments)
     book = build_book(arguments, six_dots=arguments.format == "brf")
+    with BookAhead(book, workers) as ahead:
+        return _write(arguments, ahead)
+
+
+def _write(arguments: argparse.Namespace, book: Book) -> int:
     if _keeps_pages(arguments, book) and arguments.format == "brf":
         return embossing.write_kept(arguments, book)
     if arguments.layout or arguments.format == "ebrl" or _keeps_pages(arguments, book):
@@ -39,6 +49,24 @@ def run(arguments: argparse.Namespace) -> int:
     page.say_note()
     page.say_unknown()
     return 0
+
+
+def _workers(arguments: argparse.Namespace) -> int:
+    """Number of processes that translate a long book.
+
+    Raises
+    ------
+    InputError
+        If the option is out of range.
+    """
+    asked = arguments.workers
+    if asked is not None:
+        if not 1 <= asked <= _MOST_WORKERS:
+            raise InputError(f"--workers is {asked}; it must be 1 to {_MOST_WORKERS}")
+        return asked
+    if arguments.layout is None and arguments.lines[1] is not None:
+        return 1  # others would translate what nobody wants
+    return min(len(os.sched_getaffinity(0)), _USUAL_WORKERS)
 
 
 def _keeps_pages(arguments: argparse.Namespace, book: Book) -> bool:

@@ -176,6 +176,13 @@ def page(parser: ArgumentParser) -> None:
         "America, with page numbers; --lines 25 then says how many lines a page has (default: "
         "lines without pages).",
     )
+    parser.add_argument(
+        "--workers",
+        type=whole,
+        metavar="N",
+        help="Translate a long text in so many processes (default: one for each processor, at "
+        "most 4; only one for --lines 1-10 and the like).",
+    )
     parser.set_defaults(model=None)  # so that it is known whether a display was asked for
 
 

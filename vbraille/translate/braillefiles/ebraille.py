@@ -32,22 +32,22 @@ _SYSTEMS = {
 }
 _CONTAINER = """\
 <?xml version="1.0" encoding="UTF-8"?>
-<container version="1.0" xmlns="urn:oasis:names:tc:opendocument:xmlns:container">
-  <rootfiles>
-    <rootfile full-path="package.opf" media-type="application/oebps-package+xml"/>
-  </rootfiles>
-</container>
+<container version="1.0" xmlns="urn:oasis:names:tc:opendocument:xmlns:container"><rootfiles>
+<rootfile full-path="package.opf" media-type="application/oebps-package+xml"/>
+</rootfiles></container>
 """
+_LIST = '<ul style="list-style-type: none">'  # an item's own cells begin with its mark
 # One ch is a cell, and one em the distance of lines.
 _STYLE = """\
 h1 { text-align: center; margin: 1em 3ch; font-size: 1em; font-weight: normal }
 h2 { margin: 1em 0 0 4ch; font-size: 1em; font-weight: normal }
 h3, h4, h5, h6 { margin: 1em 0 0 6ch; font-size: 1em; font-weight: normal }
 p { margin: 0; text-indent: 2ch }
-p.line, p.row { text-indent: -2ch; margin-left: 2ch; white-space: pre-wrap }
+pre { margin: 0 0 0 2ch; text-indent: -2ch; white-space: pre-wrap; font: inherit }
+th, td { padding: 0 2ch 0 0; font-weight: normal; text-align: left }
 aside p { margin-left: 4ch }
 blockquote { margin: 1em 0 1em 2ch }
-ul { list-style-type: none; margin: 0; padding: 0 }
+ul { margin: 0; padding: 0 }
 li { margin-left: 2ch; text-indent: -2ch }
 """
 
@@ -166,6 +166,8 @@ class _Body:
         self._levels = 0  # lists that are open
         self._group = 0  # the list that they are
         self._ids = 0
+        self._rows: list[tuple[Block, Cells]] = []  # of the table that is being written
+        self._table = 0  # and its group
 
     def parts(self, blocks: Iterable[tuple[Block, Cells]]) -> Iterable[tuple[str, str]]:
         """Name and content of each part; a part begins at a heading, or where one is full."""
@@ -190,6 +192,7 @@ class _Body:
         self.written.parts.append(f"part{len(self.written.parts) + 1:04}.html")
 
     def _end(self) -> str:
+        self._close_table()
         self._close_lists(0)
         content = "".join(self._out)
         self._out.clear()
@@ -211,12 +214,15 @@ class _Body:
         self._group = block.group
         text = _words(cells)
         kind = block.kind
+        if kind is not BlockKind.ROW or block.group != self._table:
+            self._close_table()
+        if kind is BlockKind.ROW:
+            self._table = block.group
+            self._rows.append((block, cells))
+            return
         if kind is BlockKind.PAGE:
             self._page(to_text(block.text.codes).strip(), text)
             return
-        verbatim = kind in (BlockKind.LINE, BlockKind.ROW)
-        if verbatim:
-            text = cells.to_unicode().replace(_BLANK, " ").rstrip()
         tag = self._tag(block)
         match kind:
             case BlockKind.HEADING:
@@ -232,10 +238,25 @@ class _Body:
                 self._put(f"<blockquote><p{tag}>{text}</p></blockquote>\n")
             case BlockKind.NOTE:
                 self._put(f'<aside role="doc-footnote"><p{tag}>{text}</p></aside>\n')
-            case BlockKind.LINE | BlockKind.ROW:
-                self._put(f'<p class="{kind.value}"{tag}>{text}</p>\n')
+            case BlockKind.LINE:
+                line = cells.to_unicode().replace(_BLANK, " ").rstrip()
+                self._put(f"<pre{tag}>{line}</pre>\n")
             case BlockKind.PARAGRAPH:
                 self._put(f"<p{tag}>{text}</p>\n")
+
+    def _close_table(self) -> None:
+        """Write the table whose rows are at their end; two blanks or more part their cells."""
+        headed = any(block.headers for block, _ in self._rows[1:])
+        lines = []
+        for number, (block, cells) in enumerate(self._rows):
+            name = "th" if headed and not number else "td"
+            row = cells.to_unicode().strip(_BLANK)
+            parts = (part.strip(_BLANK).replace(_BLANK, " ") for part in row.split(2 * _BLANK))
+            inner = "".join(f"<{name}>{part}</{name}>" for part in parts if part)
+            lines.append(f"<tr{self._tag(block)}>{inner or '<td></td>'}</tr>\n")
+        if lines:
+            self._put(f"<table>\n{''.join(lines)}</table>\n")
+        self._rows.clear()
 
     def _tag(self, block: Block) -> str:
         """Attribute that says the language of a block, where it is not the book's."""
@@ -259,7 +280,7 @@ class _Body:
         while self._levels < level:
             self._levels += 1
             # A list within a list stands in an item, one of its own if a level was left out.
-            self._put("<ul>" + ("" if self._levels == level else "<li>"))
+            self._put(_LIST + ("" if self._levels == level else "<li>"))
         self._put(f"<li{opened}")
 
     def _close_lists(self, level: int) -> None:

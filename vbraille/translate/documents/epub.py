@@ -13,7 +13,12 @@ from vbraille.translate.documents.markup.archive import Archive
 from vbraille.translate.documents.markup.dtbooknames import DTBOOK
 from vbraille.translate.documents.markup.elements import BEGINS
 from vbraille.translate.documents.markup.locks import check_unlocked
-from vbraille.translate.documents.markup.package import anchor_of, read_outline, read_package
+from vbraille.translate.documents.markup.package import (
+    anchor_of,
+    read_outline,
+    read_package,
+    read_page_list,
+)
 from vbraille.translate.documents.markup.parsing import Parsing, parts_of
 from vbraille.translate.documents.markup.reader import MarkupReader
 from vbraille.translate.documents.markup.ready import Spelling
@@ -60,6 +65,7 @@ class EpubBook(PartedSource):
         self._starts_of = [0, *accumulate(parts)]  # first part of each chapter
         self._chapters = {c.member: number for number, c in enumerate(self._package.chapters)}
         self._open: dict[int, Parsing] = {}
+        self._pages = read_page_list(self._archive, self._package)
         self._spelling = Spelling() if self._package.is_braille else None
         self._told = 0
         self._any = False
@@ -183,6 +189,7 @@ class EpubBook(PartedSource):
                     self.language,
                     DTBOOK if chapter.is_dtbook else BEGINS,
                     self._spell,
+                    self._pages,
                 ),
                 xml=True,
             )

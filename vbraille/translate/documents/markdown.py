@@ -14,9 +14,12 @@ from vbraille.translate.documents.html import HtmlBook
 from vbraille.translate.documents.markup.pieces import markup_encoding
 
 if TYPE_CHECKING:
+    from markdown_it.rules_block import StateBlock
     from markdown_it.token import Token
 
-_DEEPEST = 100
+# Quotations and lists within others that are read as such. The parser drops what is nested deeper
+# than its own limit, which is not reached.
+_DEEPEST, _LIMIT = 100, 110
 # What some writers of Markdown set behind a heading, for links to it.
 _NAME = re.compile(r"\s*\{\s*#([^\s{}]+)[^{}]*\}\s*$")
 # Lines of the front matter that say what the book is.
@@ -59,8 +62,8 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
         raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
     found = markup_encoding(content[:SAMPLE_BYTES], encoding)
     text = TextDecoder(found.name).decode(content[found.skip :], found.skip, final=True)
-    # What is nested deeper is dropped; the usual limit is one that a real text may reach.
-    parser = MarkdownIt("commonmark", {"maxNesting": _DEEPEST}).enable(["table", "strikethrough"])
+    parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
+    parser.block.ruler.before("table", "deepest", _deepest)
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin, dollarmath_plugin):
         parser.use(plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
@@ -78,6 +81,21 @@ def read_markdown(stream: BinaryIO, name: str, encoding: str | None = None) -> H
         title=title[1].strip("\"'") if title else "",
         language=language[1].replace("_", "-") if language else "",
     )
+
+
+def _deepest(state: StateBlock, first: int, after: int, silent: bool) -> bool:
+    """Take the text of what is nested too deep for a paragraph, without its nesting."""
+    if silent or state.level < _DEEPEST:
+        return False
+    lines = state.getLines(first, after, state.blkIndent, keepLastLF=False).split("\n")
+    state.push("paragraph_open", "p", 1)
+    inline = state.push("inline", "", 0)
+    inline.content = "\n".join(line.lstrip("> \t") for line in lines).strip()
+    inline.children = []
+    inline.map = [first, after]
+    state.push("paragraph_close", "p", -1)
+    state.line = after
+    return True
 
 
 def _name_headings(tokens: list[Token]) -> None:

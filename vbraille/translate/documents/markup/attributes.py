@@ -44,8 +44,14 @@ _CLASSES = {
     "footnote-back": "back",
     "footnote-backref": "back",
     "footnotes": "notes",
+    **dict.fromkeys(("sdfootnoteanc", "sdendnoteanc"), "noteref"),  # LibreOffice's
+    **dict.fromkeys(("sdfootnote", "sdendnote"), "note"),
+    **dict.fromkeys(("sdfootnotesym", "sdendnotesym"), "number"),
+    **dict.fromkeys(("MsoFootnoteText", "MsoEndnoteText"), "note"),  # Word's
     "pagebreak": "page?",  # only of an element without text: some books call any break so
 }
+# Word's links between a note and what refers to it: "#_ftn1" there, and "#_ftnref1" back.
+_WORDS = re.compile(r"#_(?:ftn|edn)(ref)?\d+$")
 _STYLES = re.compile(r"(display|visibility)\s*:\s*(none|hidden)")
 
 
@@ -75,6 +81,9 @@ def roles(attributes: Mapping[str, str]) -> frozenset[str]:
         value = attributes.get(attribute)
         if value:
             found.update(names[word] for word in value.split() if word in names)
+    link = _WORDS.match(attributes.get("href", ""))
+    if link is not None:
+        found.add("number" if link[1] else "noteref")
     return frozenset(found)
 
 

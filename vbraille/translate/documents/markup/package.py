@@ -192,6 +192,28 @@ def read_outline(archive: Archive, package: Package) -> tuple[tuple[int, str, st
     )
 
 
+def read_page_list(archive: Archive, package: Package) -> dict[str, str]:
+    """Read the list of the printed book's pages: the number of each, by the name of its anchor.
+
+    It is empty if there is none, or if it is damaged.
+    """
+    if not package.contents:
+        return {}
+    try:
+        root = archive.xml(package.contents)
+    except InputError:  # who asks for the table of contents is told of it
+        return {}
+    if str(root.tag).endswith("}ncx") or root.tag == "ncx":
+        entries = [_point(1, page) for page in root.iterfind("{*}pageList/{*}pageTarget")]
+    else:
+        navs = (n for n in root.iter("{*}nav") if "page-list" in n.get(f"{_OPS}type", "").split())
+        entries = [entry for nav in navs for entry in _links(nav)]
+    pages: dict[str, str] = {}
+    for _, number, address in entries:
+        pages.setdefault(anchor_of(package.contents, address)[1:], " ".join(number.split()))
+    return pages
+
+
 def anchor_of(member: str, address: str) -> str:
     """Target of a link from a member: the book-wide name of an anchor, or an address elsewhere.
 
@@ -214,11 +236,15 @@ def _points(root: Any) -> list[tuple[int, str, str]]:
     open_points = [(1, point) for point in root.iterfind("{*}navMap/{*}navPoint")][::-1]
     while open_points:
         level, point = open_points.pop()
-        title = "".join(t for label in point.iterfind("{*}navLabel") for t in label.itertext())
-        content = point.find("{*}content")
-        entries.append((level, title, content.get("src", "") if content is not None else ""))
+        entries.append(_point(level, point))
         open_points += [(level + 1, inner) for inner in point.iterfind("{*}navPoint")][::-1]
     return entries
+
+
+def _point(level: int, point: Any) -> tuple[int, str, str]:
+    title = "".join(t for label in point.iterfind("{*}navLabel") for t in label.itertext())
+    content = point.find("{*}content")
+    return level, title, content.get("src", "") if content is not None else ""
 
 
 def _links(nav: Any) -> list[tuple[int, str, str]]:

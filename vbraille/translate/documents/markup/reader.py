@@ -55,6 +55,8 @@ class MarkupReader:
         Elements by name, with what they begin.
     spell
         What spells the text that is not the document's own, as the document is spelt.
+    pages
+        Numbers of pages of the printed book that begin at anchors, by the anchors' names.
 
     Attributes
     ----------
@@ -72,11 +74,14 @@ class MarkupReader:
         language: str = "",
         begins: Mapping[str, Begin] = elements.BEGINS,
         spell: Callable[[str], str] = str,
+        pages: Mapping[str, str] = _NOTHING,
     ) -> None:
         self.title = self.root_language = ""
         self.writing = Writing(anchors, language, spell)
         self._resolve = resolve
         self._prefix = prefix
+        self._listed = pages
+        self._number = ""  # of the page that was begun last
         self._begins = begins
         self._names: dict[object, str] = {}
         self._block = (self.writing.begin_block,)  # what most blocks end with
@@ -85,6 +90,8 @@ class MarkupReader:
         self._refers = 0  # number of open elements whose links are references to notes
         self._skipped = 0  # number of open elements that are passed over
         self._aside: Aside | None = None
+        for anchor in anchors:
+            self._begin_listed(anchor)
 
     def take(self) -> list[Passage]:
         """Take the passages that are finished; the last one only after the end."""
@@ -189,6 +196,7 @@ class MarkupReader:
         undos: list[Undo] = []
         identity = found.get("id") or (found.get("name") if name == "a" else None)
         if identity:
+            self._begin_listed(self._prefix + identity)
             writing.anchor(self._prefix + identity)
         language = attribute.language(found)
         if language is not None:
@@ -224,6 +232,8 @@ class MarkupReader:
         """Begin a link, or a reference to a note."""
         if name not in {"a", "noteref", "annoref"}:
             return ()
+        if "number" in roles:  # a note's own, which leads back
+            return (self.writing.flow.blank,)
         address = attribute.target(found)
         if not address:
             return ()
@@ -281,11 +291,19 @@ class MarkupReader:
 
         return end
 
+    def _begin_listed(self, anchor: str) -> None:
+        """Begin a page that the book's list of pages has here, unless the text has it already."""
+        number = self._listed.get(anchor, "")
+        if number not in ("", self._number) and len(number) < _LONGEST_NUMBER:
+            self._number = number
+            self.writing.page(number, ())
+
     def _page(self, found: Mapping[str, str]) -> tuple[Undo, ...]:
         """Begin a page of the printed book, whose number may be the element's text."""
         writing = self.writing
         told = found.get("title") or found.get("aria-label") or found.get("value") or ""
         anchors = (self._prefix + found["id"],) if found.get("id") else ()
+        listed = self._listed.get(anchors[0], "") if anchors else ""
         inside = Collected()
         self._pass_over(inside)
 
@@ -293,6 +311,7 @@ class MarkupReader:
             number = " ".join(told.split()) or inside.found
             if number.lower().startswith("page "):
                 number = number[5:].strip(" .")
+            self._number = number = number or listed
             writing.page(number if len(number) < _LONGEST_NUMBER else "", anchors)
             if len(inside.found) >= _LONGEST_NUMBER:
                 writing.write(f" {inside.found} ")
