@@ -116,6 +116,7 @@ class TestTheSameLines:
         layout.count_from(4, lines_before(text, 4))
         assert layout.counted
         assert layout.first_line == lines_before(text, 5) + 1
+        assert layout.number_of(line) == layout.line(line.number).number
         again = layout.line(line.number)
         assert shown(again) == lines_of(text)[again.number - 1]
         assert again.text == line.text

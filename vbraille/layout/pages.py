@@ -153,6 +153,11 @@ class Layout:
         assert found is not None, "a line of this layout"
         return found[0].block_of(found[1])
 
+    def number_of(self, line: Line) -> int:
+        """Number that a line of this layout has now, which may have been counted since."""
+        found = self._of_number(line.number)
+        return line.number if found is None else found[1]
+
     def lines_before(self, line: Line) -> int | None:
         """Number of lines before the block that a line is of; None if they were not counted."""
         found = self._of_number(line.number)

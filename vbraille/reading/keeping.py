@@ -75,7 +75,7 @@ class Keeping:
         self._keep(
             layout,
             first_character(line),
-            line=line.number if is_counted(layout) else None,
+            line=layout.number_of(line) if is_counted(layout) else None,
             lines_before=layout.lines_before(line),
             page=page_label(layout.book.source, line),
         )

@@ -205,7 +205,8 @@ class LineReader:
             return Cue.LINE_END
         if following.block.kind is BlockKind.PAGE:
             return Cue.PAGE_END
-        return Cue.PAGE_END if self.line_number % LINES_PER_PAGE == 0 else Cue.LINE_END
+        number = 0 if self.line is None else self.layout.number_of(self.line)
+        return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
 
     def go_on(self) -> None:
         """Put what follows under the hand; if there is nothing, reading is finished."""

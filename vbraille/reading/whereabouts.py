@@ -68,13 +68,13 @@ def percent(layout: Layout, line: Line) -> int:
 
 def line_name(layout: Layout, line: Line) -> str:
     """What a line is called in a sentence; one whose number nobody knows is "the line"."""
-    return f"line {line.number}" if is_counted(layout) else "the line"
+    return f"line {layout.number_of(line)}" if is_counted(layout) else "the line"
 
 
 def place_sentence(layout: Layout, line: Line) -> str:
     """Where a line is: its number, or its share and page while the lines are not counted."""
     if is_counted(layout):
-        return f"line: {line.number}"
+        return f"line: {layout.number_of(line)}"
     label = page_label(layout.book.source, line)
     return f"place: {percent(layout, line)} %" + (f", page {label}" if label else "")
 
@@ -84,12 +84,12 @@ def whereabouts(layout: Layout, line: Line) -> Iterator[str]:
     source = layout.book.source
     counted = is_counted(layout)
     if counted:
-        yield f"line: {line.number}"
+        yield f"line: {layout.number_of(line)}"
     label = page_label(source, line)
     if label:
         yield f"page: {label}"
     elif counted and not has_pages(source, line):
-        yield f"page: {(line.number - 1) // LINES_PER_PAGE + 1} in braille"
+        yield f"page: {(layout.number_of(line) - 1) // LINES_PER_PAGE + 1} in braille"
     yield f"percent: {percent(layout, line)}"
     heading = before(source, line, BlockKind.HEADING)
     if heading is not None:

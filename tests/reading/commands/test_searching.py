@@ -108,6 +108,10 @@ def test_what_is_far_is_looked_for_while_reading_goes_on():
     assert count == CountLines(20, 5_000)
     seeker.answers = [Counted(5_000, document.index(), count.width, count.block)]
     bench.run(0.05)
+    # The line under the hand is called by its number as soon as there is one.
+    assert bench.press("i")[:2] == ["line: 5001", "page: 201 in braille"]
+    assert bench.press("F") == ["line: 4976"]
+    assert bench.press("b") == ["line: 5001"]
     assert bench.press("p") == ["line: 5000"]
     assert bench.press("b") == ["line: 2"]
     assert not bench.reader.looking.busy

@@ -166,9 +166,8 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
     if has_pages(reader.layout.book.source, line):
         go_to(BlockKind.PAGE.value, backward=backward)(reader)
         return
-    page = (line.number - 1) // LINES_PER_PAGE  # from 0
-    inside = (line.number - 1) % LINES_PER_PAGE > 0
-    wanted = (page if inside else page - 1) if backward else page + 1
+    page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
+    wanted = (page if above else page - 1) if backward else page + 1
     _go_to_braille_page(reader, wanted + 1, "page")
 
 
