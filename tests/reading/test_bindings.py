@@ -47,6 +47,9 @@ def test_a_key_of_reading_is_still_typed_and_enter_still_ends_a_text():
         ({"lndn": ("n",)}, {}, "there is no command 'lndn'; the nearest is LNDN"),
         ({"LNDN": ("x",), "LNUP": ("x",)}, {}, "key x calls both LNDN and LNUP"),
         ({"LNDN": ("x", "x")}, {}, "key x calls both LNDN and LNDN"),
+        ({"LNDN": ("n", "dowm")}, {}, "there is no key 'dowm'; the nearest is down"),
+        ({"LNDN": ("ctrl-dwn",)}, {}, "there is no key 'ctrl-dwn'; the nearest is down"),
+        ({"LNDN": ("",)}, {}, "there is no key ''"),
         ({"QUIT": ()}, {}, "no key calls QUIT"),
         ({}, {"1": "LNDWN"}, "there is no command 'LNDWN'; the nearest is LNDN"),
         ({}, {"one": "LNDN"}, "'one' is no button; write a number"),
@@ -58,6 +61,34 @@ def test_what_cannot_be_is_one_sentence(keys, buttons, sentence):
         bound_by(Bindings(keys, buttons))
     assert sentence in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+def test_a_fault_among_keys_says_its_line():
+    def where(*keys):
+        return f"settings.toml line {1 if keys == ('keys', 'LNDN') else 2}"
+
+    with pytest.raises(InputError, match=r"^settings\.toml line 2: key x calls both"):
+        bound_by(Bindings({"LNDN": ("x",), "LNUP": ("x",)}, {}, where))
+    with pytest.raises(InputError, match=r"^settings\.toml line 1: there is no key 'spcae'"):
+        bound_by(Bindings({"LNDN": ("spcae",)}, {}, where))
+
+
+@pytest.mark.parametrize(
+    ("written", "sent"),
+    [
+        ("Down", "down"),
+        ("F12", "f12"),
+        ("ctrl-shift-left", "shift-ctrl-left"),
+        ("alt-x", "alt-x"),
+        ("alt-space", "alt- "),
+        ("ctrl-d", "\x04"),
+        ("shift-tab", "backtab"),
+        ("escape", "escape"),
+    ],
+)
+def test_a_key_is_written_as_people_say_it(written, sent):
+    bench = bench_with({"LNDN": (written,)})
+    assert bench.press([sent]) == ["line: 2"]
 
 
 def test_a_button_does_what_its_command_does():

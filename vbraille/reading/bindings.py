@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.reading.context import Context
+from vbraille.reading.keys import HELD, NAMED
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ _SPOKEN = {
     "\t": "tab",
 }
 _TYPED = {"space": " ", "enter": "\n", "return": "\r", "backspace": "\x7f", "tab": "\t"}
+_TYPED |= {"shift-tab": "backtab", **{f"ctrl-{chr(96 + n)}": chr(n) for n in range(1, 27)}}
+_HELD_KEY = re.compile(rf"((?:{'|'.join(HELD)})*)(.+)", re.DOTALL | re.IGNORECASE)
 _DEVICE_KEY = re.compile(r"(?:(button|knob) )?([1-9][0-9]{0,2})")
 
 
@@ -126,13 +129,13 @@ def bind(commands: tuple[Command, ...], bindings: Bindings, turned: tuple[str, .
     Raises
     ------
     InputError
-        If a command is not known, a key would call two commands, or a button is none.
+        If a command or a key is not known, a key would call two commands, or a button is none.
     """
     by_name = {command.name: command for command in commands}
     for name in bindings.keys:
         _check_name(name, by_name, bindings.where("keys", name))
     given = {
-        name: tuple(_TYPED.get(key.lower(), key) for key in keys)
+        name: tuple(_sent(key, bindings.where("keys", name)) for key in keys)
         for name, keys in bindings.keys.items()
     }
     taken = {
@@ -159,11 +162,13 @@ def bind(commands: tuple[Command, ...], bindings: Bindings, turned: tuple[str, .
                 other = by_key.setdefault((context, key), command)
                 if other is not command or command.keys.count(key) > 1:
                     raise InputError(
-                        f"settings: key {spoken(key)} calls both {other.name} and {command.name}; "
+                        f"{bindings.where('keys', command.name)}: "
+                        f"key {spoken(key)} calls both {other.name} and {command.name}; "
                         f"give each key to one command"
                     )
     if not any(command.keys for command in bound if command.name == "QUIT"):
-        raise InputError("settings: no key calls QUIT; give it one, or reading cannot be stopped")
+        where = bindings.where("keys", "QUIT")
+        raise InputError(f"{where}: no key calls QUIT; give it one, or reading cannot be stopped")
     buttons, knobs = _buttons(bindings, {command.name: command for command in bound}, turned)
     return Bound(bound, buttons, knobs, by_key)
 
@@ -188,6 +193,24 @@ def _buttons(
             _check_name(name, by_name, where)
             buttons[int(found[2])] = by_name[name]
     return buttons, knobs
+
+
+def _sent(name: str, where: str) -> str:
+    """Name that a key has when it is typed, by the one that somebody wrote."""
+    if len(name) == 1 or name == ANY:
+        return name
+    if name.lower() in _TYPED:
+        return _TYPED[name.lower()]
+    found = _HELD_KEY.fullmatch(name)
+    written, key = ("", "") if found is None else found.groups()
+    held = "".join(word for word in HELD if word in written.lower())
+    if key.lower() in NAMED:
+        return f"{held}{key.lower()}"
+    character = _TYPED.get(key.lower(), key)
+    if held == "alt-" and len(character) == 1:
+        return f"{held}{character}"
+    names = (*sorted(NAMED), *(word for word in _TYPED if "-" not in word))
+    raise InputError(f"{where}: there is no key {name!r}; {nearest(key.lower(), names)}")
 
 
 def _check_name(name: str, names: Mapping[str, Command] | tuple[str, ...], where: str) -> None:

@@ -48,7 +48,9 @@ _SINGLE = {
     **{letter.lower(): f"ctrl-{_LETTERS[letter]}" for letter in "ABCD"},
 }
 _PASTE_BEGINS, _PASTE_ENDS = 200, "\x1b[201~"
-_HELD = ("shift-", "alt-", "ctrl-", "meta-")  # one for each bit of the number less 1
+HELD = ("shift-", "alt-", "ctrl-", "meta-")  # one for each bit of the number less 1
+
+NAMED = frozenset((*_LETTERS.values(), *_NUMBERS.values(), ESCAPE))  # keys that have words
 
 _KEY = re.compile(
     r"\x1b(?:\[(?P<first>[0-9]{0,4})(?:;(?P<held>[0-9]{1,4}))?(?P<end>\[[A-E]|[@-Z\\-~])"
@@ -148,7 +150,7 @@ class Keys:
                 first, held = 1, first - 1  # as older terminals say what was held
             self._plain_arrows |= found["end"] in _ARROWS and not held
             name = _LETTERS.get(found["end"], "") if first == 1 else ""
-        prefix = "".join(word for bit, word in enumerate(_HELD) if held >> bit & 1)
+        prefix = "".join(word for bit, word in enumerate(HELD) if held >> bit & 1)
         return f"{prefix}{name}" if name else ""
 
     def _single(self, letter: str) -> str:
