@@ -125,6 +125,9 @@ def run(arguments: argparse.Namespace) -> int:
                     verbose=arguments.verbose,
                 ),
             )
+            if opened.place is not None:
+                hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
+                device.reader.announce()
             try:
                 _Reading(page, device, keyboard, suspension, hearing).run()
             finally:
