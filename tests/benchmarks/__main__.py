@@ -8,6 +8,7 @@ PARTS = (
     "text",
     "seek",
     "books",
+    "opening",
     "lines",
     "wire",
     "engine",

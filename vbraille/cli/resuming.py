@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.cli.build import build_book
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
-from vbraille.reading.places import BookOptions, last_book
-from vbraille.reading.places.resuming import resume
+from vbraille.reading.places import BookOptions, last_book, resume
 from vbraille.reading.seeking import BookOpening, Seeker
 from vbraille.render.braille.knobs import kept_values, with_values
 from vbraille.settings.chosen import display_name

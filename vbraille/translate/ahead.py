@@ -189,7 +189,7 @@ class BookAhead(Book):
 
     def _hear(self, seconds: float | None) -> None:
         """Take what other processes have translated; wait so long for the first to answer."""
-        streams = {p.stdout: p for p in self._processes if self._given(p)}
+        streams = {p.stdout: p for p in self._processes if p.stdout and self._given(p)}
         for stream in select(list(streams), (), (), seconds)[0]:
             process = streams[stream]
             done = self._answer(process)

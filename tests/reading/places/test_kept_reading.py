@@ -1,8 +1,9 @@
 """What a reader keeps, kept for the next reading."""
 
+from tests.reading.places.resumed import open_kept
 from vbraille.layout.pages import Layout
 from vbraille.reading.keeping import Keeping
-from vbraille.reading.places import BookOptions, KeptPlaces, open_kept
+from vbraille.reading.places import BookOptions, KeptPlaces
 from vbraille.translate import Book, BrailleTable, Document
 from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind
@@ -19,7 +20,7 @@ def read(folder, then):
         if resumed.place is not None:
             start = resumed.place.block
             before = resumed.place.lines_before_for(20, "en-ueb-g2.ctb")
-            line = resumed.place.line_for(20, "en-ueb-g2.ctb")
+            line = resumed.place.line
         layout = Layout(book, 20, start=start, lines_before=before)
         then(Keeping(resumed.kept), layout)
         resumed.kept.keep_index(resumed.source.index())

@@ -11,6 +11,7 @@ from random import Random
 import pytest
 
 from tests.conftest import SEED
+from tests.reading.places.resumed import open_kept
 from tests.tiers import by_tier
 from vbraille.errors import InputError
 from vbraille.reading.places import (
@@ -19,7 +20,6 @@ from vbraille.reading.places import (
     KeptPlace,
     KeptPlaces,
     last_book,
-    open_kept,
 )
 from vbraille.reading.places.anchoring import place_in
 from vbraille.reading.places.identity import QUICK_BYTES
@@ -494,8 +494,8 @@ class TestList:
             assert resumed.source.encoding.name == "iso8859-1"
             assert resumed.source.keep_lines
             assert resumed.place.character == 5000
-            assert resumed.place.line_for(26, "de-g1.ctb") == 77
-            assert resumed.place.line_for(27, "de-g1.ctb") is None
+            assert resumed.place.line == 77
+            assert (resumed.place.width, resumed.place.table) == (26, "de-g1.ctb")
 
     def test_what_cannot_be_opened_is_not_kept(self, folder):
         (folder / "empty.txt").write_bytes(b"")

@@ -193,7 +193,7 @@ def test_the_sentence_where_the_reader_is_not_installed():
     assert said.stdout == ""
     assert said.stderr.endswith(
         "is in ODT, and what reads that is not installed; "
-        "pip install 'vbraille[office]' installs it\n"
+        "pip install firecrawl-anydoc installs it\n"
     )
 
 

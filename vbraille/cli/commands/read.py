@@ -31,15 +31,16 @@ from vbraille.reading.places import KeptPlaces
 from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
-from vbraille.settings.saving import save_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
+    from pathlib import Path
 
     from vbraille.cli.build import Page
     from vbraille.engine.tally import Tally
+    from vbraille.render import Model
 
 _POLL_S = 0.02
 _PLACES = {
@@ -118,12 +119,15 @@ def run(arguments: argparse.Namespace) -> int:
                     kept=opened.kept,
                     scroll=Scroll(),
                     cue=hearing.cue,
-                    save_style=lambda style: save_profile(
+                    save_style=lambda style: _save(
                         settings.path, profile, replace(model, style=style)
                     ),
                     verbose=arguments.verbose,
                 ),
             )
+            if opened.place is not None:
+                hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
+                device.reader.announce()
             try:
                 _Reading(page, device, keyboard, suspension, hearing).run()
             finally:
@@ -245,6 +249,14 @@ class _Reading:
                 self._hearing.say("fault: nothing drives the device; space begins again, q stops")
         self._device.start_again()
         self._hearing.say("reading")
+
+
+def _save(path: Path, profile: str, model: Model) -> str:
+    """Save how braille feels in a profile, and give a sentence on that."""
+    # Most readings save nothing, and need not wait for what writes settings.
+    from vbraille.settings.saving import save_profile
+
+    return save_profile(path, profile, model)
 
 
 def _echo(chosen: str | None) -> Echo:

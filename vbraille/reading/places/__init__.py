@@ -1,7 +1,7 @@
 """Places in books, kept from one reading to the next."""
 
 from vbraille.reading.places.book import KeptBook
-from vbraille.reading.places.resuming import ResumedBook, last_book, open_kept
+from vbraille.reading.places.resuming import ResumedBook, last_book, resume
 from vbraille.reading.places.shelf import KeptPlaces
 from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, ListedBook
 
@@ -14,5 +14,5 @@ __all__ = [
     "ListedBook",
     "ResumedBook",
     "last_book",
-    "open_kept",
+    "resume",
 ]

@@ -7,17 +7,12 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.reading.places.anchoring import anchored
-from vbraille.translate.documents.document import Document
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from vbraille.reading.places.book import KeptBook
     from vbraille.reading.places.shelf import KeptPlaces
     from vbraille.reading.places.values import BookOptions, KeptPlace
     from vbraille.translate.source import Source
-
-    Opener = Callable[[str, BookOptions], Source]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,51 +57,6 @@ def last_book(places: KeptPlaces) -> KeptBook:
             f"vbraille books lists them"
         )
     return places.book(path)
-
-
-def open_document(file: str, options: BookOptions) -> Source:
-    """Open a plain text with the options that are for it."""
-    return Document.open(file, options.encoding, keep_lines=options.keep_lines)
-
-
-def open_kept(
-    places: KeptPlaces,
-    file: str | None,
-    options: BookOptions | None = None,
-    *,
-    opener: Opener = open_document,
-) -> ResumedBook:
-    """Open a book where it was left.
-
-    Parameters
-    ----------
-    places
-        What is kept.
-    file
-        Name of the file; None for the book that was read last.
-    options
-        Options to open it with; None for those of its last reading.
-    opener
-        Function that opens a file with options.
-
-    Raises
-    ------
-    InputError
-        If there is no last book, or the file cannot be read.
-    """
-    kept = last_book(places) if file is None else None
-    if file is None:
-        assert kept is not None
-        assert kept.path is not None, "a book without a file is never the last one"
-        file = str(kept.path)
-    if options is None and kept is None:
-        kept = places.book(file)
-    chosen = options if options is not None or kept is None else kept.options
-    assert chosen is not None
-    # Where options are given, a file that cannot be read is no book: nothing is kept of it.
-    source = opener(file, chosen)
-    kept = places.book(file) if kept is None else kept
-    return resume(source, kept, chosen)
 
 
 def resume(source: Source, kept: KeptBook, options: BookOptions) -> ResumedBook:

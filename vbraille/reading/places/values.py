@@ -47,10 +47,6 @@ class KeptPlace(msgspec.Struct, frozen=True):
     table: str = ""
     page: str = ""
 
-    def line_for(self, width: int, table: str) -> int | None:
-        """Number of the line in lines of a width by a table; None if it is not known for them."""
-        return self.line if (self.width, self.table) == (width, table) else None
-
     def lines_before_for(self, width: int, table: str) -> int | None:
         """Number of such lines before the block; None if it is not known for them."""
         return self.lines_before if (self.width, self.table) == (width, table) else None

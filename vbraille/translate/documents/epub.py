@@ -6,6 +6,7 @@ from bisect import bisect_right
 from functools import partial
 from itertools import accumulate
 from typing import TYPE_CHECKING, BinaryIO
+from weakref import finalize
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.html import digest_of
@@ -56,6 +57,7 @@ class EpubBook(PartedSource):
 
     def __init__(self, stream: BinaryIO, name: str) -> None:
         self._stream = stream
+        finalize(self, stream.close)  # before the collector looks at the stream, and complains
         _, digest = digest_of(stream, name)
         self._archive = Archive(stream, name)
         check_unlocked(self._archive)
@@ -164,9 +166,6 @@ class EpubBook(PartedSource):
     def close(self) -> None:
         """Close the file; it is closed in any case when the book is forgotten."""
         self._stream.close()
-
-    def __del__(self) -> None:
-        self.close()
 
     def _is_empty(self) -> bool:
         """Whether all parts that were read have no block."""

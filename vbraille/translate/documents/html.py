@@ -7,6 +7,7 @@ import io
 from functools import partial
 from typing import TYPE_CHECKING, BinaryIO
 from urllib.parse import unquote
+from weakref import finalize
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.markup.elements import BEGINS
@@ -61,6 +62,7 @@ class HtmlBook(PartedSource):
         language: str = "",
     ) -> None:
         self._stream = stream
+        finalize(self, stream.close)  # before the collector looks at the stream, and complains
         size, found = digest_of(stream, name)
         parts = parts_of(size)
         super().__init__(name, [1] * parts, digest or found, title=title, language=language)
@@ -125,9 +127,6 @@ class HtmlBook(PartedSource):
     def close(self) -> None:
         """Close the file; it is closed in any case when the book is forgotten."""
         self._stream.close()
-
-    def __del__(self) -> None:
-        self.close()
 
     def _before(self, part: int) -> bool:
         """Whether there is text in the parts before one."""

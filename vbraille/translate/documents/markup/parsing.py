@@ -6,6 +6,7 @@ import pickle
 from contextlib import closing
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any, Protocol
+from weakref import finalize
 
 from vbraille.errors import InputError
 from vbraille.translate.documents.markup.pieces import (
@@ -67,6 +68,8 @@ class Parsing:
         self._encoding = encoding
         self._offsets: list[int] = [0]  # of each part in the file, and of the next
         self._kept = TemporaryFile() if parts > 1 else None  # noqa: SIM115
+        if self._kept is not None:
+            finalize(self, self._kept.close)
         self._coming: Iterator[list[Passage]] | None = None
         self.pieces: Pieces | None = None
         self.reader: MarkupReader | None = None
@@ -99,9 +102,6 @@ class Parsing:
         """Forget what was kept."""
         if self._kept is not None:
             self._kept.close()
-
-    def __del__(self) -> None:
-        self.close()
 
     def _read(self) -> Iterator[list[Passage]]:
         """Passages of each part, from the first."""

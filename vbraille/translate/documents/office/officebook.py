@@ -71,7 +71,7 @@ def _document(content: bytes, name: str, form: str) -> Document:
     except ImportError:
         raise InputError(
             f"{name} is in {form.upper()}, and what reads that is not installed; "
-            f"pip install 'vbraille[office]' installs it"
+            f"pip install firecrawl-anydoc installs it"
         ) from None
     try:
         return anydoc.to_document(content, cast("Format", form))
