@@ -40,7 +40,7 @@ def test_a_course_is_led_left_taken_up_and_saved(tmp_path):
         assert terminal.end() == 0
     assert path.read_text() == "# my own\n"
     with program.Terminal(*command) as terminal:
-        terminal.until("going on: 2 choices are made\r\nchoice 3 of 20: texture\r\nnow: 1\r\n")
+        terminal.until("going on: choices made 2\r\nchoice 3 of 20: texture\r\nnow: 1\r\n")
         terminal.type("2121212121")
         said = terminal.until("choice 13 of 20: dot width\r\nnow: 1\r\n")
         assert "contrast: " in said  # what was found of it

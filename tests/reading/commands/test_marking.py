@@ -1,5 +1,6 @@
 """Bookmarks: set, told, gone to, deleted."""
 
+from tests.reading.commands.test_moving import finger_at
 from tests.reading.test_reader import Bench
 from vbraille.reading.places.values import Bookmark
 
@@ -29,6 +30,13 @@ def test_a_bookmark_is_set_by_one_key_or_by_a_name_and_gone_to():
     assert bench.press("othe nd\n")[-1] == (
         "bookmark the nd: there is none; the nearest is The end"
     )
+
+
+def test_a_bookmark_within_a_word_is_told_by_the_whole_word():
+    bench = Bench(TEXT, width=60)
+    finger_at(bench, bench.reader.line.cell_of(TEXT.index("thing")))
+    bench.press("mhere\n")
+    assert bench.press("B") == ["bookmark here: something of its own"]
 
 
 def test_a_bookmark_is_moved_and_deleted():

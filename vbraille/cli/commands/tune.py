@@ -135,7 +135,7 @@ class _Guided:
         say_line(f"profile: {self._profile}")
         say_line("h says the keys")
         if self.course.choices:
-            say_line(f"going on: {len(self.course.choices)} choices are made")
+            say_line(f"going on: choices made {len(self.course.choices)}")
         self._ask(device)
         placing = Placing.DONE
         while not (self._left or self.course.done):

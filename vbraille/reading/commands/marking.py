@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
 
 _WORDS = 5  # of the text that are kept with a bookmark
+_LONGEST_WORD = 30  # characters
 
 
 def ask_mark(reader: Reader) -> None:
@@ -50,8 +51,11 @@ def _set(reader: Reader, name: str) -> None:
     if line is None:
         return
     place = reader.character
-    text = str(line.block.text)[line.block.text.index(place) :]
-    words = " ".join(text[:200].split()[:_WORDS])
+    text, at = str(line.block.text), line.block.text.index(place)
+    # The finger may be within a word, which is told whole.
+    back = range(at, max(at - _LONGEST_WORD, -1), -1)
+    at = next((n for n in back if n == 0 or text[n - 1].isspace()), at)
+    words = " ".join(text[at : at + 200].split()[:_WORDS])
     # What the reader is told of it are some words; to find it again in a changed book takes more.
     kept = place_in(reader.layout.book.source, place)
     reader.kept.set_bookmark(Bookmark(name, place, words, kept.share, kept.after))

@@ -191,7 +191,9 @@ COMMANDS = (
     Command("CONTRAST_DOWN", ("C",), "less contrast", made(turning.turn, "contrast", -1)),
     Command("DOT_WIDTH_UP", ("d",), "wider dots", made(turning.turn, "dot_width_mm", 1)),
     Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", made(turning.turn, "dot_width_mm", -1)),
-    Command("DOT_SPACING_UP", ("s",), "dots wider apart", made(turning.turn, "dot_spacing_mm", 1)),
+    Command(
+        "DOT_SPACING_UP", ("s",), "dots farther apart", made(turning.turn, "dot_spacing_mm", 1)
+    ),
     Command(
         "DOT_SPACING_DOWN", ("S",), "dots closer together", made(turning.turn, "dot_spacing_mm", -1)
     ),
