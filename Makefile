@@ -12,7 +12,7 @@ NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q
 unexport PYTHONDONTWRITEBYTECODE
 
 .DELETE_ON_ERROR:
-.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound
+.PHONY: read test test-all soak lint tests all-tests bench format setup clean sound speech
 
 read: .venv/compiled
 	$(BIN)/vbraille read texts/english.txt --model stress2 --device sim --hand sweep:60 \
@@ -61,11 +61,19 @@ format: .venv/tests
 
 setup: .venv/compiled
 
-# PortAudio, for the participant's signals in sessions; without it the terminal's bell rings.
+# PortAudio, for the participant's signals in sessions and the cues of a reading; without it the
+# terminal's bell rings.
 sound:
 	@dpkg -s libportaudio2 >/dev/null 2>&1 || { set -e; \
-	  echo 'Installing from Debian: libportaudio2 (sounds in legibility sessions)'; \
+	  echo 'Installing from Debian: libportaudio2 (sounds in legibility sessions, and cues in reading)'; \
 	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq libportaudio2; }
+
+# The speech of `vbraille read --speech`; on a desktop it is usually there.
+speech:
+	@command -v speech-dispatcher >/dev/null || { set -e; \
+	  echo 'Installing from Debian: speech-dispatcher, speech-dispatcher-espeak-ng (they speak what a reader is told)'; \
+	  $(SUDO) apt-get update -qq; \
+	  $(SUDO) apt-get install -y -qq speech-dispatcher speech-dispatcher-espeak-ng; }
 
 .venv/pip:
 	@[ -x $(PYTHON) ] && $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \

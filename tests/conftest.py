@@ -1,7 +1,9 @@
 """What all tests share: one seed, and hypothesis without chance or clocks."""
 
 import gc
+import os
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -11,6 +13,12 @@ from tests.tiers import TIER, by_tier
 
 SEED = 20090618
 TEXTS = Path(__file__).parent.parent / "texts"
+
+# Nobody's own settings change what tests see; there is no such file.
+os.environ["VBRAILLE_SETTINGS"] = "/nonexistent/settings.toml"
+
+_FOLDER = pytest.StashKey[TemporaryDirectory]()
+_places: list[str] = []  # tests that have had places so far
 
 EXAMPLES = by_tier(30, 100, 5000)  # of a law that does not say how many it needs
 
@@ -36,6 +44,22 @@ def pytest_collection_finish(session: pytest.Session) -> None:  # noqa: ARG001
     """Look for garbage again, but never among what was collected: it stays to the end."""
     gc.freeze()
     gc.enable()
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Give each test places of its own, and none that another has kept."""
+    if _FOLDER not in item.config.stash:
+        item.config.stash[_FOLDER] = TemporaryDirectory(prefix="vbraille-places-")
+    folder = item.config.stash[_FOLDER]
+    _places.append(item.nodeid)
+    os.environ["VBRAILLE_PLACES"] = f"{folder.name}/{len(_places)}/places.sqlite"
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Remove the places of all tests."""
+    folder = config.stash.get(_FOLDER, None)
+    if folder is not None:
+        folder.cleanup()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

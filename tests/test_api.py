@@ -137,7 +137,7 @@ class Still(vbraille.Device):
         (lambda: vbraille.VBD.style.replace(texture="x"), "texture is 'x'; it must be a number"),
         (lambda: vbraille.VBD.style.replace(mapping="sheared"), r"MAPPINGS\['sheared'\]"),
         (lambda: vbraille.VBD.style.replace(wave=1), "a style has no wave; it has profile, "),
-        (lambda: vbraille.VBD.style.replace(cell_gap_mm=5), "cell_gap_mm is of the geometry"),
+        (lambda: vbraille.VBD.style.replace(cell_gap_mm=0), "cell gap is 0 mm; it must be 0.1"),
         (lambda: vbraille.render_text("a", display="vbd"), "'vbd'; give vbraille.VBD$"),
         (lambda: vbraille.render_text("a", display=3), "give vbraille.VBD, vbraille.STRESS2 or"),
         (lambda: vbraille.render_text("a", style="dots"), "style is 'dots'; give a vbraille.Br"),

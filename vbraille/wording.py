@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 _NAMES = {0: "null", 7: "bell", 8: "backspace", 9: "tab", 10: "line feed", 11: "vertical tab"}
 _NAMES |= {12: "form feed", 13: "carriage return", 27: "escape", 127: "delete"}
 # Settings that a program gives by another name than the command line does.
-_OPTIONS = {"folder": "out"}
+_OPTIONS = {"folder": "out", "dialect": "brf-table"}
 _CONTROLS = {
     code: f"<{_NAMES.get(code) or (f'control {chr(code + 64)}' if code < 32 else f'{code:02x}')}>"
     for code in (*range(0x20), *range(0x7F, 0xA0))
@@ -47,7 +47,7 @@ def spelled(message: str) -> str:
     import re  # takes longer to load than all else that a command line needs to begin
 
     return re.sub(
-        "\u2039([a-z]+)\u203a", lambda found: f"--{_OPTIONS.get(found[1], found[1])}", message
+        "\u2039([a-z-]+)\u203a", lambda found: f"--{_OPTIONS.get(found[1], found[1])}", message
     )
 
 

@@ -6,6 +6,9 @@ from importlib import import_module
 PARTS = (
     "render",
     "text",
+    "seek",
+    "books",
+    "opening",
     "lines",
     "wire",
     "engine",
@@ -16,6 +19,7 @@ PARTS = (
     "analysis",
     "coverage",
     "reader",
+    "turning",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -29,12 +29,13 @@ def start(*arguments, **options):
 
 
 class Terminal:
-    """A process at a terminal of its own: what it prints is read, keys are typed."""
+    """A process at a terminal of its own: what it prints is read, keys are typed, bells counted."""
 
     def __init__(self, *arguments, program=PROGRAM, **environment):
         self.master, self._slave = os.openpty()
         self.before = termios.tcgetattr(self._slave)
         self.printed = ""
+        self.bells = 0  # they ring beside what is printed, whenever they do
         # The first terminal that the leader of a new session opens is the session's: Ctrl-C works.
         at_terminal = 'exec "$@" <>"$0" >&0 2>&0'
         self.process = subprocess.Popen(
@@ -104,5 +105,7 @@ class Terminal:
         if not select.select([self.master], [], [], seconds)[0]:
             return ""
         text = os.read(self.master, 65_536).decode("utf-8", "replace")
+        self.bells += text.count("\a")
+        text = text.replace("\a", "")
         self.printed += text
         return text

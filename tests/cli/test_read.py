@@ -9,7 +9,7 @@ from tests.cli import program
 from tests.tiers import heavy
 from vbraille.layout.pages import Layout
 from vbraille.reading import COMMANDS, Context
-from vbraille.reading.commands import commands_of
+from vbraille.reading.commands.table import commands_of
 from vbraille.translate import Book, BrailleTable, Document
 
 SUMMARY = (
@@ -120,8 +120,7 @@ def test_keys_at_a_terminal(tmp_path, text):
         assert terminal.settings() != terminal.before
         helped = press("h", "q: stop reading").splitlines()
         assert [line for line in helped if ": " in line and not line.startswith("speed")] == [
-            f"{' or '.join('space' if key == ' ' else key for key in command.keys)}: {command.help}"
-            for command in commands_of(Context.READING)
+            f"{command.spoken_keys}: {command.help}" for command in commands_of(Context.READING)
         ]
         word = ""
         while "two" not in word:
@@ -134,14 +133,14 @@ def test_keys_at_a_terminal(tmp_path, text):
         press("c", "contrast: 0.9")
         press(" ", "paused")
         press(" ", "reading")
-        press("x", "no command: 'x'; h says the keys")
+        press("Q", "no command: 'Q'; h says the keys")
         press("n", "line: 2")
-        press("\x1b[B", "line: 3")
+        press("\x1bOB", "line: 3")
         press("n", "last line")
         press("\x1bOA", "line: 2")
         press("\x1b[A", "line: 1")
         press("p", "first line")
-        press("\x1b[15~", "no command: 'f5'; h says the keys")
+        press("\x1b[24~", "no command: 'f12'; h says the keys")
         press("\x1b[1;5C", "no command: 'ctrl-right'; h says the keys")
         press("\x1b[99~é", "no command: 'é'; h says the keys")
         assert "~" not in terminal.printed  # a sequence that stands for no key is passed over whole
@@ -155,6 +154,50 @@ def test_keys_at_a_terminal(tmp_path, text):
         assert summary.startswith("summary: lines 5,")
         for label in ("cells: ", "text: "):  # no echo unless asked for
             assert label not in terminal.printed
+        check_plain(terminal)
+
+
+CHAPTER = "\n\n".join(
+    f"Paragraph {n} tells of long and winding things that are {'café' if n == 7 else 'here'}."
+    for n in range(1, 61)
+)
+
+
+def test_a_book_is_found_one_s_way_in_by_keys_at_a_terminal(text):
+    text.write_text(CHAPTER)
+    with program.Terminal("read", text, "--advance", "key", "--cells", "60") as terminal:
+
+        def press(keys, *said):
+            """Type keys; these lines and no others are said, with few bytes beside them."""
+            terminal.type(keys)
+            new = terminal.until(re.escape(said[-1]) + r"\r\n$")
+            assert [line for line in new.split("\r\n")[:-1] if "speed" not in line] == list(said)
+            assert len(new.encode()) - sum(len(line.encode()) for line in said) <= 40
+
+        terminal.until("h says the keys\r\n")
+        press("/", "search: type the text, Enter")
+        press("cafex\x7f\n", "text: cafe", "not found after this: cafe")
+        press("'", "accents: do not matter")
+        press("/\n", "search: type the text, Enter", "text: cafe", "line: 7")
+        press("mhere\n", "bookmark: type a name, Enter", "name: here", "bookmark here: set")
+        press(">", "line: 60")
+        press("i", "line: 60", "page: 3 in braille", "percent: 98", "words left: 11")
+        press("b", "line: 7")
+        press("\x1b[6~", "line: 26")
+        press("g100 %\n", "go to: type a page, or percent as in 40%, then Enter", "page: 100 %",
+              "line: 60")  # fmt: skip
+        press("ohere\n", "go to bookmark: type its name, Enter", "name: here", "line: 7")
+        press("\x1b[H", "cells: 1 to 26")  # it was in the second part
+        press("\x1b[C", "cells: 27 to 50")
+        press("\x1b[C", "line: 8")
+        press("\x1b[D", "line: 7")
+        press("\x1b[H", "cells: 1 to 26")
+        press("x", "table: en-ueb-g1.ctb")
+        press("?", "learn: a key says what it does; this key again or q ends it")
+        press("q", "learn: off")
+        press("/given up\x1b", "search: type the text, Enter", "text: given up")
+        terminal.type("q")
+        assert terminal.end() == 0
         check_plain(terminal)
 
 

@@ -201,7 +201,7 @@ def test_an_experimenter_at_a_terminal(tmp_path, mini):
         assert terminal.end() == 0
     assert second.returncode == 2
     assert "open in another console" in second.stderr
-    assert "\a" in terminal.printed
+    assert terminal.bells
     assert json.loads((tmp_path / "s" / "session.json").read_text())["fields"] == {"hand": "left"}
     assert re.search(r"stopped: 1 of 2 trials have answers", terminal.printed)
     # What an escape of a terminal would do to a screen reader is not sent.

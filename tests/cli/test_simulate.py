@@ -234,3 +234,22 @@ def test_it_loads_nothing_heavy():
     loaded = set(done.stdout.split())
     assert "vbraille.simulation.simulator" in loaded
     assert not loaded & {"numba", "louis", "matplotlib", "h5py", "serial"}
+
+
+def test_its_buttons_are_pressed_when_they_are_to_be(tmp_path):
+    link = tmp_path / "vb0"
+    presses = "1@0.1s-0.5s,3@0.3s-3000s"
+    with simulated("--link", link, "--press", presses) as device:
+        device.until("link: .*")
+        with host_of(device, link) as host:
+            host.greet()
+            host.until(lambda: host.of(State)[-1].buttons == 0b100)
+            buttons = [state.buttons for state in host.of(State)]
+        assert [*dict.fromkeys(buttons)] == [0, 1, 5, 4]
+        device.end()
+
+
+def test_a_press_that_is_none_is_refused():
+    done = program.run("simulate", "--press", "1@2s,9@3s")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "vbraille: button is 9; it must be 1 to 8\n"

@@ -144,7 +144,7 @@ class Bench:
         return begin(self.fresh_port(options), wanted, now_ns or self.now_ns, pause or self.pause)
 
     def fresh_port(self, options="") -> MemoryPort:
-        """Its line, as it is when it has just been opened."""
+        """Line of the device, as it is when it has just been opened."""
         self.port = MemoryPort(self, f"{self.address}{options}")
         return self.port
 

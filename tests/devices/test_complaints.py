@@ -6,7 +6,7 @@ import pytest
 
 from tests.devices.bench import Bench
 from vbraille.devices.base import Placing
-from vbraille.devices.events import Back, Button, Placed, Silent, WatchdogTripped
+from vbraille.devices.events import Back, Button, Placed, Silent, Unplugged, WatchdogTripped
 from vbraille.devices.saying import told
 from vbraille.devices.wire.codec import encode
 from vbraille.devices.wire.messages import Encoder, Error
@@ -71,11 +71,18 @@ def test_buttons_are_told_as_they_change():
     ]
     made.unplug()
     made.run(device, 1)
-    made.controller.buttons = 0
+    assert list(device.take_events()) == [
+        Button(1, pressed=False),
+        Button(2, pressed=False),
+        Unplugged(),
+    ]
+    made.controller.buttons = 0b100  # held when it is plugged in: nobody pressed it now
     made.plug()
     made.back(device)
-    let_go = [event for event in device.take_events() if isinstance(event, Button)]
-    assert let_go == [Button(1, pressed=False), Button(2, pressed=False)]
+    made.controller.buttons = 0
+    made.run(device, 5)
+    told = [event for event in device.take_events() if isinstance(event, Button)]
+    assert told == [Button(3, pressed=False)]
     device.close()
 
 

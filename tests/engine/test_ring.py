@@ -1,6 +1,7 @@
 """The ring: every record once and whole to each reader, or counted as lost."""
 
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -197,7 +198,7 @@ def test_a_reader_that_joins_late_begins_with_the_newest_record():
 def test_readers_in_other_processes_see_whole_records_or_count_them():
     count = 30_000
     extent = shared.Extent(*SHAPE, 1, 64)
-    descriptor = shared.create()
+    descriptor = os.memfd_create("vbraille")
     memory = shared.attach(descriptor, extent)
     (_, writer), (_, here) = shared.divide(memory, extent), shared.watch(memory, extent)
     command = [sys.executable, "-c", APART, str(descriptor), str(count - 1)]

@@ -8,9 +8,7 @@ from vbraille.reading.keys import BURST, PASTE, Keys
 
 NAMES = {
     "\x1b[A": "up",
-    "\x1bOA": "up",
     "\x1b[B": "down",
-    "\x1bOB": "down",
     "\x1b[C": "right",
     "\x1b[D": "left",
     "\x1b[H": "home",
@@ -27,6 +25,9 @@ NAMES = {
     "\x1b[24~": "f12",
     "\x1b[Z": "backtab",
     "\x1b[1;5C": "ctrl-right",
+    "\x1b[5D": "ctrl-left",
+    "\x1b[25~": "f13",
+    "\x1bOT": "f5",
     "\x1b[1;2A": "shift-up",
     "\x1b[3;4~": "shift-alt-delete",
     "\x1bx": "alt-x",
@@ -44,6 +45,47 @@ NAMES = {
     "\x1b[201~": None,
     "\x1b[200~n\nq\x1b[31mé\x1b[201~": PASTE,
 }
+
+
+FS = [f"f{n}" for n in range(1, 13)]
+TURNED = ["ctrl-up", "ctrl-down", "ctrl-right", "ctrl-left"]
+_TILDE = " ".join(f"\x1b[{n}~" for n in (15, 17, 18, 19, 20, 21, 23, 24))
+_XTERM_FS = f"\x1bOP \x1bOQ \x1bOR \x1bOS {_TILDE}"
+_XTERM_TURNED = "\x1b[1;5A \x1b[1;5B \x1b[1;5C \x1b[1;5D"
+# What terminals send, by their terminfo and manuals: home, end, page up and down, F1 to F12, and
+# arrows with Ctrl, which the Linux console sends as without.
+SENT = {
+    "xterm": ("\x1b[H \x1b[F", _XTERM_FS, _XTERM_TURNED),
+    "xterm, application": ("\x1bOH \x1bOF", _XTERM_FS, _XTERM_TURNED),
+    "linux": ("\x1b[1~ \x1b[4~", f"\x1b[[A \x1b[[B \x1b[[C \x1b[[D \x1b[[E {_TILDE[6:]}", ""),
+    "tmux": ("\x1b[1~ \x1b[4~", _XTERM_FS, _XTERM_TURNED),
+    "putty": (
+        "\x1b[1~ \x1b[4~",
+        f"\x1b[11~ \x1b[12~ \x1b[13~ \x1b[14~ {_TILDE}",
+        "\x1bOA \x1bOB \x1bOC \x1bOD",
+    ),
+    "rxvt": (
+        "\x1b[7~ \x1b[8~",
+        f"\x1b[11~ \x1b[12~ \x1b[13~ \x1b[14~ {_TILDE}",
+        "\x1bOa \x1bOb \x1bOc \x1bOd",
+    ),
+}
+
+
+@pytest.mark.parametrize("terminal", SENT)
+def test_what_terminals_send(terminal):
+    ends, functions, turned = (sent.replace(" ", "").encode() for sent in SENT[terminal])
+    keys = Keys()
+    assert keys.feed(ends + b"\x1b[5~\x1b[6~", 0.0) == ["home", "end", "pageup", "pagedown"]
+    assert keys.feed(functions, 0.1) == FS
+    assert keys.feed(b"\x1b[A\x1b[B", 0.2) == ["up", "down"]
+    assert keys.feed(turned, 0.3) == (TURNED if turned else [])
+
+
+def test_arrows_of_a_terminal_that_always_sends_them_in_the_other_way_are_arrows():
+    keys = Keys()
+    for n in range(3):
+        assert keys.feed(b"\x1bOA\x1bOD", n) == ["up", "left"]
 
 
 @pytest.mark.parametrize("sent", NAMES, ids=repr)

@@ -1,5 +1,6 @@
 """A reader on the manual clock: lines, commands, and what is said."""
 
+import io
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +10,13 @@ from tests.engine.test_loop import Recording, biggest_step, run, straight
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.local import LocalEngine
 from vbraille.layout.pages import Layout
-from vbraille.reading.commands import press
+from vbraille.reading.commands.table import press
 from vbraille.reading.echo import Echo
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, Tuning
 from vbraille.simulation.hand import Sweep
-from vbraille.translate import Book, BrailleTable, CellsSource, Document
+from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate.braillefiles.lines import open_brf
 
 SPAN_MM = 10.8
 TEXT = "one two three\n\nfour five six\n\nseven eight nine\n"
@@ -40,6 +42,7 @@ class Bench:
         width=20,
         book=None,
         rate_hz=1000.0,
+        keep_lines=False,
         **options,
     ):
         self.clock = ManualClock()
@@ -50,7 +53,8 @@ class Bench:
         self.loop = self.engine.loop
         self.said: list[str] = []
         if book is None:
-            book = Book(Document.from_text(text), BrailleTable("en-ueb-g2.ctb"))
+            document = Document.from_text(text, keep_lines=keep_lines)
+            book = Book(document, BrailleTable("en-ueb-g2.ctb"))
         self.layout = Layout(book, width)
         self.reader = Reader(
             self.layout,
@@ -95,8 +99,8 @@ def test_the_hand_s_return_brings_the_next_line_until_the_end():
 
 
 def test_a_text_that_is_braille_already_is_read_like_any_other():
-    braille = Document.from_text(",read ,me\n  #c", keep_lines=True)
-    bench = Bench(book=Book(CellsSource(braille)), hand=Sweep(400), echo=Echo.BOTH)
+    braille = open_brf(io.BytesIO(b",read ,me\n  #c"), "text")
+    bench = Bench(book=Book(braille), hand=Sweep(400), echo=Echo.BOTH)
     bench.run()
     assert bench.reader.done
     assert [said for said in bench.said if not said.startswith("speed")] == [

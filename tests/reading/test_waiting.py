@@ -31,7 +31,7 @@ def test_a_hand_that_stops_within_a_line_is_told_once_how_the_next_one_comes():
     bench.device.move(straight((0, 40.0), (1, 42.0)))
     bench.run(15)
     assert len(waiting(bench)) == 1
-    assert bench.reader.hopeless is None
+    assert bench.reader.under.hopeless is None
 
 
 @pytest.mark.no_cover
@@ -83,9 +83,9 @@ def test_a_hand_that_turns_back_before_the_end_is_told(places, hopeless):
     bench.run(7)
     (said,) = waiting(bench)
     assert said.startswith(f"waiting: the finger turns back at {places[-1] + 5.4:.0f} mm, and line")
-    assert (bench.reader.hopeless is not None) == hopeless
+    assert (bench.reader.under.hopeless is not None) == hopeless
     if hopeless:
-        assert bench.reader.hopeless.startswith("line 1 cannot be read to its end: ")
+        assert bench.reader.under.hopeless.startswith("line 1 cannot be read to its end: ")
     assert bench.reader.line_number == 1
 
 
@@ -94,7 +94,7 @@ def test_a_hand_that_waits_at_the_left_is_no_carriage_in_need():
     bench = Bench(text="one two three")
     bench.device.move(straight((0, -10.8), *((n, -10.8 + 5 * (n % 2)) for n in range(1, 20))))
     bench.run(21)
-    assert bench.reader.hopeless is None
+    assert bench.reader.under.hopeless is None
 
 
 @pytest.mark.no_cover
@@ -110,7 +110,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
         "line 1 goes on"
     ]
     assert bench.engine.poll()["flags"][-1] & Flag.HELD
-    assert bench.reader.hopeless is None
+    assert bench.reader.under.hopeless is None
     bench.device.taking = True
     bench.run(0.1)
     assert bench.said[-1] == "device: takes frames again; line 1 is felt from here on"
@@ -119,7 +119,7 @@ def test_a_line_that_the_device_did_not_take_is_not_read():
     assert bench.reader.line_number == 2
     bench.device.taking = False
     bench.run(12)
-    assert bench.reader.hopeless == (
+    assert bench.reader.under.hopeless == (
         "the device has taken no frames for 10 s, and line 2 was not felt to its end; switch it "
         "off and on, and read on from there"
     )
@@ -141,9 +141,11 @@ def test_a_hand_that_never_comes_back_to_the_left_stop_is_told(places, hopeless)
     )
     bench.run(4.5)
     assert len(waiting(bench)) == 1
-    assert (bench.reader.hopeless is not None) == hopeless
+    assert (bench.reader.under.hopeless is not None) == hopeless
     if hopeless:
-        assert bench.reader.hopeless.startswith("line 1 is read and never done: the finger turns")
+        assert bench.reader.under.hopeless.startswith(
+            "line 1 is read and never done: the finger turns"
+        )
     assert bench.reader.line_number == 1
 
 
@@ -156,4 +158,4 @@ def test_a_hand_that_reads_the_end_of_a_line_again_is_told_nothing():
     bench.device.move(straight(*way))
     bench.run(9)
     assert waiting(bench) == []
-    assert bench.reader.hopeless is None
+    assert bench.reader.under.hopeless is None

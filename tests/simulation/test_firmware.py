@@ -93,7 +93,7 @@ class Bench:
         return heard
 
     def state(self):
-        """Its STATE after another millisecond."""
+        """STATE of the controller after another millisecond."""
         *_, state = self.tick()
         return state
 

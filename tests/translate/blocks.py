@@ -18,6 +18,9 @@ class BlockList:
     """A source of these blocks."""
 
     name = "blocks"
+    title = language = ""
+    in_cells = False
+    complete = True
 
     def __init__(self, *blocks: Block) -> None:
         self._blocks = blocks

@@ -17,9 +17,9 @@ class Counting(BrailleTable):
         super().__init__(name)
         self.asked: list[str] = []
 
-    def translate(self, text) -> Cells:
+    def translate(self, text, marks=()) -> Cells:
         self.asked.append(str(text))
-        return super().translate(text)
+        return super().translate(text, marks)
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,7 @@
 """Blocks, and sources of ready cells."""
 
+import hashlib
+import io
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +13,8 @@ from tests.laid import cuts_inside, laid_out, rebuilt
 from tests.translate.blocks import BlockList, block_of
 from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
-from vbraille.translate import BlockKind, Book, BrailleTable, Cells, CellsSource, Document, Source
+from vbraille.translate import BlockKind, Book, BrailleTable, Cells, Document, Source
+from vbraille.translate.braillefiles.lines import BrailleLines, open_brf, open_unicode_braille
 
 VERSE = """\
   ,! 9vi*t]
@@ -22,8 +25,8 @@ VERSE = """\
 ASCII = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
 
 
-def braille(text: str) -> CellsSource:
-    return CellsSource(Document.from_text(text, keep_lines=True))
+def braille(text: str) -> BrailleLines:
+    return open_unicode_braille(io.BytesIO(text.encode()), "text")
 
 
 class TestBlock:
@@ -107,14 +110,12 @@ class TestReadyCells:
     def test_it_is_the_file_that_it_was_read_from(self, tmp_path: Path):
         path = tmp_path / "book.brf"
         path.write_bytes(b",A B\r\nC\r\n\x0cD\r\n")
-        document = Document.open(path, keep_lines=True)
-        source: Source = CellsSource(document)
-        assert [line.text for line in Layout(Book(source), 20).lines()] == [",A B", "C", "", "D"]
-        assert (source.name, source.sha256()) == (str(path), document.sha256())
-        assert [source.block_at(place) for place in (0, 6, 20)] == [0, 1, None]
+        source: Source = open_brf(path.open("rb"), str(path))
+        assert [line.text for line in Layout(Book(source), 20).lines()] == [",A B", "C", "D"]
+        assert source.sha256() == hashlib.sha256(path.read_bytes()).hexdigest()
+        assert [source.block_at(place) for place in (0, 6, 20)] == [1, 2, None]
         assert source.progress(0) == 0
         assert source.note() is None
-        document.close()
 
     def test_what_is_no_braille_is_named(self):
         with pytest.raises(InputError, match=r"^text is not all braille: 'é' is neither"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from vbraille.braille.geometry import PRESETS
@@ -12,15 +12,16 @@ from vbraille.errors import InputError
 from vbraille.layout.pages import Layout
 from vbraille.layout.texts import cells_per_line, choose_table
 from vbraille.layout.unknown import Unknown
-from vbraille.render import MAPPINGS, MODELS, Model, Profile, single_row
+from vbraille.layout.unshown import Unshown
+from vbraille.render import MAPPINGS, Model, Profile, single_row
 from vbraille.translate import (
     Book,
     BrailleTable,
-    CellsSource,
-    Document,
     Undefined,
     six_dot_table,
 )
+from vbraille.translate.languages import has_tables
+from vbraille.translate.opening import open_source, open_stream
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.layout.pages import Line
+    from vbraille.reading.places import KeptPlace
     from vbraille.translate import Source
 
 
@@ -45,6 +47,8 @@ class Page:
         Numbers of the first and last line that were asked for.
     unknown
         Counter of characters that the table does not know; None where there is no table.
+    unshown
+        Counter of what the source holds that cannot be shown.
     """
 
     layout: Layout
@@ -52,6 +56,7 @@ class Page:
     first: int
     last: int | None
     unknown: Unknown | None
+    unshown: Unshown = field(default_factory=Unshown)
 
     @property
     def source(self) -> Source:
@@ -91,14 +96,16 @@ class Page:
             say_line(spelled(note), aside=True)
 
     def say_unknown(self) -> None:
-        """Say at the end how many characters the table does not know, if there were any."""
-        sentence = None if self.unknown is None else self.unknown.sentence
-        if sentence is not None:
-            say_line(spelled(sentence), aside=True)
+        """Say at the end what was not shown: unknown characters, and things such as formulas."""
+        for counter in (self.unknown, self.unshown):
+            sentence = None if counter is None else counter.sentence
+            if sentence is not None:
+                say_line(spelled(sentence), aside=True)
 
     def _count(self, line: Line) -> None:
         if self.unknown is not None:
             self.unknown.see(line)
+        self.unshown.see(line)
 
 
 def build_lengths(
@@ -135,13 +142,36 @@ def build_lengths(
     return replace(model, style=replace(model.style, geometry=geometry))
 
 
-def build_table(arguments: argparse.Namespace) -> BrailleTable:
-    """Table for the text; InputError if there is no such table."""
-    return choose_table(arguments.language, arguments.grade, arguments.table, arguments.undefined)
+def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTable:
+    """Table for a text; InputError if there is no such table.
+
+    Parameters
+    ----------
+    arguments
+        Parsed options of the command.
+    language
+        Language of the text as its own source says, whose usual table is taken if no option of
+        the command line names a language or a table, and there is one.
+    """
+    named, grade, table = _translation(arguments, language)
+    return choose_table(named, grade, table, arguments.undefined)
+
+
+def _translation(
+    arguments: argparse.Namespace, language: str
+) -> tuple[str | None, int | None, str | None]:
+    """Language, grade and table that the reader chose for a text whose own language is this."""
+    named, grade, table = arguments.language, arguments.grade, arguments.table
+    usual = {"language", "table"} - arguments.settled  # what the settings say is for other texts
+    asked = any(getattr(arguments, name) is not None for name in usual)
+    if not asked and language and has_tables(language):
+        named, table = language, None
+        grade = None if "table" in arguments.settled else grade
+    return named, grade, table
 
 
 def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
-    """Text and table, before anything is laid out; a BRF file has no table.
+    """Text and table, before anything is laid out; a source that is in braille has no table.
 
     With `six_dots`, a table of eight dots is refused.
 
@@ -150,44 +180,59 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     InputError
         If an option or the text cannot be used.
     """
-    if arguments.file.lower().endswith(".brf"):
-        return _build_brf(arguments)
-    table = build_table(arguments)
+    if arguments.file == "-" and arguments.form is None:
+        build_table(arguments)  # nobody types a text for a table that is not there
+    source = _open(arguments)
+    if source.in_cells:
+        for option in ("table", "language", "grade"):
+            if getattr(arguments, option) is not None and option not in arguments.settled:
+                raise InputError(f"{source.name} is in braille already; leave out --{option}")
+        return Book(source)
+    table = build_table(arguments, source.language)
     if six_dots and table.eight_dots:
         raise InputError(_eight_dots(table))
-    keep_lines = arguments.keep_lines
-    if arguments.file == "-":
-        if sys.stdin is None:
-            raise InputError("standard input is closed; give a text there, or the name of a file")
-        if sys.stdin.isatty():
-            say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
-        document = Document.take(
-            sys.stdin.buffer, "standard input", arguments.encoding, keep_lines=keep_lines
-        )
-    else:
-        document = Document.open(arguments.file, arguments.encoding, keep_lines=keep_lines)
-    return Book(document, table)
+    chosen, grade, _ = _translation(arguments, source.language)
+    return Book(source, table, language=chosen or "", grade=grade)
 
 
-def _build_brf(arguments: argparse.Namespace) -> Book:
-    for option in ("table", "language", "grade"):
-        if getattr(arguments, option) is not None:
-            raise InputError(f"{arguments.file} is in braille already; leave out --{option}")
-    return Book(CellsSource(Document.open(arguments.file, arguments.encoding, keep_lines=True)))
+def _open(arguments: argparse.Namespace) -> Source:
+    """Book of the options, from a file or from standard input."""
+    how = {
+        "encoding": arguments.encoding,
+        "keep_lines": arguments.keep_lines,
+        "brf_table": arguments.brf_table,
+        "form": arguments.form,
+    }
+    if arguments.file != "-":
+        return open_source(arguments.file, **how)
+    if sys.stdin is None:
+        raise InputError("standard input is closed; give a text there, or the name of a file")
+    if sys.stdin.isatty():
+        say_line("type the text; Ctrl-D on an empty line ends it", aside=True)
+    return open_stream(sys.stdin.buffer, "standard input", **how)
 
 
-def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
+def lay_out(
+    arguments: argparse.Namespace,
+    book: Book,
+    model: Model,
+    width: int | None = None,
+    place: KeptPlace | None = None,
+) -> Page:
     """Page of a text for a display and a style, whose width is said on stderr.
+
+    With a `width`, in cells, lines are so long whatever the display. With a `place` they are laid
+    out from there.
 
     Raises
     ------
     InputError
         If there is no room for a cell, or the text ends before the lines asked for.
     """
-    width = cells_per_line(model.style.geometry, model.display)
+    width = width or cells_per_line(model.style.geometry, model.display)
     first, last = arguments.lines
-    layout = Layout(book, width)
-    if layout.line(first) is None:
+    layout = Layout(book, width) if place is None else _layout_at(book, width, place)
+    if place is None and layout.line(first) is None:
         lines = layout.count()
         name = book.source.name
         if not lines:
@@ -201,18 +246,14 @@ def lay_out(arguments: argparse.Namespace, book: Book, model: Model) -> Page:
     return Page(layout, model, first, last, unknown)
 
 
-def build_page(arguments: argparse.Namespace, *, six_dots: bool = False) -> Page:
-    """Page of the text; stderr is told how wide it is.
-
-    With `six_dots`, a table of eight dots is refused.
-
-    Raises
-    ------
-    InputError
-        If an option or the text cannot be used.
-    """
-    model = build_lengths(arguments, MODELS[arguments.model])
-    return lay_out(arguments, build_book(arguments, six_dots=six_dots), model)
+def _layout_at(book: Book, width: int, place: KeptPlace) -> Layout:
+    """Lines of a book from a place on, or from the beginning if there is no such place any more."""
+    table = "" if book.table is None else book.table.name
+    before = place.lines_before_for(width, table)
+    try:
+        return Layout(book, width, start=place.block, lines_before=before)
+    except ValueError:
+        return Layout(book, width)
 
 
 def _eight_dots(table: BrailleTable) -> str:

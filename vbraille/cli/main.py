@@ -8,7 +8,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from importlib import import_module
 from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
 
@@ -19,6 +19,9 @@ from vbraille.wording import printable, spelled
 TYPE_CHECKING = False  # importing typing, for its constant, takes as long as all the rest
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from vbraille.engine.spawning import Spawned
+    from vbraille.simulation.steering import Steering
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -116,6 +119,25 @@ def _call(argv: Sequence[str] | None) -> int:
         from vbraille.logs import keep
 
         keep(arguments.log)
-    with EAR.at_once():
-        command = import_module(f"vbraille.cli.commands.{arguments.command}")
-    return command.run(arguments)
+    with ExitStack() as begun:
+        if arguments.command == "read":
+            arguments.begun = _begin_host(arguments.file)
+            if arguments.begun is not None:
+                begun.callback(arguments.begun[0].end)
+        with EAR.at_once():
+            command = import_module(f"vbraille.cli.commands.{arguments.command}")
+        return command.run(arguments)
+
+
+def _begin_host(file: str | None) -> tuple[Spawned, Steering] | None:
+    """Begin the process that drives the device, which loads while the text is opened.
+
+    Nothing is begun for a file that is not there.
+    """
+    if file not in (None, "-") and not os.path.isfile(file):  # noqa: PTH113 - pathlib loads long
+        return None
+    from vbraille.engine.spawning import spawn
+    from vbraille.simulation.steering import Steering
+
+    steering = Steering()
+    return spawn((steering.descriptor,)), steering

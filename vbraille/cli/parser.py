@@ -23,10 +23,35 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
     ),
+    "books": (
+        "List the books that were read, and where reading goes on.",
+        reading.books,
+        "vbraille books --json",
+    ),
+    "keys": (
+        "List the keys that are obeyed while reading.",
+        reading.keys,
+        "vbraille keys",
+    ),
+    "settings": (
+        "Print each setting of reading, and where it comes from.",
+        reading.settings,
+        "vbraille settings --profile evening",
+    ),
+    "tune": (
+        "Find out in five minutes how braille feels best, two ways at a time.",
+        reading.tune,
+        "vbraille tune --profile evening --device serial:/dev/ttyACM0",
+    ),
     "page": (
-        "Print the page as it is laid out.",
+        "Print the page as it is laid out, or write it for an embosser.",
         reading.page,
-        "vbraille page book.txt --format brf --lines 1-25",
+        "vbraille page book.txt --layout bana --cells 40 --lines 25 --format brf --out book.brf",
+    ),
+    "structure": (
+        "Print a book's outline, and what it has.",
+        reading.structure,
+        "vbraille structure book.epub",
     ),
     "render": (
         "Write every frame of a reading to an HDF5 file.",
@@ -201,7 +226,7 @@ def _add_log(command: argparse.ArgumentParser) -> None:
 
 def _keys() -> str:
     """Lines on what the keys do at a terminal, one for each key."""
-    from vbraille.reading.commands import COMMANDS as KEYS
+    from vbraille.reading.commands.table import COMMANDS as KEYS
 
     width = max(len(command.spoken_keys) for command in KEYS)
     lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in KEYS]

@@ -39,6 +39,11 @@ class Event:
         """Key of events that stand for one another: one of each kind is told in a second."""
         return type(self)
 
+    @property
+    def tells_place(self) -> bool:
+        """Whether an event tells where something is, so that only the last of its kind matters."""
+        return False
+
 
 @dataclass(frozen=True, slots=True)
 class Unplugged(Event):
@@ -223,6 +228,11 @@ class Knob(Event):
     def kind(self) -> Hashable:
         """Turns of the same knob stand for one another."""
         return type(self), self.number
+
+    @property
+    def tells_place(self) -> bool:
+        """A knob that is being turned is followed, and stands in the end where it was left."""
+        return True
 
 
 @dataclass(frozen=True, slots=True)

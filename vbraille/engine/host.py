@@ -7,7 +7,6 @@ import logging
 import os
 import select
 import subprocess
-import sys
 from contextlib import suppress
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
@@ -17,6 +16,7 @@ from vbraille.display import Display
 from vbraille.engine import shared
 from vbraille.engine.engine import place_of
 from vbraille.engine.ring import RingReader
+from vbraille.engine.spawning import spawn
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.logs import kept
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.engine.mailbox import Mailbox
     from vbraille.engine.ring import RingReader
+    from vbraille.engine.spawning import Spawned
     from vbraille.render.program import Program
 
 # Fading takes 0.1 s; a driver may have to wait for a device that is gone.
@@ -60,6 +61,8 @@ class Host:
         `open` it, then tell `fit`, then `start`.
     pass_fds
         Descriptors that the process inherits, for its device: the spec names them.
+    spawned
+        Process that was begun for the first start, with those descriptors; None to begin it then.
 
     Attributes
     ----------
@@ -78,6 +81,7 @@ class Host:
         room: int | None = None,
         *,
         pass_fds: Sequence[int] = (),
+        spawned: Spawned | None = None,
     ) -> None:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
@@ -86,6 +90,7 @@ class Host:
         self._wanted = wanted
         self._room = room
         self._pass_fds = tuple(pass_fds)
+        self._spawned = spawned
         self._info: Display | None = None
         self._first: Display | None = None  # what the device was at the first start
         self._process: subprocess.Popen[bytes] | None = None
@@ -146,27 +151,23 @@ class Host:
 
         The system ends the process with the thread that calls this.
         """
-        self.close()
+        if self._process is not None:
+            self.close()
         self._launched = True
         if self.newest is not None:
             self._before, self._lost_before = self.tally, self.lost
         self._info = self._fault = self.newest = None
         self._paused = self._ready = False
         self._heard = b""
-        self._descriptor = shared.create()
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "vbraille.engine.hosted", str(self._descriptor)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            pass_fds=(self._descriptor, *self._pass_fds),
-        )
+        spawned, self._spawned = self._spawned or spawn(self._pass_fds), None
+        spawned.taken = True
+        self._process, self._descriptor = spawned.process, spawned.descriptor
         _log.info("started process %d to drive %s", self._process.pid, self._device)
         os.set_blocking(self._answers(), False)
         self._tell(
             device=self._device,
             wanted=asdict(self._wanted),
             fits=self._room is not None,
-            parent=os.getpid(),
             log=kept(),
         )
         if self._room is not None:
@@ -274,6 +275,9 @@ class Host:
         """Have the host bring the array to rest and end; further calls do nothing."""
         process = self._process
         if process is None:
+            if self._spawned is not None:
+                self._spawned.end()
+                self._spawned = None
             return
         if self._mailbox is not None:
             self._mailbox.stop()

@@ -54,6 +54,7 @@ _PARENT_S = (
     signal.SIGTTIN,
     signal.SIGTTOU,
 )
+_ANY = Display("any array", rows=1, columns=2, column_pitch_mm=1.0, row_pitch_mm=1.0)
 _WARM_TICKS = 200
 _REHEARSAL_S = 0.05
 # Characters of a fault or of a text of an event, each up to 12 bytes of JSON; those of an event of
@@ -205,7 +206,9 @@ def pass_on(loop: Loop, notices: Notices, channel: Channel) -> None:
                 f"vbraille.devices.events; tell whoever wrote its driver"
             )
         # Drivers may tell all they have to by one code; only what is alike stands for another.
-        notices.add(event, now_ns, event.kind and replace(event, times=1))
+        # Where a knob was is of no use once it is elsewhere.
+        alike = event.kind and not event.tells_place
+        notices.add(event, now_ns, replace(event, times=1) if alike else event.kind)
     for event in notices.take(now_ns):
         channel.tell(event)
 
@@ -217,7 +220,7 @@ def wait_for_line(orders: RawIOBase, device: Device, rate_hz: float) -> bytes:
     return orders.readline()
 
 
-def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
+def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> None:
     """Open the device, drive it until the parent has had enough, and bring it to rest.
 
     Raises
@@ -225,14 +228,18 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
     VbrailleError
         If the device cannot be opened, or fails.
     """
-    config = json.loads(orders.readline())
+    end_after(parent)
+    begun_ns = time.monotonic_ns()
+    # What it is to drive is not told yet: any array will do.
+    warm_up(_ANY, shared.Extent(_ANY.rows, _ANY.columns, 0, _WARM_TICKS))
+    compiled_ms = (time.monotonic_ns() - begun_ns) / 1e6
+    told = orders.readline()
+    if not told:
+        return  # the parent has gone, or given up
+    config = json.loads(told)
     if config["log"] is not None:
         keep(config["log"])
     wanted = Display(**config["wanted"])
-    end_after(config["parent"])
-    begun_ns = time.monotonic_ns()
-    warm_up(wanted, shared.Extent(wanted.rows, wanted.columns, 0, _WARM_TICKS))
-    compiled_ms = (time.monotonic_ns() - begun_ns) / 1e6
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
     with opened_device(config["device"], wanted, fits=config["fits"]) as device:
         channel.say(opened=asdict(device.display))
@@ -245,7 +252,7 @@ def run(orders: RawIOBase, descriptor: int, channel: Channel) -> None:
         refused = go_real_time()
         rehearse(device, wanted.rate_hz)
         loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
-        hosted = Hosted(loop, mailbox, config["parent"])
+        hosted = Hosted(loop, mailbox, parent)
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, event=refused and to_json(refused))
         _log.info("ready: %s", "in real time" if refused is None else refused)
@@ -277,7 +284,7 @@ def main() -> int:
     try:
         # Without a buffer, so that waiting for the descriptor misses no line.
         with FileIO(sys.stdin.fileno(), closefd=False) as orders:
-            run(orders, int(sys.argv[1]), channel)
+            run(orders, int(sys.argv[1]), int(sys.argv[2]), channel)
     except VbrailleError as error:
         channel.say(fault=str(error), code=error.exit_code)
         return error.exit_code

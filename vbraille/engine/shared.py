@@ -51,11 +51,6 @@ class Extent:
         return self.mailbox_bytes + Ring.bytes_needed(self.shape, self.ticks)
 
 
-def create() -> int:
-    """Make the memory, which is empty as yet; return its descriptor."""
-    return os.memfd_create("vbraille")
-
-
 def attach(descriptor: int, extent: Extent) -> memoryview:
     """Map the memory of a descriptor, which may be closed then; the first to attach makes room."""
     if os.fstat(descriptor).st_size < extent.total_bytes:

@@ -6,7 +6,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vbraille.braille.cells import Cells
+from vbraille.braille.dots import mask_of
 from vbraille.layout.indents import indents
 from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.translate.source import BlockKind
@@ -14,6 +17,11 @@ from vbraille.translate.source import BlockKind
 if TYPE_CHECKING:
     from vbraille.translate.source import Block
     from vbraille.translate.text import Text
+
+# Where a page of the printed book begins, braille books have a row of dots 3 and 6 and then the
+# page's number. A whole line of them would only be a long way to the number under one finger.
+_RULE = mask_of((3, 6))
+_RULE_CELLS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +54,7 @@ class LaidBlock:
     width
         Number of cells in a line.
     carried
-        What the piece before left; None if the block begins here.
+        What the piece before left; None if the block begins here, or begins a line here.
     goes_on
         Whether another piece follows.
 
@@ -63,11 +71,15 @@ class LaidBlock:
     ) -> None:
         indent, runover = indents(block, width)
         self._first = 0
+        if block.continues:
+            indent = runover
         if carried is not None:
             indent = carried.indent
             block = replace(block, text=carried.text + block.text)
             cells = carried.cells + cells
             self._first = block.text.index(carried.character)
+        elif block.kind is BlockKind.PAGE and block.cells is None and len(cells):
+            cells = _after_rule(cells, width)
         self.block = block
         self.cells = cells
         breaks = breaks_of(block.text, cells)
@@ -117,3 +129,10 @@ class LaidBlock:
         character = int(text.places[edge]) if edge < len(text) else text.end
         rest = Cells(cells.masks[start:].copy(), cells.starts[start:].copy(), cells.end)
         return Carried(its_indent, text.since(first), rest, character)
+
+
+def _after_rule(cells: Cells, width: int) -> Cells:
+    """Put a row of dots before a page's number, as far as it finds room on the number's line."""
+    rule = np.full(max(0, min(_RULE_CELLS, width - len(cells))), _RULE, np.uint8)
+    starts = np.concatenate((np.full(rule.size, cells.starts[0]), cells.starts))
+    return Cells(np.concatenate((rule, cells.masks)), starts, cells.end)

@@ -24,8 +24,10 @@ def indents(block: Block, width: int) -> tuple[int, int]:
         Number of cells in a line.
     """
     match block.kind:
-        case BlockKind.PARAGRAPH:
+        case BlockKind.PARAGRAPH | BlockKind.NOTE:
             first, others = STEP, 0
+        case BlockKind.QUOTE:
+            first, others = (block.level + 1) * STEP, block.level * STEP
         case BlockKind.HEADING:
             first, others = 2 * STEP, 2 * STEP
         case BlockKind.ITEM:

@@ -1,108 +1,26 @@
-"""Cells on a virtual page: wrapped into lines, and which cell is where."""
+"""Cells on a virtual page: wrapped into lines, from the book's beginning or from deep in it."""
 
 from __future__ import annotations
 
-import math
-from array import array
-from bisect import bisect_right
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vbraille.braille.cells import UNICODE_BLANK, Cells
-from vbraille.layout.blocks import LaidBlock
-from vbraille.translate.text import to_text
+from vbraille.layout.lines import Line, locate, place_of
+from vbraille.layout.runs import LaidRun
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from numpy.typing import NDArray
-
-    from vbraille.braille.geometry import Geometry
-    from vbraille.layout.blocks import Carried
+    from vbraille.layout.blocks import LaidBlock
     from vbraille.translate.book import Book
-    from vbraille.translate.source import Block
 
-_REMEMBERED = 16  # blocks
+__all__ = ["NEAR", "Layout", "Line", "locate", "place_of"]
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Line:
-    """A line of a page.
-
-    Parameters
-    ----------
-    number : int
-        Number of the line in the book, from 1.
-    indent : int
-        Number of blank cells before the line's cells.
-    cells : Cells
-        Cells of the line after the indent.
-    block : Block
-        Block that the line is part of.
-    first, after : int
-        Index of the first character of the block's text on the line, and one past the last.
-    """
-
-    number: int
-    indent: int
-    cells: Cells
-    block: Block
-    first: int
-    after: int
-
-    @property
-    def masks(self) -> NDArray[np.uint8]:
-        """Dot masks of the line from its first cell on, uint8[indent + cells]."""
-        masks = np.zeros(len(self), np.uint8)
-        masks[self.indent :] = self.cells.masks
-        return masks
-
-    def __len__(self) -> int:
-        return self.indent + len(self.cells)
-
-    @property
-    def printed(self) -> Cells:
-        """Line as it would be embossed: its indent and its cells, without their way to the text."""
-        return Cells.bare(self.masks)
-
-    @property
-    def text(self) -> str:
-        """Text that the line stands for; the lines of a block together are the block's text.
-
-        White space at which a line ends belongs to that line. A character whose cells do not
-        find room on one line belongs to the first of its lines.
-        """
-        return to_text(self.block.text.codes[self.first : self.after])
-
-    def source(self, cell: int) -> tuple[int, int] | None:
-        """Source characters of a cell as [first, one past the last); None off the text."""
-        if not self.indent <= cell < len(self):
-            return None
-        return self.cells.source(cell - self.indent)
-
-    def cell_of(self, character: int) -> int:
-        """First cell of a source character.
-
-        Raises
-        ------
-        IndexError
-            If the character is not on this line.
-        """
-        return self.indent + self.cells.of_source(character)[0]
-
-    def word(self, cell: int) -> str:
-        """The whole word that a cell is part of, on this line or not; empty at a blank."""
-        span = self.source(cell)
-        if span is None:
-            return ""
-        at = self.block.text.index(span[0])
-        text = str(self.block.text).replace(chr(UNICODE_BLANK), " ")
-        if at >= len(text) or text[at].isspace():
-            return ""
-        before = text[:at].split(None)[-1:] if at and not text[at - 1].isspace() else []
-        return "".join(before) + text[at:].split(None, 1)[0]
+# Number of characters; what is no farther away is laid out from where blocks are already, and so
+# has its number. What is farther away would take longer than somebody waits for a line.
+NEAR = 65_536
+# Lines that nobody has counted are numbered from a multiple of this; no book has half as many.
+_PROVISIONAL = 1 << 40
+_RUNS = 256
 
 
 class Layout:
@@ -113,39 +31,78 @@ class Layout:
     blank cells. A line that is kept as the source has it begins at the margin, and what runs over
     is indented.
 
+    What is asked for far away from all that is laid out is not reached by laying out what is
+    between: the layout begins there once more, and goes backward and forward from there. As long
+    as nobody has counted the lines before, lines there have provisional numbers, far above any
+    true number; they follow each other in the same way. A very long paragraph that is entered in
+    its middle begins on a line of its own.
+
     Parameters
     ----------
     book
         Cells of the book.
     width
         Number of cells in a line, at least 1.
+    start
+        Number of the block at which the layout begins, from 0.
+    lines_before
+        Number of lines before that block; None if they have not been counted.
 
     Raises
     ------
     ValueError
-        If the width is below 1.
+        If the width is below 1, or there is no such block.
     """
 
-    def __init__(self, book: Book, width: int) -> None:
+    def __init__(
+        self, book: Book, width: int, *, start: int = 0, lines_before: int | None = 0
+    ) -> None:
         if width < 1:
             raise ValueError(f"width is {width} cells; it must be at least 1")
         self.book = book
         self.width = width
-        # Number of lines before each block; the last entry is that of the next block.
-        self._before = array("q", [0])
-        # Unfinished line of a long block that comes in pieces, by the number of the next piece.
-        self._carried: dict[int, Carried] = {}
-        self._complete = False
-        self._recent: dict[int, LaidBlock] = {}
+        self._start = start
+        self._known = {}  # numbers of lines before blocks, as they were counted
+        if start and lines_before is not None:
+            self._known[start] = lines_before
+        self._begun = 0
+        self._front = LaidRun(book, width)  # where the book begins
+        self._runs = [self._front]  # the one that was used last stands last
+        self._home = self._begin(start) if start else self._front
+
+    @property
+    def counted(self) -> bool:
+        """Whether the lines that were looked at last have their true numbers."""
+        return self._runs[-1].counted
+
+    @property
+    def first_line(self) -> int:
+        """Number of the first line of the block at which the layout begins."""
+        return self._home.before(self._start) + 1
+
+    def count_from(self, block: int, lines: int) -> None:
+        """Take over how many lines stand before a block, and number the lines around it by that.
+
+        The provisional numbers of those lines still lead to the same lines, which then tell their
+        true numbers.
+        """
+        self._known[block] = lines
+        for run in self._runs:
+            if not run.counted and run.first <= block <= run.after:
+                run.count_from(block, lines)
+
+    def lines_to(self, number: int) -> int:
+        """Number of lines that would have to be laid out to reach the line of a number."""
+        found = self._of_number(number)
+        return 0 if found is None else found[0].lines_to(found[1])
 
     def line(self, number: int) -> Line | None:
-        """Line of a number, from 1; None past the end."""
-        while number > self._before[-1] and not self._complete:
-            self._extend()
-        if not 0 < number <= self._before[-1]:
+        """Line of a number, from 1; None past the end, and before the beginning."""
+        found = self._of_number(number)
+        if found is None:
             return None
-        block = bisect_right(self._before, number - 1) - 1
-        return self._line(block, number - 1 - self._before[block])
+        run, number = found
+        return self._use(run).line(number)
 
     def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
         """Lines of a range of numbers, both ends included."""
@@ -159,9 +116,18 @@ class Layout:
 
     def count(self) -> int:
         """Number of lines in all; this lays out the whole book."""
-        while not self._complete:
-            self._extend()
-        return self._before[-1]
+        while self._front.extend():
+            pass
+        return self._front.numbers[1]
+
+    def blocks(self) -> Iterator[LaidBlock]:
+        """Blocks in lines, from the book's first to its last, for who shows them all."""
+        number = 0
+        while self._front.reach_block(number):
+            laid = self._front.laid(number)
+            assert laid is not None, "a block that was reached"
+            yield laid
+            number += 1
 
     def place(self, character: int) -> tuple[Line, int] | None:
         """Line and cell that a source character is on; None past the end.
@@ -171,71 +137,78 @@ class Layout:
         """
         block = self.book.source.block_at(character)
         while block is not None:
-            while block >= len(self._before) - 1 and not self._complete:
-                self._extend()
-            if block >= len(self._before) - 1:
+            run = self._towards(block, character)
+            if not run.reach_block(block):
                 return None
-            for n in range(self._before[block + 1] - self._before[block]):
-                line = self._line(block, n)
+            for n in range(run.before(block + 1) - run.before(block)):
+                line = run.line_of(block, n)
                 if len(line.cells) and character < line.cells.end:
                     return line, line.cell_of(max(character, int(line.cells.starts[0])))
             block += 1
         return None
 
+    def block_of(self, line: Line) -> int:
+        """Number of the block that a line of this layout is of."""
+        found = self._of_number(line.number)
+        assert found is not None, "a line of this layout"
+        return found[0].block_of(found[1])
+
+    def number_of(self, line: Line) -> int:
+        """Number that a line of this layout has now, which may have been counted since."""
+        found = self._of_number(line.number)
+        return line.number if found is None else found[1]
+
+    def lines_before(self, line: Line) -> int | None:
+        """Number of lines before the block that a line is of; None if they were not counted."""
+        found = self._of_number(line.number)
+        assert found is not None, "a line of this layout"
+        run, number = found
+        return run.before(run.block_of(number)) if run.counted else None
+
     def progress(self, line: Line) -> float:
         """About how much of the book stands before a line, 0 to 1."""
-        return self.book.source.progress(bisect_right(self._before, line.number - 1) - 1)
+        return self.book.source.progress(self.block_of(line))
 
-    def _extend(self) -> None:
-        """Lay out the next block."""
-        laid = self._lay_out(len(self._before) - 1)
-        if laid is None:
-            self._complete = True
+    def _of_number(self, number: int) -> tuple[LaidRun, int] | None:
+        """Find the run that a line's number leads to, and the number that it has there now."""
+        key = (number + _PROVISIONAL // 2) // _PROVISIONAL
+        if key > 0:  # given before the lines were counted, if they are counted now
+            run = next((s for s in self._runs if s.key == key), None)
+            return None if run is None else (run, number + run.shift)
+        counted = (run for run in reversed(self._runs) if run.counted)
+        return min(counted, key=lambda run: run.lines_to(number)), number
+
+    def _towards(self, block: int, character: int) -> LaidRun:
+        """LaidRun from which a block is reached soonest, which may be a new one."""
+        latest = self._runs[::-1]
+        holding = next((run for run in latest if run.holds(block)), None)
+        if holding is None:
+            nearest = min(latest, key=lambda run: run.characters_to(character))
+            holding = nearest if nearest.characters_to(character) <= NEAR else None
+        if holding is None:
+            return self._begin(block)
+        return self._use(holding)
+
+    def _begin(self, block: int) -> LaidRun:
+        """Begin anew at a block."""
+        lines = self._known.get(block)
+        if lines is None:
+            self._begun += 1
+            key, lines = self._begun, self._begun * _PROVISIONAL
         else:
-            self._before.append(self._before[-1] + len(laid.bounds))
+            key = 0
+        run = LaidRun(self.book, self.width, block, lines, key=key)
+        self._runs[-1].forget()
+        self._runs.append(run)
+        if len(self._runs) > _RUNS:
+            kept = (self._front, self._home)
+            self._runs.remove(next(s for s in self._runs if s not in kept))
+        return run
 
-    def _line(self, block: int, index: int) -> Line:
-        laid = self._lay_out(block)
-        assert laid is not None, "only blocks already laid out are asked for"
-        start, stop, indent = laid.bounds[index]
-        number = self._before[block] + index + 1
-        first, after = laid.edges[index : index + 2]
-        return Line(number, indent, laid.cells[start:stop], laid.block, first, after)
-
-    def _lay_out(self, number: int) -> LaidBlock | None:
-        """Break a block, or a piece of one, into lines; None past the end."""
-        laid = self._recent.get(number)
-        if laid is not None:
-            return laid
-        found = self.book.block(number)
-        if found is None:
-            return None
-        following = self.book.source.block(number + 1)
-        goes_on = following is not None and following.continues
-        carried = self._carried[number] if found[0].continues else None
-        laid = LaidBlock(*found, self.width, carried, goes_on=goes_on)
-        if laid.carries is not None:
-            self._carried[number + 1] = laid.carries
-        if len(self._recent) >= _REMEMBERED:
-            del self._recent[next(iter(self._recent))]
-        self._recent[number] = laid
-        return laid
-
-
-def locate(line: Line, geometry: Geometry, x_mm: float) -> int | None:
-    """Cell of a line at a place on the surface; None if there is none.
-
-    Parameters
-    ----------
-    x_mm
-        Place on the surface: for a column of actuators, the carriage's position plus the column's
-        offset. The space after a cell counts as the cell's.
-    """
-    cell = math.floor(x_mm / geometry.cell_pitch_mm)
-    return cell if 0 <= cell < len(line) else None
-
-
-def place_of(cell: int, geometry: Geometry) -> float:
-    """Middle of a cell of a line on the surface, in mm; `locate` finds the cell there."""
-    middle = (geometry.dot_spacing_mm + geometry.dot_width_mm) / 2
-    return cell * geometry.cell_pitch_mm + min(middle, geometry.cell_pitch_mm / 2)
+    def _use(self, run: LaidRun) -> LaidRun:
+        """Keep what is laid out of this run, and of no other."""
+        if run is not self._runs[-1]:
+            self._runs[-1].forget()
+            self._runs.remove(run)
+            self._runs.append(run)
+        return run

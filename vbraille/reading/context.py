@@ -10,3 +10,7 @@ class Context(Enum):
     """A line is under the hand."""
     PLACING = "placing"
     """The device waits to be told that its carriage is at the left stop."""
+    PROMPT = "typing"
+    """A text is being typed, such as what to look for."""
+    LEARNING = "learning"
+    """A key says what it does, and does nothing."""

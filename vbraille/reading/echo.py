@@ -5,10 +5,12 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
+from vbraille.reading.whereabouts import place_sentence
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.layout.pages import Line
+    from vbraille.layout.pages import Layout, Line
 
 
 class Echo(StrEnum):
@@ -19,11 +21,15 @@ class Echo(StrEnum):
     CELLS = "cells"
     BOTH = "both"
 
-    def sentences(self, line: Line) -> Iterator[str]:
-        """Sentences that are said of a line, in order."""
+    def sentences(self, line: Line, layout: Layout) -> Iterator[str]:
+        """Sentences that are said of a line of a layout, in order."""
         if self is Echo.NONE:
             return
-        yield f"line: {line.number}"
+        yield place_sentence(layout, line)
+        yield from self.words(line)
+
+    def words(self, line: Line) -> Iterator[str]:
+        """Sentences on what is printed of a line."""
         if self in (Echo.CELLS, Echo.BOTH):
             yield f"cells: {line.printed.to_unicode()}"
         if self in (Echo.TEXT, Echo.BOTH):

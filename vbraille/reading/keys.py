@@ -19,8 +19,9 @@ BURST = 20
 _BURST_S = 0.1  # what comes so soon after such a paste belongs to it
 _LONGEST = 64  # characters of a sequence; a longer one is none
 
-# The one table of sequences (ECMA-48 5.4, xterm, the Linux console). The end of a sequence names
-# the key, or the number before a ~ does; a number after a semicolon says what was held with it.
+# The one table of sequences (ECMA-48 5.4, xterm, the Linux console, tmux, PuTTY, rxvt). The end of
+# a sequence names the key, or the number before a ~ does; a number after a semicolon says what was
+# held with it.
 _LETTERS = {
     "A": "up",
     "B": "down",
@@ -38,9 +39,18 @@ _LETTERS = {
 _NUMBERS = {
     **dict(enumerate(("home", "insert", "delete", "end", "pageup", "pagedown", "home", "end"), 1)),
     **{number: f"f{n}" for n, number in enumerate((*range(11, 16), *range(17, 22), 23, 24), 1)},
+    **{number: f"f{n}" for n, number in enumerate((25, 26, 28, 29, 31, 32, 33, 34), 13)},
+}
+_ARROWS = frozenset("ABCD")
+# After ESC O only: what PuTTY sends as a VT100+ for more function keys, and rxvt with Ctrl.
+_SINGLE = {
+    **{letter: f"f{n}" for n, letter in enumerate("TUVWXYZ", 5)},
+    **{letter.lower(): f"ctrl-{_LETTERS[letter]}" for letter in "ABCD"},
 }
 _PASTE_BEGINS, _PASTE_ENDS = 200, "\x1b[201~"
-_HELD = ("shift-", "alt-", "ctrl-", "meta-")  # one for each bit of the number less 1
+HELD = ("shift-", "alt-", "ctrl-", "meta-")  # one for each bit of the number less 1
+
+NAMED = frozenset((*_LETTERS.values(), *_NUMBERS.values(), ESCAPE))  # keys that have words
 
 _KEY = re.compile(
     r"\x1b(?:\[(?P<first>[0-9]{0,4})(?:;(?P<held>[0-9]{1,4}))?(?P<end>\[[A-E]|[@-Z\\-~])"
@@ -65,6 +75,7 @@ class Keys:
         self._decoder = codecs.getincrementaldecoder("utf-8")("ignore")
         self._tail = ""
         self._pasting = False
+        self._plain_arrows = False  # whether an arrow came as ESC [, as it does by itself
         self._fed_s = 0.0
         self._burst_end_s = float("-inf")
 
@@ -123,7 +134,7 @@ class Keys:
         if found["alt"]:
             return f"alt-{found['alt']}"
         if found["letter"]:
-            return _LETTERS.get(found["letter"], "")
+            return self._single(found["letter"])
         if found["end"] is None:
             return ""
         if found["end"] == "~":
@@ -132,8 +143,21 @@ class Keys:
                 self._pasting = True
                 return PASTE
             name = _NUMBERS.get(number, "")
+            held = int(found["held"] or 1) - 1
         else:
-            name = _LETTERS.get(found["end"], "") if found["first"] in ("", "1") else ""
-        held = int(found["held"] or 1) - 1
-        prefix = "".join(word for bit, word in enumerate(_HELD) if held >> bit & 1)
+            first, held = int(found["first"] or 1), int(found["held"] or 1) - 1
+            if found["end"] in _ARROWS and first > 1 and not held:
+                first, held = 1, first - 1  # as older terminals say what was held
+            self._plain_arrows |= found["end"] in _ARROWS and not held
+            name = _LETTERS.get(found["end"], "") if first == 1 else ""
+        prefix = "".join(word for bit, word in enumerate(HELD) if held >> bit & 1)
         return f"{prefix}{name}" if name else ""
+
+    def _single(self, letter: str) -> str:
+        """Name of a key that is ESC O and a letter.
+
+        A terminal sends arrows so if another program left it in that mode, or always (Emacs); but
+        if arrows come as ESC [, this is PuTTY's way to say that Ctrl was held.
+        """
+        name = _SINGLE.get(letter) or _LETTERS.get(letter, "")
+        return f"ctrl-{name}" if letter in _ARROWS and self._plain_arrows else name

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Self
 
 from vbraille.devices.base import Device, Placing
+from vbraille.devices.events import Button, Knob
 from vbraille.devices.saying import told
 from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
@@ -15,7 +16,10 @@ from vbraille.errors import DeviceError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
-from vbraille.reading.reader import Echo, Reader
+from vbraille.reading.commands.table import press_button, turn_knob
+from vbraille.reading.echo import Echo
+from vbraille.reading.reader import Reader
+from vbraille.reading.underhand import MOST_CELLS
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
@@ -35,10 +39,13 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.local import LocalEngine
+    from vbraille.engine.spawning import Spawned
     from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
+    from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.simulation.steering import Steering
 
 HAND = "sweep:60"
 _POLL_S = 0.02
@@ -67,6 +74,9 @@ class OpenDevice:
         Function that is called with each thing that the reader should hear.
     attended
         Whether somebody is at a keyboard, who can end a line that no hand ends.
+    begun
+        Host process that was begun for the device, and the steering of a simulated hand that it
+        inherited; None to begin it now.
 
     Attributes
     ----------
@@ -84,6 +94,7 @@ class OpenDevice:
         clock: Clock | None = None,
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
+        begun: tuple[Spawned, Steering] | None = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted
@@ -112,12 +123,17 @@ class OpenDevice:
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
-            self._steering = steering_of(device)
+            spawned, self._steering = begun or (None, steering_of(device))
+            if not self._simulated and not device.startswith("sim:?"):
+                self._steering = None  # a person moves the device
             self._engine = Host(
                 device_spec(device, hand, seed, self._steering),
                 wanted,
                 pass_fds=() if self._steering is None else (self._steering.descriptor,),
+                spawned=spawned,
             )
+            if self._simulated:
+                self._engine.launch()  # it loads while the text is laid out
 
     def find(self) -> Display:
         """Find out what the device is; a device other than the simulated one is opened for that.
@@ -141,8 +157,8 @@ class OpenDevice:
         """
         self._model = model
         if isinstance(self._engine, Host):
-            width = cells_per_line(model.style.geometry, model.display)
-            self._engine.fit(model.display, model.style.room(model.display, width))
+            # Cells may come closer while somebody reads.
+            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS))
         self._engine.start()
 
     def start_again(self) -> None:
@@ -150,7 +166,7 @@ class OpenDevice:
         self.placing = Placing.DONE
         self._closed = False
         self._engine.start()
-        self.reader.steer()
+        self.reader.under.steer()
 
     def show(
         self,
@@ -162,8 +178,10 @@ class OpenDevice:
         keep_lines: bool = False,
         first: int = 1,
         last: int | None = None,
+        at: int | None = None,
         advance: bool = True,
         echo: Echo = Echo.NONE,
+        beside: Beside | None = None,
     ) -> None:
         """Put the first line of a text under the hand; the others come as it is polled.
 
@@ -177,10 +195,14 @@ class OpenDevice:
             Whether each line of the text stays a line; otherwise paragraphs are filled.
         first, last
             Numbers of the first and last line to read, from 1; None for the end.
+        at
+            Place of the source at which to begin; None for the first line.
         advance
             Whether the next line comes when the hand returns; otherwise `reader` is told to go on.
         echo
             How much is said of each line.
+        beside
+            What works beside the reader, such as search in the whole book.
 
         Raises
         ------
@@ -196,7 +218,8 @@ class OpenDevice:
             width = cells_per_line(model.style.geometry, model.display)
             chosen = choose_table(language, grade, table)
             text = lay_out_text(text, width, chosen, keep_lines=keep_lines)
-        check_lines(text, first, last)
+        if at is None:
+            check_lines(text, first, last)
         self._reader = Reader(
             text,
             self._engine,
@@ -204,10 +227,12 @@ class OpenDevice:
             say=self._say,
             first=first,
             last=last,
+            at=at,
             advance=advance,
             stay=self._attended,
             echo=echo,
             steering=self._steering,
+            beside=beside,
         )
         self._reader.start()
 
@@ -251,24 +276,33 @@ class OpenDevice:
             self.placing = placing_of(ticks[-1])
             if self._reader is not None:
                 self._step(self._reader, ticks)
+        self._take(events)
         return events
+
+    def _take(self, events: list[Event]) -> None:
+        """Have buttons and knobs of the device do what keys do."""
+        for event in () if self._reader is None else events:
+            if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
+                press_button(self.reader, event.number)
+            elif isinstance(event, Knob):
+                turn_knob(self.reader, event.number, event.value)
 
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
-        lines = reader.lines
+        shown = reader.under.shown
         reader.step(ticks)
         if self._attended:
             return
         felt = not int(ticks["flags"][-1]) & _HELD
-        done = felt and reader.steered_till(ticks[-1])
-        if done and reader.lines == lines and not reader.done:
+        done = felt and reader.under.steered_till(ticks[-1])
+        if done and reader.under.shown == shown and not reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._once:
                 reader.quit()
             elif ticks["line"][-1] == reader.line_number:
                 reader.go_on()
-        if reader.hopeless is not None:
-            raise DeviceError(reader.hopeless)
+        if reader.under.hopeless is not None:
+            raise DeviceError(reader.under.hopeless)
 
     @property
     def display(self) -> Display:
@@ -344,13 +378,13 @@ class OpenDevice:
         """Counts of what went wrong with the device, by name; known after `close`."""
         return self._engine.counts
 
-    def tune(self, **turned: float) -> None:
-        """Show lines with another texture or contrast from now on, each 0 to 1.
+    def tune(self, **turned: Any) -> None:
+        """Show lines in a style of which some values differ from now on; see `Reader.tune`.
 
         Raises
         ------
         InputError
-            If a value is out of range.
+            If a value is out of range, or leaves no room for a cell.
         """
         if self._reader is not None:
             self._reader.tune(**turned)

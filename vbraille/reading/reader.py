@@ -1,71 +1,63 @@
-"""A reader: the lines of a book under the hand, one after the other."""
+"""A reader: lines under the hand, and all that somebody may ask for while reading."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from vbraille.engine.advance import EndOfLine
-from vbraille.engine.record import Flag
-from vbraille.layout.pages import locate
+from vbraille.reading.beside import Beside
 from vbraille.reading.context import Context
-from vbraille.reading.echo import Echo
-from vbraille.reading.speed import too_fast_note
-from vbraille.reading.waiting import Waiting
-from vbraille.simulation.steering import ReadLine
+from vbraille.reading.keeping import Keeping
+from vbraille.reading.linereader import LineReader
+from vbraille.reading.looking import Looking
+from vbraille.reading.prompt import Prompt
+from vbraille.reading.queries import CountLines
+from vbraille.reading.window import Window
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from vbraille.engine.engine import Engine
-    from vbraille.layout.pages import Layout, Line
-    from vbraille.render import Model
-    from vbraille.simulation.steering import Steering
+    from vbraille.layout.pages import Layout
+    from vbraille.reading.beside import KeptLike, SeekerLike
+    from vbraille.reading.queries import Counted, Query
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.translate import Book
 
-# Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
-_PAUSED, _HELD = int(Flag.PAUSED), int(Flag.HELD)
+_TRAIL = 100  # places that are kept to go back to
 
 
-class Reader:
+class Reader(LineReader):
     """Somebody who reads a range of lines: what is under the hand, and how far it has come.
 
     It speaks in sentences; `vbraille.reading.commands` calls its methods.
 
     Parameters
     ----------
-    layout
-        Lines of the book.
-    engine
-        Engine that drives the device.
-    model
-        Display, and style in which lines are shown on it.
-    first, last
-        Numbers of the first and last line to read, from 1; None for the end.
-    advance
-        Whether the next line comes when the hand returns; otherwise a key brings it.
-    stay
-        Whether to wait for keys at the end of the text, instead of being done.
-    echo
-        How much is said of each line.
-    steering
-        Steering that tells a simulated hand what to read; None if a person reads.
-    say
-        Function that is called with each thing to be said.
+    layout, engine, model, say
+        As for a `LineReader`.
+    at
+        Place of the source at which to begin; None for the first line.
+    beside
+        What works beside the reader: keys of somebody's own, search, bookmarks, signals.
+    how
+        What else a `LineReader` takes.
 
     Attributes
     ----------
-    line : Line or None
-        Line under the hand; None before the first.
-    style : BrailleStyle
-        How lines are shown.
     context : Context
         Meaning of the keys at the moment.
-    lines : int
-        Number of lines read so far: those that were under the hand.
-    done : bool
-        Whether there is no more to read, or reading was stopped.
+    prompt : Prompt or None
+        What is being typed.
+    seeker : SeekerLike or None
+        Process that looks through the whole book; None to do so here.
+    looking : Looking
+        What is looked for in the whole book.
+    fold_accents : bool
+        Whether a search takes letters with accents and without for the same.
+    sought : str
+        Text that was looked for last.
+    backward : bool
+        Whether it was looked for backward.
     """
 
     def __init__(
@@ -75,151 +67,223 @@ class Reader:
         *,
         model: Model,
         say: Callable[[str], None],
-        first: int = 1,
-        last: int | None = None,
-        advance: bool = True,
-        stay: bool = False,
-        echo: Echo = Echo.NONE,
-        steering: Steering | None = None,
+        at: int | None = None,
+        beside: Beside | None = None,
+        **how: Any,
     ) -> None:
-        self.layout = layout
-        self.engine = engine
-        self.style = model.style
-        self.say = say
-        self.echo = echo
+        super().__init__(layout, engine, model=model, say=say, beside=beside, **how)
+        beside = Beside() if beside is None else beside
+        self.seeker = beside.seeker
+        self.looking = Looking(say, verbose=beside.verbose, counted=self._take_count)
+        self.keeping = Keeping(beside.kept)
+        self.save_style = beside.save_style
+        self.styles_before: list[BrailleStyle] = []  # before each turn that was not taken back
         self.context = Context.READING
-        self.line: Line | None = None
-        self.lines = 0
-        self.done = False
-        self._model = model
-        self._first, self._last = first, last
-        self._advance = advance
-        self._stay = stay
-        self._steering = steering
-        self._end: EndOfLine
-        self._waiting: Waiting
-        self._finished = False  # whether the end was said, until a key brings another line
-        self._prefetched = False
-        self._too_fast_said = False
+        self.prompt: Prompt | None = None
+        self.fold_accents = self.backward = False
+        self.sought = ""
+        # Whether lines are as wide as somebody says, and not as wide as the hand can go.
+        self._fixed = layout.width != self.under.width
+        self._book = layout.book  # which is the one that the other process knows
+        self._counting = False
+        self._at = at
+        self._trail: list[int] = []
+        self._hit: int | None = None
 
     @property
-    def hopeless(self) -> str | None:
-        """Reason why the line will not come to its end unless somebody helps; None without one."""
-        return None if self.line is None else self._waiting.hopeless
+    def kept(self) -> KeptLike:
+        """What is kept of the book."""
+        return self.keeping.kept
 
-    @property
-    def line_number(self) -> int:
-        """Number of the line under the hand; 0 before the first."""
-        return 0 if self.line is None else self.line.number
-
-    @property
-    def cell(self) -> int | None:
-        """Number of the line's cell under the middle of the array; None if there is none."""
-        x_mm = self.engine.x_mm
-        if self.line is None or x_mm is None:
-            return None
-        return locate(self.line, self.style.geometry, x_mm)
+    @kept.setter
+    def kept(self, kept: KeptLike | None) -> None:
+        self.keeping = Keeping(kept)
 
     def start(self) -> None:
-        """Put the first line under the hand."""
-        line = self.layout.line(self._first)
-        if line is None:
-            self.done = True
-        else:
-            self._show(line)
+        """Put the first line under the hand, or the one at which to begin."""
+        if self._at is None or not self.jump(self._at, back=False):
+            super().start()
 
-    def step(self, ticks: NDArray[np.void]) -> None:
-        """Look where the hand was in ticks, which are all since the last call."""
-        if self.line is None:
+    def attend(self, now_s: float, *, resting: bool) -> None:
+        """Do what is done by time: take what was found, keep the place, scroll."""
+        if self.seeker is not None:
+            self.looking.poll(self.seeker, self.layout.book.source, now_s)
+            self._count(self.seeker)
+        self.keeping.step(now_s)
+        super().attend(now_s, resting=resting)
+
+    def _count(self, seeker: SeekerLike) -> None:
+        """Have the lines before this one counted, where their number is not known."""
+        layout, line = self.layout, self.line
+        if self._counting or layout.counted or line is None or layout.book is not self._book:
             return
-        ticks = ticks[(ticks["line"] == self.line.number) & (ticks["flags"] & _PAUSED == 0)]
-        if not ticks.size:
-            self._waiting.rest()
-            return
-        # Frames that the device did not take were not felt.
-        felt_mm = ticks["x_mm"][ticks["flags"] & _HELD == 0]
-        if self._end.find(felt_mm) is not None and self._advance and not self._finished:
-            self.go_on()
-        else:
-            if self._end.reached and not self._prefetched:
-                # On the way back to the start there is time for this.
-                self._prefetched = True
-                self.layout.line(self.line.number + 1)
-            if not self._finished:
-                for sentence in self._waiting.watch(ticks, reached=self._end.reached):
-                    self.say(sentence)
-        self._watch_speed(float(ticks["vx_mm_s"].max()))
+        self._counting = True
+        seeker.ask(CountLines(layout.width, layout.block_of(line)))
 
-    def steer(self) -> None:
-        """Have a simulated hand read the line under it; a person's hand does so by itself."""
-        if self._steering is not None and self.line is not None:
-            self._steering.give(ReadLine(self.style.geometry.extent_mm(len(self.line))))
+    def _take_count(self, counted: Counted) -> None:
+        self._counting = False
+        if counted.width == self.layout.width and self.layout.book is self._book:
+            self.layout.count_from(counted.block, counted.lines)
 
-    def steered_till(self, tick: np.void) -> bool:
-        """Whether a simulated hand had read the line by the time of a tick; False without one."""
-        return self._steering is not None and self._steering.done_at(int(tick["device_ns"]))
+    def put(self, window: Window) -> None:
+        """Put a part of a line under the hand."""
+        super().put(window)
+        self.keeping.moved(self.layout, window.line)
 
-    def go_on(self) -> None:
-        """Put the next line under the hand; if there is none, reading is finished."""
-        if self.line is not None and not self.go(self.line.number + 1):
-            self._finish()
+    def jump(self, character: int, *, back: bool = True) -> bool:
+        """Put the line of a place of the source under the hand; False if it is none of those.
 
-    def go(self, number: int) -> bool:
-        """Put the line of a number under the hand; False if it is none of those to read."""
-        if number < self._first or (self._last is not None and number > self._last):
+        Parameters
+        ----------
+        back
+            Whether to keep the present place, for `jump_back`.
+        """
+        before = self.character
+        found = self.range.place(character)
+        if found is None:
             return False
-        line = self.layout.line(number)
-        if line is None:
-            return False
-        self._show(line)
+        if back:
+            self.keep_way_back(before)
+        line, cell = found
+        self.put(Window(line, self.under.width).showing(cell))
         return True
 
-    def tune(self, **turned: float) -> None:
-        """Show this line and those after it with another texture or contrast, 0 to 1.
+    def finish(self) -> None:
+        """Come to the end of the text; another reading begins at its beginning."""
+        super().finish()
+        self.keeping.start_over(self.layout)
+
+    def keep_way_back(self, character: int | None = None) -> None:
+        """Have `jump_back` go to a place, the present one if none is given."""
+        self._trail.append(self.character if character is None else character)
+        del self._trail[:-_TRAIL]
+
+    def jump_back(self) -> bool:
+        """Go back to where the reader was before the last jump; False if there was none."""
+        if not self._trail:
+            return False
+        self._hit = self._trail.pop()
+        return self.jump(self._hit, back=False)
+
+    def tune(self, **turned: Any) -> None:
+        """Show this line and those after it in another style, with values as `BrailleStyle` has.
+
+        Where distances change the text is laid out again, and what is under the finger stays
+        there.
 
         Raises
         ------
         InputError
             If a value is out of range.
         """
-        self.style = self.style.replace(**turned)
-        self._too_fast_said = False
-        if self.line is not None:
-            self._render(self.line)
+        self.show_in(self.style.replace(**turned))
 
-    def quit(self) -> None:
-        """Stop reading."""
-        self.done = True
+    def show_in(self, style: BrailleStyle) -> None:
+        """Show this line and those after it in a style, laid out again if its distances differ.
 
-    def _finish(self) -> None:
-        if self._stay:
-            self._finished = True
-            self.say("end of text; p goes back, q stops")
+        Raises
+        ------
+        InputError
+            If there is no room for a cell.
+        """
+        width = self.under.width_in(style)
+        pitch_mm = self.style.geometry.cell_pitch_mm
+        if (style.geometry.cell_pitch_mm, width) == (pitch_mm, self.under.width):
+            self.under.show_in(style)
         else:
-            self.done = True
+            self.lay_out_again(style=style)
 
-    def _show(self, line: Line) -> None:
-        self.line = line
-        self.lines += 1
-        self._finished = False
-        self._prefetched = False
-        end_mm = self.style.geometry.extent_mm(len(line))
-        self._end = EndOfLine(self._model.display.span_mm, end_mm)
-        self._waiting = Waiting(
-            self._model.display.span_mm, end_mm, line.number, by_hand=self._advance, keys=self._stay
-        )
-        self._render(line)
-        self.steer()
-        for sentence in self.echo.sentences(line):
-            self.say(sentence)
+    def lay_out_again(
+        self,
+        book: Book | None = None,
+        width: int | None = None,
+        style: BrailleStyle | None = None,
+    ) -> None:
+        """Lay the text out in another way; the character under the finger stays under it.
 
-    def _render(self, line: Line) -> None:
-        self.engine.show(self.style.render(line.masks, self._model.display), line.number)
+        Parameters
+        ----------
+        book
+            The text in other cells, as by another table.
+        width
+            Number of cells in a line; None for what it was, or for what the style has room for.
+        style
+            How lines are shown; None for what it was.
 
-    def _watch_speed(self, speed_mm_s: float) -> None:
-        if self._too_fast_said or self._end.reached:
+        Raises
+        ------
+        InputError
+            If there is no room for a cell.
+        """
+        cell, character, layout = self.cell, self.character, self.layout
+        before, x_mm, geometry = self.window, self.engine.x_mm, self.style.geometry
+        if style is not None:
+            self.under.show_in(style)
+        self._fixed = self._fixed or width is not None
+        width = width or (layout.width if self._fixed else self.under.width)
+        self.range = self.range.relaid(layout.book if book is None else book, width)
+        found = self.range.place(character)
+        if found is None:  # nothing from here on is shown any more
+            self.finish()
             return
-        note = too_fast_note(speed_mm_s, self.style)
-        if note is not None:
-            self._too_fast_said = True
-            self.say(note)
+        line, new_cell = found
+        window = Window(line, self.under.width)
+        if before is None or cell is None or x_mm is None:
+            self.put(window.showing(new_cell))
+        else:
+            share = before.share_at(x_mm, geometry)
+            self.put(window.under(new_cell, share, x_mm, self.style.geometry))
+
+    def find(self, query: Query, then: Callable[[int | None], None]) -> None:
+        """Look for something in the book, and call a function with its place, or None.
+
+        What is near comes at once; what is far may come while reading goes on.
+        """
+        self.looking.find(self.layout.book.source, query, then, self.seeker)
+
+    def ask(
+        self,
+        what: str,
+        how: str,
+        label: str,
+        then: Callable[[Reader, str], None],
+        *,
+        again: str = "",
+    ) -> None:
+        """Ask for a text, which is then typed in silence.
+
+        Parameters
+        ----------
+        what, how
+            What it is for, and how it is typed.
+        label
+            What the text is called when it is said.
+        then
+            Function that is called with the reader and the text.
+        again
+            The text if nothing is typed.
+        """
+        self.prompt = Prompt(label, lambda text: then(self, text), again)
+        self.context = Context.PROMPT
+        self.say(f"{what}: {how}")
+
+    @property
+    def hit(self) -> int | None:
+        """Place of what was found last; None if that is not on the line under the hand."""
+        line, hit = self.line, self._hit
+        if line is None or hit is None or not len(line.cells):
+            return None
+        return hit if int(line.cells.starts[0]) <= hit < line.cells.end else None
+
+    def arrive(self, place: int | None) -> bool:
+        """Go to what was found, say which line that is, and keep it as `hit`; False if none."""
+        if place is None or not self.jump(place):
+            return False
+        self._hit = place
+        self.announce()
+        return True
+
+    def leave(self) -> None:
+        """Keep the place at which reading goes on another time; nothing is read after this."""
+        self.looking.cancel(self.seeker)
+        self.keeping.leave()

@@ -38,12 +38,12 @@ class Waiting:
         Width of the array, from its left column to its right one, in mm.
     end_mm
         Right edge of the line's last dot.
-    number
-        Number of the line that is under the hand.
+    line
+        What the line is called, such as "line 12".
     by_hand
         Whether the next line comes when the hand returns; otherwise a key brings it.
-    keys
-        Whether there is somebody at a keyboard.
+    key
+        Key that brings the next line; empty if there is nobody at a keyboard.
 
     Attributes
     ----------
@@ -53,14 +53,14 @@ class Waiting:
     """
 
     def __init__(
-        self, span_mm: float, end_mm: float, number: int, *, by_hand: bool, keys: bool
+        self, span_mm: float, end_mm: float, line: str, *, by_hand: bool, key: str
     ) -> None:
         self.hopeless: str | None = None
         self._home_mm = HOME_MM - span_mm / 2
         self._end_mm = end_mm
-        self._number = number
+        self._line = line
         self._by_hand = by_hand
-        self._otherwise = "n brings the next line" if keys else "Ctrl-C stops"
+        self._otherwise = f"{key} brings the next line" if key else "Ctrl-C stops"
         self._said: set[str] = set()
         self._since_ns: int | None = None  # when the hand began to be still, or the device silent
         self._refused_ns: int | None = None  # since when the device takes nothing
@@ -110,7 +110,7 @@ class Waiting:
         if not ticks["flags"][-1] & _HELD:
             if "refused" in self._said:
                 self._said.remove("refused")
-                yield f"device: takes frames again; line {self._number} is felt from here on"
+                yield f"device: takes frames again; {self._line} is felt from here on"
             self._refused_ns = None
             return
         now_ns = int(ticks["time_ns"][-1])
@@ -121,11 +121,11 @@ class Waiting:
             yield from self._once(
                 "refused",
                 f"waiting: the device takes no frames, so that nothing is felt; switch it off and "
-                f"on, and line {self._number} goes on",
+                f"on, and {self._line} goes on",
             )
         if for_s >= HOPELESS_S:
             self.hopeless = (
-                f"the device has taken no frames for {HOPELESS_S:g} s, and line {self._number} "
+                f"the device has taken no frames for {HOPELESS_S:g} s, and {self._line} "
                 f"was not felt to its end; switch it off and on, and read on from there"
             )
 
@@ -144,25 +144,25 @@ class Waiting:
             )
         if reached:
             return (
-                f"waiting: line {self._number} is read; move back to the left and the next line "
+                f"waiting: {self._line} is read; move back to the left and the next line "
                 f"comes, or {self._otherwise}"
             )
         return (
             f"waiting: the finger is still at {max(self._at_mm, 0):.0f} mm, and "
-            f"line {self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to "
+            f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back to "
             f"the left, or {self._otherwise}"
         )
 
     def _turned(self) -> str:
         return (
-            f"waiting: the finger turns back at {self._turns_mm[-1]:.0f} mm, and line "
-            f"{self._number} ends at {self._end_mm:.0f} mm; read to its end and move back to the "
+            f"waiting: the finger turns back at {self._turns_mm[-1]:.0f} mm, and "
+            f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back to the "
             f"left, or {self._otherwise}"
         )
 
     def _turned_back(self) -> str:
         return (
-            f"waiting: line {self._number} is read, and the finger turns right again at "
+            f"waiting: {self._line} is read, and the finger turns right again at "
             f"{self._backs_mm[-1]:.1f} mm; the next line comes at the left stop, which is at "
             f"{self._home_mm - HOME_MM:.1f} mm, or {self._otherwise}"
         )
@@ -180,7 +180,7 @@ class Waiting:
         last = self._backs_mm[-TURNS:]
         if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
             self.hopeless = (
-                f"line {self._number} is read and never done: the finger turns at {last[-1]:.1f} "
+                f"{self._line} is read and never done: the finger turns at {last[-1]:.1f} "
                 f"mm each time, and the left stop is at {self._home_mm - HOME_MM:.1f} mm; see what "
                 f"is in the carriage's way, or that its driver says -span_mm / 2 at its left stop"
             )
@@ -198,7 +198,7 @@ class Waiting:
             last = self._turns_mm[-TURNS:]
             if len(last) == TURNS and max(last) - min(last) <= SAME_MM:
                 self.hopeless = (
-                    f"line {self._number} cannot be read to its end: the finger turns back at "
+                    f"{self._line} cannot be read to its end: the finger turns back at "
                     f"{last[-1]:.0f} mm each time, and the line ends at {self._end_mm:.0f} mm; see "
                     f"what is in the carriage's way, or give a shorter {setting('travel')}"
                 )

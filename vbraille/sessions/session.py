@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.showing import RunEngine
-    from vbraille.sessions.running.sounds import Sound
+    from vbraille.sounds import Sound
 
     Say = Callable[[str], None]
     # What answers may be taken from; see `Session.run`.

@@ -10,9 +10,11 @@ from urllib.parse import parse_qsl
 import numpy as np
 
 from vbraille.devices.base import Device
-from vbraille.errors import InputError
+from vbraille.devices.events import Button, Knob
+from vbraille.errors import InputError, check_range
 from vbraille.pose import Pose
 from vbraille.simulation.paging import Area
+from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
@@ -23,9 +25,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.motion import Motion
+    from vbraille.simulation.pressing import Press
     from vbraille.simulation.steering import HandOrder
 
 NS_PER_S = 1_000_000_000
@@ -53,6 +57,9 @@ class SimulatedDevice(Device):
     steering
         Orders to the hand, one after the other. Without it the hand sets out with the first frame,
         and reads lines as wide as the travel, one after the other.
+    presses
+        When its buttons are held, in seconds since the device was opened; `press`, `let_go` and
+        `turn` do more of the same at once.
 
     Attributes
     ----------
@@ -68,8 +75,13 @@ class SimulatedDevice(Device):
         now_ns: Callable[[], int] = time.monotonic_ns,
         hand: Hand | Recorded | None = None,
         steering: Steering | None = None,
+        presses: Sequence[Press] = (),
     ) -> None:
         self._info = info
+        self._presses = presses
+        self._opened_ns = now_ns()
+        self._held = 0  # bits of the buttons that are held by plan
+        self._pressed: list[Event] = []
         self._hand = hand
         self._steering = steering
         self._has_set_out = False  # whether a recorded hand has set out
@@ -94,8 +106,38 @@ class SimulatedDevice(Device):
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
-        self._begun_ns += now_ns() - self._now_ns()
+        gone_ns = now_ns() - self._now_ns()
+        self._begun_ns += gone_ns
+        self._opened_ns += gone_ns
         self._now_ns = now_ns
+
+    def press(self, button: int) -> None:
+        """Press a button, 1 to 8."""
+        check_range("button", button, 1, MOST_BUTTONS)
+        self._pressed.append(Button(button, pressed=True))
+
+    def let_go(self, button: int) -> None:
+        """Let go of a button, 1 to 8."""
+        check_range("button", button, 1, MOST_BUTTONS)
+        self._pressed.append(Button(button, pressed=False))
+
+    def turn(self, knob: int, value: float) -> None:
+        """Turn a knob, counted from 1, to a position from 0 to 1."""
+        check_range("position of a knob", value, 0, 1)
+        self._pressed.append(Knob(knob, value))
+
+    def take_events(self) -> Sequence[Event]:
+        """Buttons pressed and let go, and knobs turned, since the last call."""
+        told, self._pressed = self._pressed, []
+        if self._presses:
+            now = held(self._presses, (self._now_ns() - self._opened_ns) / NS_PER_S)
+            changed, self._held = now ^ self._held, now
+            told += [
+                Button(bit + 1, pressed=bool(now >> bit & 1))
+                for bit in range(MOST_BUTTONS)
+                if changed >> bit & 1
+            ]
+        return told
 
     @property
     def moving(self) -> bool:
@@ -241,7 +283,7 @@ class SimulatedDevice(Device):
 
 
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
-    """Open ``sim:?hand=HAND&seed=N&steering=DESCRIPTOR``: a device as the page wants it.
+    """Open ``sim:?hand=HAND&seed=N&press=1@2.5s,2@4s&steering=DESCRIPTOR``, as the page wants it.
 
     Raises
     ------
@@ -258,11 +300,14 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     seed = given.pop("seed", "1")
     hand = given.pop("hand", None)
     descriptor = given.pop("steering", None)
+    presses = parse_presses(given.pop("press", ""))
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
         said = address.partition("&steering=")[0]  # a program adds this part, never a person
         raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")
     steering = None if descriptor is None else _steering(descriptor)
-    return SimulatedDevice(wanted, hand=parse_hand(hand, int(seed)), steering=steering)
+    return SimulatedDevice(
+        wanted, hand=parse_hand(hand, int(seed)), steering=steering, presses=presses
+    )
 
 
 def _steering(descriptor: str) -> Steering:

@@ -19,12 +19,14 @@ from vbraille.devices.wire.messages import Encoder
 from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
+from vbraille.simulation.pressing import held
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from vbraille.devices.wire.messages import Info
     from vbraille.simulation.hand import Hand
+    from vbraille.simulation.pressing import Press
     from vbraille.simulation.pty import Port
     from vbraille.simulation.recorded import Recorded
 
@@ -144,6 +146,8 @@ class Simulator:
         Function that is told what happens, a sentence at a time.
     faults
         Ways in which the device misbehaves.
+    presses
+        When its buttons are held, in seconds since a host first greeted it.
 
     Attributes
     ----------
@@ -161,8 +165,11 @@ class Simulator:
         *,
         say: Callable[[str], None],
         faults: Faults | None = None,
+        presses: Sequence[Press] = (),
     ) -> None:
         self._faults = faults or Faults()
+        self._presses = presses
+        self._greeted_us: int | None = None  # for the first time
         defect = self._faults.defect
         if defect is Defect.NO_ACTUATORS:
             info = replace(info, enabled=bytes(info.rows * info.columns))
@@ -231,6 +238,7 @@ class Simulator:
             self._greetings, self._frames = controller.greetings, controller.frames
             self._plug_us = now_us + round(self._faults.unplug_every_s * 1e6)
             self._say("greeted by a host")
+            self._greeted_us = now_us if self._greeted_us is None else self._greeted_us
             if controller.info.encoder is Encoder.INCREMENTAL:
                 self._carriage.go_back(now_us)
             elif not controller.placed:
@@ -244,6 +252,8 @@ class Simulator:
         way_mm = self._carriage.way_mm(now_us)
         if self._faults.defect is Defect.OFF_PLACE:
             way_mm += _OFF_PLACE_MM
+        if self._greeted_us is not None:
+            controller.buttons = held(self._presses, (now_us - self._greeted_us) / 1e6)
         *messages, _ = split(controller.tick(now_us, way_mm))
         if messages:  # the last message is STATE
             sent = [self._send(message) for message in messages][-1]

@@ -10,6 +10,7 @@ from vbraille.devices.wire.messages import Encoder
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model
 from vbraille.simulation.firmware import describe
+from vbraille.simulation.pressing import parse_press
 from vbraille.simulation.pty import Port
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Simulator
@@ -17,7 +18,7 @@ from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import Steering
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
@@ -32,6 +33,8 @@ def simulated_device(
     clock: Clock | None = None,
 ) -> SimulatedDevice:
     """Make a device in memory, whose hand reads what is shown on it.
+
+    Its `press`, `let_go` and `turn` are what a finger does to buttons and knobs.
 
     Parameters
     ----------
@@ -67,6 +70,7 @@ def simulated_controller(
     seed: int = 1,
     encoder: str = "absolute",
     faults: Faults | None = None,
+    presses: Sequence[str] = (),
     say: Callable[[str], None] = lambda _: None,
 ) -> Iterator[str]:
     """Run a controller at a port, in a thread, in real time; give the spec that opens it.
@@ -81,13 +85,16 @@ def simulated_controller(
         What the encoder knows of its place at the start: "absolute", "index" or "incremental".
     faults
         Ways in which the controller misbehaves; None for none.
+    presses
+        Presses of its buttons after the first greeting, such as "1@2.5s", or "1@2.5s-4s" for a
+        button that is held.
     say
         Function that is told what happens, a sentence at a time.
 
     Raises
     ------
     InputError
-        If there is no such hand.
+        If there is no such hand, or a press is none.
     ValueError
         If a number of the display does not fit into its field on the wire.
 
@@ -103,7 +110,14 @@ def simulated_controller(
     port, stopped = Port(), Event()
     try:
         described = describe(info, Encoder[encoder.upper()])
-        simulator = Simulator(described, parse_hand(hand, seed), port, say=say, faults=faults)
+        simulator = Simulator(
+            described,
+            parse_hand(hand, seed),
+            port,
+            say=say,
+            faults=faults,
+            presses=[parse_press(text) for text in presses],
+        )
         thread = Thread(target=simulator.run, args=(stopped.is_set,), daemon=True)
         thread.start()
         try:

@@ -2,7 +2,6 @@
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.book import Book
-from vbraille.translate.cellssource import CellsSource
 from vbraille.translate.documents.document import Document
 from vbraille.translate.languages import find_table, six_dot_table, tables_of
 from vbraille.translate.liblouis import BrailleTable, TableInfo, list_tables
@@ -16,7 +15,6 @@ __all__ = [
     "Book",
     "BrailleTable",
     "Cells",
-    "CellsSource",
     "Document",
     "Source",
     "TableInfo",

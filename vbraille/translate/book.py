@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.translate.languages import foreign_note
+from vbraille.translate.switching import Translator
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,13 +24,32 @@ class Book:
         Source of the blocks. Blocks with cells are shown as they are; others are translated.
     table
         Table to translate with; None for a source of ready cells.
+    language
+        Tag of the language that the reader chose; empty if the reader chose none, so that the
+        source says which language is the book's own.
+    grade
+        Grade that the reader chose, which holds for passages in other languages too.
+    switch
+        Whether passages in other languages are translated by the tables of those languages.
     """
 
     _REMEMBERED = 16
 
-    def __init__(self, source: Source, table: BrailleTable | None = None) -> None:
+    def __init__(
+        self,
+        source: Source,
+        table: BrailleTable | None = None,
+        *,
+        language: str = "",
+        grade: int | None = None,
+        switch: bool = True,
+    ) -> None:
         self.source = source
         self.table = table
+        self.translator = None
+        if table is not None:
+            own = (language, source.language)
+            self.translator = Translator(table, own, grade, switch=switch)
         self._recent: dict[int, tuple[Block, Cells]] = {}
 
     def block(self, number: int) -> tuple[Block, Cells] | None:
@@ -51,14 +71,19 @@ class Book:
             self._recent[number] = found
         return found
 
+    def continues(self, number: int) -> bool:
+        """Whether a block goes on where the one before broke off; False past the end."""
+        block = self.source.block(number)
+        return block is not None and block.continues
+
     def notes(self) -> Iterator[str]:
         """Notes on the source and the table that are due now; each is given once."""
-        table = self.table
-        for note in (self.source.note(), None if table is None else foreign_note(table)):
+        tables = () if self.translator is None else self.translator.tables
+        for note in (self.source.note(), *map(foreign_note, tables)):
             if note is not None:
                 yield note
 
     def _translate(self, block: Block) -> Cells:
-        if self.table is None:
+        if self.translator is None:
             raise ValueError(f"{self.source.name} has text in it; give its book a braille table")
-        return self.table.translate(block.text)
+        return self.translator.translate(block)

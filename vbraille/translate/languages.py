@@ -78,6 +78,33 @@ _SAME = {
     "zh-sg": "cmn-hans",
     "zh-tw": "cmn-hant",
 }
+# Three letters that older books have (ISO 639-2) for two.
+_SAME |= {
+    three: two
+    for two, codes in {
+        "ar": "ara",
+        "cs": "cze ces",
+        "da": "dan",
+        "de": "ger deu",
+        "el": "gre ell",
+        "en": "eng",
+        "es": "spa",
+        "fi": "fin",
+        "fr": "fre fra",
+        "he": "heb",
+        "hu": "hun",
+        "it": "ita",
+        "nl": "dut nld",
+        "no": "nor nob nno",
+        "pl": "pol",
+        "pt": "por",
+        "ru": "rus",
+        "sv": "swe",
+        "tr": "tur",
+        "cmn": "chi zho",
+    }.items()
+    for three in codes.split()
+}
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
 
@@ -113,6 +140,15 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
         f"there is no table for language {language!r}; {nearest(wanted, tags, 3)} "
         f"(vbraille tables lists all)"
     )
+
+
+def has_tables(language: str) -> bool:
+    """Whether there is a table for a language, whatever its grade."""
+    try:
+        tables_of(language)
+    except InputError:
+        return False
+    return True
 
 
 def find_table(language: str = "en", grade: int | None = None) -> str:

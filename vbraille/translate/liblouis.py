@@ -18,6 +18,7 @@ import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.emphasis import typeforms
 from vbraille.translate.scripts import all_letters, native_letters, script_of
 from vbraille.translate.text import SPACE, to_codes, to_text
 from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.translate.scripts import Script
+    from vbraille.translate.source import Mark
     from vbraille.translate.text import Text
 
 # In bytes; liblouis puts a name, with a folder before it, into 2 kB without checking that it fits.
@@ -66,6 +68,9 @@ _list_tables.restype = ctypes.POINTER(ctypes.c_char_p)
 _get_info = louis.liblouis["lou_getTableInfo"]
 _get_info.argtypes = [ctypes.c_char_p, ctypes.c_char_p]
 _get_info.restype = ctypes.c_char_p
+_form_of = louis.liblouis["lou_getTypeformForEmphClass"]
+_form_of.argtypes = [ctypes.c_char_p, ctypes.c_char_p]
+_form_of.restype = ctypes.c_ushort
 
 
 @louis.LogCallback
@@ -113,8 +118,15 @@ class TableInfo:
 def list_tables() -> tuple[TableInfo, ...]:
     """All tables that have metadata, by name."""
     with _lock:  # asked once: liblouis 3.24 has nothing to free the answers with
+        return tuple(sorted(_table_info(str(path).encode()) for path in _table_paths()))
+
+
+@cache
+def _table_paths() -> tuple[Path, ...]:
+    """Paths of the tables that have metadata."""
+    with _lock:
         paths: list[bytes] = list(itertools.takewhile(bool, _list_tables()))
-        return tuple(sorted(map(_table_info, paths)))
+        return tuple(Path(path.decode()) for path in paths)
 
 
 def _table_info(path: bytes) -> TableInfo:
@@ -129,6 +141,35 @@ def _table_info(path: bytes) -> TableInfo:
         dots=int(value("dots") or 0),
         kind=value("type"),
     )
+
+
+def display_dots(table: str, characters: str) -> list[int]:
+    """Dot masks that a display table has for characters; 0 for what it does not know, and blanks.
+
+    Parameters
+    ----------
+    table
+        File name of a display table that liblouis has (``de-eurobrl6.dis``), or a path.
+    characters
+        Characters to look up, each in the Basic Multilingual Plane.
+
+    Raises
+    ------
+    InputError
+        If there is no such table; the message names the nearest.
+    """
+    known = bool(table.strip()) and not {"\0", ","} & set(table)
+    try:
+        if not known or len(table.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
+            raise RuntimeError
+        with _lock:
+            found = louis.charToDots([table], characters)
+    except RuntimeError:
+        folders = {path.parent for path in _table_paths()}
+        names = sorted(path.name for folder in folders for path in folder.glob("*.dis"))
+        near = f"; {nearest(table, names, 3)}" if names else ""
+        raise InputError(f"there is no display table {table!r}{near}") from None
+    return [ord(dots) & 0xFF for dots in found]
 
 
 class BrailleTable:
@@ -146,6 +187,8 @@ class BrailleTable:
     ----------
     undefined : set of int
         Code points that occurred and that the table does not know.
+    how : Undefined
+        What is written for them.
 
     Raises
     ------
@@ -156,7 +199,7 @@ class BrailleTable:
     def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
         self.name = name
         self.undefined: set[int] = set()
-        self._how = undefined
+        self.how = undefined
         self._list = name.encode("utf-8", "surrogateescape")
         with _lock:
             known = bool(name.strip()) and "\0" not in name and len(self._list) <= _LONGEST_NAME
@@ -173,6 +216,7 @@ class BrailleTable:
         self._instead: dict[int, tuple[int, ...]] = {}
         self._foreign: dict[str, Script] = {}  # scripts of whole unknown passages, by name
         self._noted = 0
+        self._forms: dict[str, int] = {}  # bits of classes of emphasis, 0 for those it has not
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
         if not any(self._writes_some(letters()) for letters in (lambda: _SMALL, all_letters)):
@@ -220,21 +264,30 @@ class BrailleTable:
         self._noted += 1
         return list(self._foreign.values())[self._noted - 1]
 
-    def translate(self, text: Text) -> Cells:
+    def translate(self, text: Text, marks: tuple[Mark, ...] = ()) -> Cells:
         """Cells of a paragraph's text; no character is left out unless that was asked for.
 
         The replacement of a character that the table does not know is written by the rules of the
-        table, so that it reads back like any other text.
+        table, so that it reads back like any other text. Emphasis among the marks is written as
+        the table does it; the cells that say so stand for the character next to them.
         """
         codes, places = text.codes, text.places
         if not text.alphabet <= self._known:
             codes, places = self._substitute(text)
-        masks, inputs = self._call(codes, _MODE)
+        forms = typeforms(marks, places, self._form) if marks else None
+        masks, inputs = self._call(codes, _MODE, forms)
         if not masks.size:
             return Cells(masks, np.empty(0, np.int64), text.end)
         if masks.tobytes().translate(None, _SIX_DOTS) and not self.eight_dots:
             masks &= 0x3F  # a rule for neighbours that raises what neither raises alone
         return Cells(masks, places[inputs], text.end)
+
+    def _form(self, name: str) -> int:
+        """Bit of a class of emphasis; 0 if the table has no such class."""
+        if name not in self._forms:
+            with _lock:
+                self._forms[name] = _form_of(self._list, name.encode())
+        return self._forms[name]
 
     def _grow(self, characters: int) -> None:
         cells = characters * louis.outlenMultiplier
@@ -244,23 +297,23 @@ class BrailleTable:
         self._outputs = np.empty(cells, np.int32)
 
     def _call(
-        self, codes: NDArray[np.uint32], mode: int
+        self, codes: NDArray[np.uint32], mode: int, forms: NDArray[np.uint16] | None = None
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         """Translate code points; give dot masks, and for each the index of its character."""
         if louis.wideCharBytes == 2:  # liblouis built with UTF-16: places count its units
-            return self._call_utf16(codes, mode)
-        return self._call_units(np.ascontiguousarray(codes), mode)
+            return self._call_utf16(codes, mode, forms)
+        return self._call_units(np.ascontiguousarray(codes), mode, forms)
 
     def _call_utf16(
-        self, codes: NDArray[np.uint32], mode: int
+        self, codes: NDArray[np.uint32], mode: int, forms: NDArray[np.uint16] | None
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         units = np.frombuffer(to_text(codes).encode("utf-16-le", "surrogatepass"), np.uint16)
         character = np.repeat(np.arange(codes.size, dtype=np.int32), 1 + (codes > 0xFFFF))
-        masks, inputs = self._call_units(units, mode)
+        masks, inputs = self._call_units(units, mode, None if forms is None else forms[character])
         return masks, character[inputs]
 
     def _call_units(
-        self, units: NDArray[np.unsignedinteger], mode: int
+        self, units: NDArray[np.unsignedinteger], mode: int, forms: NDArray[np.uint16] | None
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         if units.size == 0:
             return np.empty(0, np.uint8), np.empty(0, np.int32)
@@ -270,13 +323,15 @@ class BrailleTable:
             self._in_length.value = units.size
             # Larger arrays would cost time: liblouis clears and copies all that it is offered.
             self._out_length.value = units.size * louis.outlenMultiplier
+            if forms is not None:  # liblouis writes into it, for each cell
+                forms = np.pad(forms, (0, self._out_length.value - forms.size))
             done = _translate(
                 self._list,
                 units.ctypes.data,
                 ctypes.addressof(self._in_length),
                 self._out.ctypes.data,
                 ctypes.addressof(self._out_length),
-                None,
+                None if forms is None else forms.ctypes.data,
                 None,
                 self._outputs.ctypes.data,
                 self._inputs.ctypes.data,
@@ -301,7 +356,7 @@ class BrailleTable:
         self._look_for_foreign(own)
         written: list[int] = []
         places: list[int] = []
-        mark = _codes(self.marker) if self._how is Undefined.MARK else None
+        mark = _codes(self.marker) if self.how is Undefined.MARK else None
         marked = False
         for code, place in zip(own, text.places.tolist(), strict=True):
             instead = self._instead.get(code, (code,))
@@ -345,7 +400,7 @@ class BrailleTable:
         if alike:
             return alike
         self.undefined.add(code)
-        return self._first_written(spellings(character, self._how))
+        return self._first_written(spellings(character, self.how))
 
     def _first_written(self, texts: Iterable[str]) -> tuple[int, ...]:
         """First of the texts that the table can write in full; empty if there is none."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
+import msgspec
+
 if TYPE_CHECKING:
     from vbraille.braille.cells import Cells
     from vbraille.translate.text import Text
@@ -23,11 +25,57 @@ class BlockKind(Enum):
     """A row of a table."""
     LINE = "line"
     """A line that begins where the source begins it: of verse, of code, of a braille file."""
+    QUOTE = "quote"
+    """A paragraph that is quoted; its level is 1 where no other quotation is around it."""
+    NOTE = "note"
+    """A footnote or an endnote, at the place where its format has it."""
     PAGE = "page"
     """The place where a page of the printed book begins; its text is the page's number, if any."""
 
 
-_LEVELLED = (BlockKind.HEADING, BlockKind.ITEM)
+_LEVELLED = (BlockKind.HEADING, BlockKind.ITEM, BlockKind.QUOTE)
+
+
+class MarkKind(Enum):
+    """What is so about a part of a block's text."""
+
+    ITALIC = "italic"
+    BOLD = "bold"
+    UNDERLINE = "underline"
+    SUPERSCRIPT = "superscript"
+    SUBSCRIPT = "subscript"
+    CODE = "code"
+    """Computer code."""
+    LANGUAGE = "language"
+    """Text in another language than the block's; the target is its tag, such as "fr"."""
+    LINK = "link"
+    """A link; the target is an address, or "#" and the name of an anchor of this source."""
+    NOTE = "note"
+    """A reference to a note; the target is "#" and the name of the note's anchor."""
+    IMAGE = "image"
+    """The text that stands for a picture."""
+    UNSHOWN = "unshown"
+    """A remark on something that cannot be shown; the target is what it is, such as "formula"."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that is so about a part of a text.
+
+    Parameters
+    ----------
+    kind
+        What is so.
+    start, end
+        First character of the part and one past its last, as places of the source.
+    target
+        Address, anchor, language or thing that the kind speaks of; empty for other kinds.
+    """
+
+    kind: MarkKind
+    start: int
+    end: int
+    target: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,11 +94,22 @@ class Block:
         The block in braille, if the source has it in braille; None if its text is to be translated.
     continues : bool
         Whether this piece goes on where the block before it broke off.
+    marks : tuple of Mark
+        Emphasis, links, languages and the like, by where they begin, outer ones first.
+    language : str
+        Tag of the block's language, such as "fr"; empty if the source does not say.
+    anchors : tuple of str
+        Names by which links and references to notes find the block.
+    group : int
+        Number of the list or table that the block is part of, from 1 in the order of the source;
+        0 for others.
+    headers : tuple of str
+        For a row of a table: the header of each of its cells, if the source has headers.
 
     Raises
     ------
     ValueError
-        If a heading or an item has no level, or another block has one.
+        If a heading, an item or a quote has no level, or another block has one.
     """
 
     text: Text
@@ -58,6 +117,11 @@ class Block:
     level: int = 0
     cells: Cells | None = None
     continues: bool = False
+    marks: tuple[Mark, ...] = ()
+    language: str = ""
+    anchors: tuple[str, ...] = ()
+    group: int = 0
+    headers: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         levelled = self.kind in _LEVELLED
@@ -66,6 +130,27 @@ class Block:
             raise ValueError(
                 f"level of kind {self.kind.value} is {self.level}; it must be {wanted}"
             )
+
+
+class Index(msgspec.Struct, frozen=True):
+    """What a source knows of where its blocks are, so that a later opening need not find it again.
+
+    Parameters
+    ----------
+    form
+        Name of the source's class and of the form of its rows, with a version.
+    fits
+        Values that must be the same for the index to be taken over, such as the file's size.
+    rows
+        What is known, in the source's own form; each row is numbers and text.
+    complete
+        Whether the index reaches to the end.
+    """
+
+    form: str
+    fits: tuple[str | int, ...]
+    rows: tuple[tuple[int | str, ...], ...]
+    complete: bool = False
 
 
 class Source(Protocol):
@@ -77,6 +162,21 @@ class Source(Protocol):
     @property
     def name(self) -> str:
         """Name of the source in messages."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """Title of the book, as the source has it; empty if it has none."""
+        ...
+
+    @property
+    def language(self) -> str:
+        """Tag of the language that most of the source is in; empty if it does not say."""
+        ...
+
+    @property
+    def in_cells(self) -> bool:
+        """Whether all blocks have ready cells, so that no table is needed."""
         ...
 
     def block(self, number: int) -> Block | None:
@@ -93,6 +193,23 @@ class Source(Protocol):
         """Number of the block that holds a character, or of the next block; None past the end."""
         ...
 
+    def anchor(self, name: str) -> int | None:
+        """Place of the first character of the block with an anchor; None if there is none."""
+        ...
+
+    def index(self) -> Index:
+        """Tell what is known so far of where blocks are, to be kept for another time."""
+        ...
+
+    def adopt(self, index: Index) -> None:
+        """Take over what was known of the same file at another time; of another file, nothing."""
+        ...
+
+    @property
+    def complete(self) -> bool:
+        """Whether all blocks are known, so that the source's end is."""
+        ...
+
     def progress(self, number: int) -> float:
         """About how much of the source stands before a block that was read, 0 to 1."""
         ...
@@ -103,4 +220,8 @@ class Source(Protocol):
 
     def sha256(self) -> str:
         """SHA-256 of the bytes that the source was read from, in hexadecimal."""
+        ...
+
+    def close(self) -> None:
+        """Let go of the file, after which no block can be read; further calls do nothing."""
         ...

@@ -1,9 +1,10 @@
 """What a device has to tell: at once, but each kind at most once a second."""
 
+import numpy as np
 import pytest
 
-from vbraille.devices.events import Back, Button, Notice, Silent
-from vbraille.devices.serial.notices import EVERY_NS, Notices
+from vbraille.devices.events import Back, Button, Knob, Notice, Silent
+from vbraille.devices.serial.notices import EVERY_NS, PLACE_EVERY_NS, Notices
 
 MS = 1_000_000
 
@@ -62,6 +63,20 @@ def test_each_press_of_a_button_is_told_but_not_without_an_end():
     for press in presses:
         notices.add(press, 0)
     assert notices.take(0) == presses[:256]
+
+
+def test_a_knob_that_is_turned_is_followed_and_ends_where_it_was_left():
+    notices = Notices()
+    told = []
+    for ms in range(2000):
+        if ms < 990:
+            notices.add(Knob(1, abs(500 - ms) / 500), ms * MS)
+        told += [(ms, event) for event in notices.take(ms * MS)]
+    times_ms = [ms for ms, _ in told]
+    assert max(np.diff(times_ms)) * MS <= PLACE_EVERY_NS + MS
+    assert len(told) <= 990 * MS / PLACE_EVERY_NS + 2
+    assert told[-1] == (1000, Knob(1, 489 / 500))
+    assert {event.times for _, event in told} == {1}
 
 
 def test_a_count_that_was_made_before_is_kept():

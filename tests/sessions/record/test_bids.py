@@ -31,7 +31,7 @@ def record(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def files(record):
-    """Its files."""
+    """Files of the data set."""
     return bids.files(record)
 
 

@@ -504,3 +504,23 @@ class TestOpen:
         found = Document.open("/proc/self/status", keep_lines=True)
         assert found.size > 0
         assert str(found.block(0).text).startswith("Name:")
+
+
+@pytest.mark.parametrize("keep_lines", [False, True])
+def test_chunks_whose_blocks_nobody_wants_are_passed_and_end_where_they_would(keep_lines):
+    text = "".join(f"Paragraph {n}\n" + "\n" * (n % 3 == 0) for n in range(20_000))
+    text += "a long one " * 20_000 + "\n\n- an item\n\n\n"
+    read, passed, sought = (
+        Document(io.BytesIO(text.encode()), "a", "utf-8", keep_lines=keep_lines) for _ in range(3)
+    )
+    number = 0
+    while read.block(number) is not None:
+        number += 1
+    while passed.extend():
+        assert passed.index().rows == read.index().rows[: len(passed.index().rows)]
+    assert passed.index() == read.index()
+    assert passed.complete
+    assert sought.block(number) is None
+    assert sought.index() == read.index()
+    assert str(passed.block(number - 1).text) == str(read.block(number - 1).text)
+    assert not passed.extend()

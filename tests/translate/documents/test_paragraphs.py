@@ -2,6 +2,7 @@
 
 import random
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -110,6 +111,7 @@ class TestProse:
         [
             ("Buy\n- milk\n- eggs\n  of hens\n- tea", ["Buy", "- milk", "- eggs of hens", "- tea"]),
             ("• one\n• two", ["• one", "• two"]),
+            ("Buy\n-\u202fmilk\n-\u2007tea", ["Buy", "-\xa0milk", "-\xa0tea"]),
             ("* one\n* two\nand more", ["* one", "* two and more"]),
             ("Steps\n1. go\n2. come\nback\n3. stay", ["Steps", "1. go", "2. come back", "3. stay"]),
             ("9) nine\n10) ten\n12) no", ["9) nine", "10) ten 12) no"]),
@@ -228,6 +230,29 @@ class TestInParts:
     def test_with_lines_kept_an_indent_waits_for_its_text(self):
         found = split_paragraphs(at("\n\n   "), final=False, keep_lines=True)
         assert (found.blocks, found.used) == ([], 2)
+
+
+class TestCounting:
+    @examples(200)
+    @given(awkward_texts, st.booleans(), st.booleans(), st.booleans(), st.integers(0, 3))
+    def test_counting_tells_what_making_the_paragraphs_tells(
+        self, text, final, keep_lines, continues, item
+    ):
+        how = {"final": final, "keep_lines": keep_lines, "continues": continues, "item": item}
+        made = split_paragraphs(at(text, 5), **how)
+        counted = split_paragraphs(at(text, 5), **how, count=True)
+        assert counted.blocks == []
+        assert made.count == len(made.blocks)
+        assert made.end == (made.blocks[-1].text.end if made.blocks else 0)
+        assert replace(made, blocks=[]) == counted
+
+    @pytest.mark.parametrize("final", [False, True])
+    def test_a_paragraph_that_is_cut_counts_as_its_pieces(self, final):
+        stretch = at("one\n\n" + "word " * PIECE_CHARACTERS)
+        made = split_paragraphs(stretch, final=final)
+        counted = split_paragraphs(stretch, final=final, count=True)
+        assert made.count > 4
+        assert replace(counted, blocks=[]) == replace(made, blocks=[])
 
 
 class TestLongBlanks:

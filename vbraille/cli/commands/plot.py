@@ -14,6 +14,7 @@ import numpy as np
 
 from vbraille import pictures
 from vbraille.cli.build import build_book, build_lengths, build_show, build_table, lay_out
+from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.errors import InputError
 from vbraille.render import MODELS, VBD
 from vbraille.translate import Document
@@ -59,6 +60,7 @@ def _new_name(kind: str) -> Path:
 
 
 def _table(arguments: argparse.Namespace) -> FigureTable:
+    settle(arguments, TRANSLATION)
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
     model = MODELS[arguments.model]

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import sys
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.build import (
-    build_book,
-    build_lengths,
-    build_show,
-    lay_out,
-    note_unseen_dots,
-)
+from vbraille.cli.build import build_lengths, build_show, lay_out, note_unseen_dots
+from vbraille.cli.resuming import open_to_resume
+from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
@@ -22,19 +19,28 @@ from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
-from vbraille.reading.commands import press
+from vbraille.reading.beside import Beside
+from vbraille.reading.commands.table import press
 from vbraille.reading.context import Context
+from vbraille.reading.cues import Cues, choose_cues
+from vbraille.reading.echo import Echo
+from vbraille.reading.hearing import Hearing, language_of
 from vbraille.reading.keyboard import Keyboard
 from vbraille.reading.opened import HAND, OpenDevice
-from vbraille.reading.reader import Echo
+from vbraille.reading.places import KeptPlaces
+from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
+from vbraille.settings.applying import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
+    from pathlib import Path
 
     from vbraille.cli.build import Page
     from vbraille.engine.tally import Tally
+    from vbraille.render import Model
 
 _POLL_S = 0.02
 _PLACES = {
@@ -45,8 +51,13 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
+    settings = settle(arguments)
+    profile = chosen_profile(arguments, settings)
     rate_hz = check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
+    if arguments.cells is not None and arguments.cells < 1:
+        raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
+    bound = bind_settings(settings)
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
     parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
@@ -60,32 +71,67 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as listening, Keyboard(beside=arguments.file == "-") as keyboard:
         if arguments.advance == "key" and not keyboard.attached:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
+        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
+        echo = _echo(arguments.echo)
+        hearing = listening.enter_context(Hearing(say_line, cues, echo=echo))
         device = OpenDevice(
-            arguments.device, wanted, hand=hand, seed=seed, say=say_line, attended=keyboard.attached
+            arguments.device,
+            wanted,
+            hand=hand,
+            seed=seed,
+            say=hearing.say,
+            attended=keyboard.attached,
+            begun=arguments.begun,
         )
         try:
-            book = build_book(arguments)
+            places = listening.enter_context(KeptPlaces.open())
+            opened = open_to_resume(arguments, places)
+            listening.callback(opened.book.source.close)
+            if arguments.speech:
+                hearing.speak(language_of(opened.book, arguments.language))
             display = device.find()
             if arguments.model is not None:
                 check_actuators(display, wanted)
-            model = build_show(arguments, model_of(display))
+            own = with_profile(settings, profile, model_of(display))
+            model = build_show(arguments, opened.tuned(own))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
             model = build_lengths(arguments, model, display.travel_mm)
-            page = lay_out(arguments, book, model)
+            page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
             device.start(page.model)
             # Till now Ctrl-Z may do what it does elsewhere.
             suspension = listening.enter_context(Suspension())
             keyboard.take()
+            seeker = opened.seeker(arguments)
+            if seeker is not None:
+                listening.enter_context(seeker)
             device.show(
                 page.layout,
                 first=page.first,
                 last=page.last,
+                at=None if opened.place is None else opened.place.character,
                 advance=arguments.advance == "return",
-                echo=_echo(arguments.echo),
+                echo=echo,
+                beside=Beside(
+                    bound=bound,
+                    seeker=seeker,
+                    kept=opened.kept,
+                    scroll=Scroll(),
+                    cue=hearing.cue,
+                    save_style=lambda style: _save(
+                        settings.path, profile, replace(model, style=style)
+                    ),
+                    verbose=arguments.verbose,
+                ),
             )
-            _Reading(page, device, keyboard, suspension).run()
+            if opened.place is not None:
+                hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
+                device.reader.announce()
+            try:
+                _Reading(page, device, keyboard, suspension, hearing).run()
+            finally:
+                opened.leave(device.reader, model, page.model.style)
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
@@ -101,19 +147,31 @@ class _Reading:
     """One reading, with its device and its keyboard."""
 
     def __init__(
-        self, page: Page, device: OpenDevice, keyboard: Keyboard, suspension: Suspension
+        self,
+        page: Page,
+        device: OpenDevice,
+        keyboard: Keyboard,
+        suspension: Suspension,
+        hearing: Hearing,
     ) -> None:
         self._page = page
         self._device = device
         self._keyboard = keyboard
         self._suspension = suspension
+        self._hearing = hearing
 
     def run(self) -> None:
         """Read to the end."""
+        try:
+            self._read()
+        finally:
+            self._device.reader.leave()
+
+    def _read(self) -> None:
         device = self._device
-        self._page.say_note()
+        self._say_notes()
         if self._keyboard.attached:
-            say_line("h says the keys")
+            self._hearing.say(f"{device.reader.key('HELP', 'h')} says the keys")
         while not device.done:
             for key in self._pressed():
                 self._press(key)
@@ -125,13 +183,20 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
-            self._page.see(device.reader.line_number)
-            self._page.say_note()
+            self._hearing.see(device.line)
+            if device.reader.layout is self._page.layout:
+                self._page.see(device.reader.line_number)
+            self._say_notes()
+
+    def _say_notes(self) -> None:
+        """Say what is to be said of the text and of its table, which may have changed."""
+        for note in self._device.reader.layout.book.notes():
+            say_line(spelled(note), aside=True)
 
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:
             raise InputError("the device must be told where its left stop is; read at a terminal")
-        say_line(_PLACES.get(self._device.placing, "place: known"))
+        self._hearing.say(_PLACES.get(self._device.placing, "place: known"))
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""
@@ -146,17 +211,21 @@ class _Reading:
         """Stop, with the array at rest, until the shell says to go on."""
         device = self._device
         paused, device.paused = device.paused, True
-        say_line("stopped: the array rests; fg goes on")
+        self._hearing.say("stopped: the array rests; fg goes on")
         self._keyboard.release()
         self._suspension.stop()
         self._keyboard.take()
         device.paused = paused
-        say_line("paused" if paused else "reading")
+        self._hearing.say("paused" if paused else "reading")
 
     def _press(self, key: str) -> None:
         placing = self._device.placing is Placing.STOP
-        self._device.reader.context = Context.PLACING if placing else Context.READING
-        press(self._device.reader, key)
+        reader = self._device.reader
+        if placing:
+            reader.context = Context.PLACING
+        elif reader.context is Context.PLACING:
+            reader.context = Context.READING
+        press(reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.
@@ -168,7 +237,7 @@ class _Reading:
         """
         if not self._keyboard.attached:
             raise fault
-        say_line(f"fault: {fault}; space begins again, q stops")
+        self._hearing.say(f"fault: {fault}; space begins again, q stops")
         while True:
             keys = self._pressed()
             if "q" in keys:
@@ -177,9 +246,17 @@ class _Reading:
             if " " in keys:
                 break
             if keys:
-                say_line("fault: nothing drives the device; space begins again, q stops")
+                self._hearing.say("fault: nothing drives the device; space begins again, q stops")
         self._device.start_again()
-        say_line("reading")
+        self._hearing.say("reading")
+
+
+def _save(path: Path, profile: str, model: Model) -> str:
+    """Save how braille feels in a profile, and give a sentence on that."""
+    # Most readings save nothing, and need not wait for what writes settings.
+    from vbraille.settings.saving import save_profile
+
+    return save_profile(path, profile, model)
 
 
 def _echo(chosen: str | None) -> Echo:

@@ -18,6 +18,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
 from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
@@ -53,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the frames of every line asked for, and say how many."""
     if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
         raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
+    settle(arguments, TRANSLATION)
     model = build_show(arguments, MODELS[arguments.model])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)

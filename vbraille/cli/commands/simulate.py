@@ -12,6 +12,7 @@ from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
 from vbraille.simulation.firmware import describe
+from vbraille.simulation.pressing import parse_presses
 from vbraille.simulation.pty import Link, Port
 from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.simulation.specs import parse_hand
@@ -29,6 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Be a device until a signal says to stop."""
     info = _info(arguments)
     hand = parse_hand(arguments.hand, arguments.seed)
+    presses = parse_presses(arguments.press)
     if arguments.unplug_every and arguments.link is None:
         raise InputError("--unplug-every needs --link, for the port has a new name each time")
     try:
@@ -45,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     with EAR.deferred():
         port = Port(Link(arguments.link) if arguments.link is not None else None)
         try:
-            simulator = Simulator(info, hand, port, say=say_line, faults=faults)
+            simulator = Simulator(info, hand, port, say=say_line, faults=faults, presses=presses)
             say_line(f"port: {port.path}")
             if arguments.link is not None:
                 say_line(f"link: {arguments.link}")

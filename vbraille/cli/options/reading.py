@@ -12,6 +12,22 @@ MAPPINGS = ("alternate", "paired", "sheared", "split-columns", "row-sheared", "c
 MODELS = ("stress2", "vbd")
 PLOTS = ("profile", "mapping", "wave", "strain", "page")
 
+# Options of reading that a settings file may say.
+SETTLED = (
+    "device",
+    "language",
+    "grade",
+    "table",
+    "encoding",
+    "undefined",
+    "keep_lines",
+    "advance",
+    "echo",
+    "speech",
+    "cues",
+    "verbose",
+)
+
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
     "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, and "
@@ -26,8 +42,45 @@ def nothing(_parser: ArgumentParser) -> None:
 
 def read(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille read``."""
-    _text(parser)
+    _text(parser, optional=True)
+    _reading(parser)
+    parser.add_argument(
+        "--no-places",
+        action="store_true",
+        help="Begin at the beginning, and keep neither the place nor anything else of the book.",
+    )
+
+
+def settings(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille settings``, which are those of reading."""
+    _text(parser, file=False)
+    _reading(parser)
+    parser.add_argument(
+        "--path", action="store_true", help="Print where the settings file is, and nothing else."
+    )
+
+
+def tune(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille tune``."""
+    parser.add_argument(
+        "file", nargs="?", metavar="TEXT", help="Practise on this text (default: a short one)."
+    )
+    _profile(parser)
+    parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
+    parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
+    _translation(parser)
+    _hand(parser)
+    parser.add_argument(
+        "--again", action="store_true", help="Begin anew, and forget the choices made so far."
+    )
+    parser.set_defaults(hand=None, seed=None)
+    _leave_to_settings(parser)
+
+
+def _reading(parser: ArgumentParser) -> None:
+    """Add the options of reading that are not the text's."""
     _show(parser)
+    _profile(parser)
     parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
     parser.add_argument(
         "--advance",
@@ -42,9 +95,54 @@ def read(parser: ArgumentParser) -> None:
         help="Say what is printed of each line: nothing, its text, its cells in Unicode braille, "
         "or both (default: none at a terminal, otherwise both).",
     )
+    parser.add_argument(
+        "--speech",
+        action="store_true",
+        help="Speak lines, settings and all else that is said, through Speech Dispatcher.",
+    )
+    parser.add_argument(
+        "--cues",
+        choices=("sound", "bell", "none"),
+        help="Signal the end of a line or page, a limit, and what is not found: by tones, by the "
+        "terminal's bell, or not (default: tones at a terminal, the bell through SSH, otherwise "
+        "none).",
+    )
+    parser.add_argument(
+        "--cells",
+        type=whole,
+        metavar="N",
+        help="Lay out lines of so many cells; the hand goes along a longer one part by part "
+        "(default: as many as the hand can cross).",
+    )
+    parser.add_argument(
+        "--verbose", action="store_true", help="Say more, such as how far a search has come."
+    )
     _hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
+    _leave_to_settings(parser)
+
+
+def books(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille books``."""
+    parser.add_argument(
+        "--forget",
+        type=whole,
+        metavar="N",
+        help="Delete all that is kept of the book with this number in the list; the book's file "
+        "stays (default: nothing is deleted).",
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="Print the list as JSON, for another program."
+    )
+
+
+def keys(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille keys``."""
+    parser.add_argument(
+        "--json", action="store_true", help="Print the commands as JSON, for other programs."
+    )
+    _settings(parser)
 
 
 def page(parser: ArgumentParser) -> None:
@@ -53,11 +151,47 @@ def page(parser: ArgumentParser) -> None:
     _layout(parser)
     parser.add_argument(
         "--format",
-        choices=("unicode", "brf", "dots", "text"),
+        choices=("unicode", "brf", "dots", "text", "pef", "ebrl"),
         default="unicode",
-        help="Print Unicode braille, ASCII braille, dot numbers, or the text of each line "
-        "(default: unicode).",
+        help="Write Unicode braille, ASCII braille (BRF), dot numbers, the text of each line, PEF, "
+        "or eBraille (default: unicode).",
     )
+    parser.add_argument(
+        "--out", metavar="FILE", help="Write to this file, whole or not at all (default: print)."
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="Replace the file if it is there already."
+    )
+    parser.add_argument(
+        "--cells",
+        type=whole,
+        metavar="N",
+        help="Lay out for lines of so many cells, whatever the display (default: the display's, "
+        "or 40 on pages).",
+    )
+    parser.add_argument(
+        "--layout",
+        choices=("bana",),
+        help="Make pages to be embossed by the literary layout of the Braille Authority of North "
+        "America, with page numbers; --lines 25 then says how many lines a page has (default: "
+        "lines without pages).",
+    )
+    parser.add_argument(
+        "--workers",
+        type=whole,
+        metavar="N",
+        help="Translate a long text in so many processes (default: one for each processor, at "
+        "most 4; only one for --lines 1-10 and the like).",
+    )
+    parser.set_defaults(model=None)  # so that it is known whether a display was asked for
+
+
+def structure(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille structure``."""
+    _source(parser)
+    parser.add_argument("--json", action="store_true", help="Print the same as JSON.")
+    parser.set_defaults(table=None, language=None, grade=None, undefined="mark", keep_lines=False)
+    parser.set_defaults(settled=frozenset())
 
 
 def render(parser: ArgumentParser) -> None:
@@ -138,6 +272,13 @@ def simulate(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--travel", type=number, metavar="MM", help="Let the carriage go so far (default: 300 mm)."
     )
+    parser.add_argument(
+        "--press",
+        default="",
+        metavar="N@TIME,…",
+        help="Press button N, 1 to 8, so long after the first greeting, as in 1@2.5s,2@4s, or hold "
+        "it for a while, as in 1@2.5s-4s (default: no button).",
+    )
     for name, text in (
         ("drop", "Lose this share of the messages, both ways"),
         ("corrupt", "Damage this share of the messages, both ways"),
@@ -187,33 +328,10 @@ def tables(parser: ArgumentParser) -> None:
     )
 
 
-def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
-    parser.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="?" if optional else None,
-        help="Take this text file, or standard input for -.",
-    )
-    parser.add_argument(
-        "--table", metavar="NAME", help="Translate with this liblouis table (default: by language)."
-    )
-    parser.add_argument(
-        "--language",
-        metavar="TAG",
-        help="Translate with the usual table of this language, such as fr or pt-BR (default: en).",
-    )
-    parser.add_argument(
-        "--grade",
-        type=whole,
-        metavar="N",
-        help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
-        "in the language).",
-    )
-    parser.add_argument(
-        "--encoding",
-        metavar="NAME",
-        help="Read the file in this text encoding (default: what its bytes say).",
-    )
+def _text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:
+    if file:
+        _source(parser, optional=optional)
+    _translation(parser)
     parser.add_argument(
         "--undefined",
         choices=("mark", "name", "code", "drop"),
@@ -234,6 +352,75 @@ def _text(parser: ArgumentParser, *, optional: bool = False) -> None:
         metavar="3-10",
         help="Take these lines of the page only, counted from 1 (default: all).",
     )
+
+
+def _source(parser: ArgumentParser, *, optional: bool = False) -> None:
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="Take this text file, or standard input for -.",
+    )
+    parser.add_argument(
+        "--encoding",
+        metavar="NAME",
+        help="Read the file in this text encoding (default: what its bytes say).",
+    )
+    parser.add_argument(
+        "--form",
+        metavar="NAME",
+        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "unicode-braille or pef (default: what its content and then its name say).",
+    )
+    parser.add_argument(
+        "--brf-table",
+        metavar="NAME",
+        help="Read a BRF file in the dialect of this display table of liblouis, such as "
+        "de-eurobrl6.dis (default: North American ASCII braille).",
+    )
+
+
+def _translation(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--table", metavar="NAME", help="Translate with this liblouis table (default: by language)."
+    )
+    parser.add_argument(
+        "--language",
+        metavar="TAG",
+        help="Translate with the usual table of this language, such as fr or pt-BR (default: en).",
+    )
+    parser.add_argument(
+        "--grade",
+        type=whole,
+        metavar="N",
+        help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
+        "in the language).",
+    )
+    _settings(parser)
+
+
+def _settings(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--settings",
+        metavar="FILE.toml",
+        help="Take what options do not say from this settings file (default: the one that "
+        "vbraille settings --path names).",
+    )
+
+
+def _profile(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--profile",
+        metavar="NAME",
+        help="Show braille as this profile of the settings file has it; one that is not there is "
+        "made when it is saved (default: the file's, or the one called default).",
+    )
+
+
+def _leave_to_settings(parser: ArgumentParser) -> None:
+    """Leave options that a settings file may say without a value; `usual` has the usual ones."""
+    parser.set_defaults(usual={name: parser.get_default(name) for name in SETTLED})
+    parser.set_defaults(**dict.fromkeys(SETTLED))
 
 
 def _layout(parser: ArgumentParser) -> None:

@@ -76,6 +76,7 @@ class Conversation(Listening):
     def lose(self, now_ns: int) -> None:
         """Note that the port is gone."""
         if self._go(Cause.UNPLUGGED):
+            self._let_go(now_ns)
             self._tell_away(Unplugged(), now_ns)
 
     def find(self, now_ns: int) -> None:

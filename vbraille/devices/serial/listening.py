@@ -69,7 +69,8 @@ class States:
     missed
         Number of STATEs that never came.
     buttons
-        Bits of the buttons in the last STATE; None before the first of all.
+        Bits of the buttons in the last STATE; None before the first of all, and of a device that
+        was unplugged.
     """
 
     heard_ns: int
@@ -250,6 +251,12 @@ class Listening:
             self._mind_placing(now_ns)
         time_ns = self.time.ns(state.time_us, now_ns)
         return None if x_mm is None else Pose(time_ns, x_mm)
+
+    def _let_go(self, now_ns: int) -> None:
+        """Take the buttons for let go: nobody holds those of a device that is not there."""
+        if self.states.buttons:
+            self._mind_buttons(0, now_ns)
+        self.states.buttons = None
 
     def _mind_buttons(self, buttons: int, now_ns: int) -> None:
         """Tell which buttons have changed; the first STATE of all changes none."""

@@ -1,4 +1,4 @@
-"""What a device has to tell, each kind of it at most once a second."""
+"""What a device has to tell, each kind of it at most once a second; a knob more often."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
 
 EVERY_NS: Final = 1_000_000_000
+PLACE_EVERY_NS: Final = 20_000_000  # of a knob: it is felt at once, whoever turns it
 # So many kinds are told apart at a time; further ones share a kind.
 _MOST_KINDS = 16
 _OTHERS = "others"
@@ -26,12 +27,18 @@ class _NoticeKind:
     event: Event
     held: int = 0
 
+    def due(self, now_ns: int) -> bool:
+        """Whether the next event of the kind may be told."""
+        every_ns = PLACE_EVERY_NS if self.event.tells_place else EVERY_NS
+        return now_ns - self.told_ns >= every_ns
+
 
 class Notices:
     """Events for the reader, who must not have to hear the same a thousand times a second.
 
     The first event of a kind is told at once. Those that follow within a second are counted; when
-    the second is over, the last of them is told with their number.
+    the second is over, the last of them is told with their number. Where only the last matters, as
+    of a knob, it is told fifty times a second, without a number.
     """
 
     def __init__(self) -> None:
@@ -60,7 +67,7 @@ class Notices:
             self._forget(now_ns)
             kind = kind if len(self._kinds) < _MOST_KINDS else _OTHERS
         known = self._kinds.get(kind)
-        if known is None or (not known.held and now_ns - known.told_ns >= EVERY_NS):
+        if known is None or (not known.held and known.due(now_ns)):
             self._kinds[kind] = _NoticeKind(now_ns, event)
             self._tell(event)
             return
@@ -84,9 +91,7 @@ class Notices:
     def _forget(self, now_ns: int) -> None:
         """Forget kinds of which the next event may be told at once."""
         self._kinds = {
-            name: kind
-            for name, kind in self._kinds.items()
-            if kind.held or now_ns - kind.told_ns < EVERY_NS
+            name: kind for name, kind in self._kinds.items() if kind.held or not kind.due(now_ns)
         }
 
     def _release(self, now_ns: int) -> None:
@@ -95,9 +100,9 @@ class Notices:
         for kind in self._kinds.values():
             if not kind.held:
                 continue
-            if now_ns - kind.told_ns < EVERY_NS:
+            if not kind.due(now_ns):
                 self._holding = True
                 continue
-            times = kind.held if kind.held > 1 else kind.event.times
-            self._tell(replace(kind.event, times=times))
+            counted = kind.held > 1 and not kind.event.tells_place
+            self._tell(replace(kind.event, times=kind.held) if counted else kind.event)
             kind.told_ns, kind.held = now_ns, 0

@@ -59,7 +59,8 @@ class BrailleStyle:
         Parameters
         ----------
         changes
-            Fields of the style, or of its `Tuning` (texture, contrast, cycles), with new values.
+            Fields of the style, or of its `Tuning` (texture, contrast, cycles) or its `Geometry`
+            (such as dot_width_mm), with new values.
 
         Raises
         ------
@@ -72,19 +73,17 @@ class BrailleStyle:
         >>> VBD.style.replace(texture=0.5).tuning
         Tuning(texture=0.5, contrast=1.0, cycles=7)
         """
-        names = {field.name for field in fields(Tuning)}
-        turned = {name: value for name, value in changes.items() if name in names}
-        others = {name: value for name, value in changes.items() if name not in names}
+        others = dict(changes)
+        turned = {name: _number(name, others.pop(name)) for name in _TUNED & changes.keys()}
+        lengths = {name: _number(name, others.pop(name)) for name in _LENGTHS & changes.keys()}
         for name, value in others.items():
             _check_field(name, value)
-        for name, value in turned.items():
-            if not isinstance(value, Real):
-                raise InputError(f"{name} is {value!r}; it must be a number")
         try:
             tuning = replace(others.pop("tuning", self.tuning), **turned)
+            geometry = replace(others.pop("geometry", self.geometry), **lengths)
         except ValueError as error:
             raise InputError(str(error)) from None
-        return replace(self, tuning=tuning, **others)
+        return replace(self, tuning=tuning, geometry=geometry, **others)
 
     def rows_on(self, display: Display) -> slice:
         """Tell which rows of a display the mapping takes.
@@ -204,14 +203,22 @@ _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
 }
 
 
+_TUNED = {field.name for field in fields(Tuning)}
+_LENGTHS = {field.name for field in fields(Geometry)}
+
+
+def _number(name: str, value: object) -> Any:
+    """A value of the tuning or the geometry; InputError if it is no number."""
+    if not isinstance(value, Real):
+        raise InputError(f"{name} is {value!r}; it must be a number")
+    return value
+
+
 def _check_field(name: str, value: object) -> None:
     """Raise InputError if a style has no such field, or it cannot have such a value."""
     if name not in _KINDS:
-        tunings = [field.name for field in fields(Tuning)]
-        where = ""
-        if name in {field.name for field in fields(Geometry)}:
-            where = f"; {name} is of the geometry: geometry=replace(style.geometry, {name}=...)"
-        raise InputError(f"a style has no {name}; it has {', '.join((*_KINDS, *tunings))}{where}")
+        parts = (field.name for part in (Tuning, Geometry) for field in fields(part))
+        raise InputError(f"a style has no {name}; it has {', '.join((*_KINDS, *parts))}")
     kinds, wanted = _KINDS[name]
     if not isinstance(value, kinds):
         raise InputError(f"{name} is {value!r}; it must be {wanted}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from vbraille.braille.spelling import LETTERS, name_dots
 from vbraille.errors import check_range
 from vbraille.sessions.planning.spellings import Mask, Masks
-from vbraille.sessions.planning.tomlfile import Table
+from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

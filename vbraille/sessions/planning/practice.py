@@ -8,7 +8,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.errors import check_range
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Combinations, Design, Item
 from vbraille.sessions.planning.spellings import Masks
-from vbraille.sessions.planning.tomlfile import Table
+from vbraille.toml.tomlfile import Table
 
 
 class Practice(Table, frozen=True):

@@ -32,7 +32,7 @@ from vbraille.sessions.planning.design import (
 )
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.spellings import SpellingKeys
-from vbraille.sessions.planning.tomlfile import Table, which
+from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry

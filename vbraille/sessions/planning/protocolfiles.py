@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from importlib import resources
-from pathlib import Path
 
 import msgspec
 from msgspec import field
@@ -11,10 +10,10 @@ from msgspec import field
 from vbraille.errors import InputError
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
 from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
-from vbraille.sessions.planning.tomlfile import TomlFile, which
+from vbraille.toml.textfile import read_text
+from vbraille.toml.tomlfile import TomlFile, which
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
-_MOST_BYTES = 1_000_000
 
 
 def builtin_names() -> list[str]:
@@ -40,33 +39,6 @@ def builtin_text(name: str) -> str:
     return _FOLDER.joinpath(f"{name}.toml").read_bytes().decode("utf-8")
 
 
-def read_file(path: str) -> str:
-    """Text of a protocol's file, without a byte-order mark.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is far too large or is not UTF-8.
-    """
-    try:
-        with Path(path).open("rb") as file:
-            content = file.read(_MOST_BYTES + 1)
-    except FileNotFoundError:
-        raise InputError(f"there is no file {path}; check the name") from None
-    except IsADirectoryError:
-        raise InputError(f"{path} is a directory; give a protocol in it") from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{path} cannot be read: {reason}") from None
-    if len(content) > _MOST_BYTES:
-        raise InputError(f"{path} is too large for a protocol; give a TOML file")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise InputError(f"{path} is not UTF-8 in line {line}; save it as UTF-8") from None
-
-
 def load_protocol(spec: str) -> Protocol:
     """Read a protocol.
 
@@ -82,7 +54,7 @@ def load_protocol(spec: str) -> Protocol:
         If there is no such protocol, or it cannot be used.
     """
     if spec.endswith(".toml") or "/" in spec:
-        return parse_protocol(read_file(spec), spec)
+        return parse_protocol(read_text(spec, "protocol"), spec)
     return parse_protocol(builtin_text(spec), f"{spec}.toml")
 
 

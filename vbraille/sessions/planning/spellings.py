@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.spelling import UNREAD, spell, spell_string
-from vbraille.sessions.planning.tomlfile import quote
+from vbraille.toml.tomlfile import quote
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,7 +15,7 @@ from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.console import Console
 from vbraille.sessions.running.course import Course
 from vbraille.sessions.running.showing import OnDevice
-from vbraille.sessions.running.sounds import Bell, Silence, Tones
+from vbraille.sounds import Bell, Silence, Tones
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.showing import RunEngine
-    from vbraille.sessions.running.sounds import Sound
     from vbraille.simulation.steering import Steering
+    from vbraille.sounds import Sound
 
 
 class Sitting:

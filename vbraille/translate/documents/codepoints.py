@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 # In cells; a carriage that goes ten metres crosses fewer than this.
 LONGEST_BLANK = 4_096
+_HALF = LONGEST_BLANK // 2
 TEXT, BLANK, NEWLINE, BREAK, DROPPED = range(5)
 _KINDS = np.zeros(0x3002, np.uint8)  # the last entry stands for all code points above
 _KINDS[[0x09, 0x20, 0x1680, 0x205F, 0x3000, *range(0x2000, 0x2007), *range(0x2008, 0x200B)]] = BLANK
@@ -85,13 +86,14 @@ def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tu
         Number of blanks at the end, to be given with the characters that follow.
     """
     blank = kinds_of(codes) == BLANK
-    others = np.flatnonzero(~blank)
-    if not others.size:
+    if blank.all():
         room = max(0, LONGEST_BLANK - before)
         return Stretch.whole(codes[:room].copy(), place), before + codes.size
-    after = codes.size - 1 - int(others[-1])
-    longest = max(before + int(others[0]), after, int(np.diff(others).max(initial=1)) - 1)
-    if longest <= LONGEST_BLANK:
+    after = int(np.argmin(blank[::-1]))
+    # A run that is too long has all of at least one such row.
+    rows = blank[: blank.size // _HALF * _HALF].reshape(-1, _HALF)
+    long = before + int(np.argmin(blank)) > LONGEST_BLANK or rows.all(axis=1).any()
+    if not long:
         return Stretch.whole(codes, place), after
     at = np.arange(codes.size)
     run = at - np.maximum.accumulate(np.where(blank, -1 - before, at))
@@ -102,4 +104,4 @@ def shorten_blanks(codes: NDArray[np.uint32], place: int, before: int = 0) -> tu
 
 def kinds_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
     """Kind of each character: text, blank, newline, break, or one that is dropped."""
-    return _KINDS[np.minimum(codes, _KINDS.size - 1)]
+    return np.take(_KINDS, codes, mode="clip")

@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 from bisect import bisect_right
-from contextlib import ExitStack
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from vbraille.errors import InputError, VbrailleError
+from vbraille.translate.documents.chunkmarks import ChunkMark, fingerprint
 from vbraille.translate.documents.codepoints import Stretch, shorten_blanks
 from vbraille.translate.documents.encodings import (
     SAMPLE_BYTES,
@@ -27,47 +24,18 @@ from vbraille.translate.documents.encodings import (
     named_encoding,
 )
 from vbraille.translate.documents.paragraphs import split_paragraphs
+from vbraille.translate.documents.streams import CHUNK_BYTES, keep_stream, open_file
+from vbraille.translate.source import Index
 from vbraille.translate.text import to_codes
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from vbraille.translate.documents.paragraphs import Split
     from vbraille.translate.source import Block
 
-CHUNK_BYTES = 65_536
-
-
-@dataclass(frozen=True, slots=True)
-class _Mark:
-    """Place at which reading can go on, before a block's first character.
-
-    Parameters
-    ----------
-    block
-        Number of the next block, from 0.
-    character
-        Place of the block's first character in the document.
-    offset, state
-        A place in the file at or before that character, and the decoder's state there.
-    skip
-        Number of characters between that place and the block.
-    continues
-        Whether the block is a further piece of the block before.
-    item
-        Number of the list item that the block is a piece of; 0 for none.
-    """
-
-    block: int
-    character: int
-    offset: int
-    state: tuple[bytes, int]
-    skip: int
-    continues: bool
-    item: int = 0
-
-    @property
-    def bytes(self) -> int:
-        """Estimated number of bytes before the place: a character takes at least one."""
-        return self.offset + self.skip
+_NEXT = 64  # blocks; what is no farther is likely to be in the next chunk
 
 
 class Document:
@@ -129,10 +97,35 @@ class Document:
         self._decoder = TextDecoder(self.encoding.name)
         self._found = encoding is None
         self._noted = self._grown = False
-        start = _Mark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
-        self._marks: list[_Mark] = [start]  # of each chunk, and of the next to read
+        start = ChunkMark(0, 0, self.encoding.skip, self._decoder.state(), 0, continues=False)
+        self._marks: list[ChunkMark] = [start]  # of each chunk, and of the next to read
         self._complete = False
         self._recent: dict[int, list[Block]] = {}
+        self.title = self.language = ""
+        self.in_cells = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether all blocks are known, so that the end of the text is."""
+        return self._complete
+
+    def anchor(self, name: str) -> int | None:  # noqa: ARG002
+        """Tell that plain text has no anchors."""
+        return None
+
+    def index(self) -> Index:
+        """Tell where the chunks that were read begin."""
+        return Index(*self._fits(), tuple(mark.row for mark in self._marks), self._complete)
+
+    def adopt(self, index: Index) -> None:
+        """Take over where chunks begin, if the index is of this file and knows more."""
+        if len(index.rows) > len(self._marks) and (index.form, index.fits) == self._fits():
+            self._marks = [ChunkMark.of_row(row) for row in index.rows]
+            self._complete = index.complete
+
+    def _fits(self) -> tuple[str, tuple[str | int, ...]]:
+        how = self.encoding.name, self.encoding.skip, int(self.keep_lines)
+        return "Document 2", (fingerprint(self._read, self.size), self.size, *how)
 
     @classmethod
     def open(
@@ -145,20 +138,7 @@ class Document:
         InputError
             If it is missing, unreadable, a directory, empty, binary, or of an unknown encoding.
         """
-        path = Path(path)
-        try:
-            stream = path.open("rb")
-            # A pipe cannot be read twice, and a file of /proc does not say how long it is.
-            if not stream.seekable() or (path.is_file() and not path.stat().st_size):
-                with stream:
-                    stream = _kept(stream)
-        except FileNotFoundError:
-            raise InputError(f"there is no file {path}; check the name") from None
-        except IsADirectoryError:
-            raise InputError(f"{path} is a directory; give a text file in it") from None
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise InputError(f"{path} cannot be read: {reason}") from None
+        stream = open_file(path)
         try:
             return cls(stream, str(path), encoding, keep_lines=keep_lines)
         except InputError:
@@ -181,10 +161,7 @@ class Document:
         InputError
             If the stream cannot be read or kept, or is empty, binary, or of an unknown encoding.
         """
-        try:
-            kept = _kept(stream)
-        except OSError as error:
-            raise InputError(f"{name} cannot be read: {error.strerror or error}") from None
+        kept = keep_stream(stream, name)
         try:
             return cls(kept, name, encoding, keep_lines=keep_lines)
         except InputError:
@@ -236,7 +213,10 @@ class Document:
             If the file has changed since it was opened.
         """
         while number >= self._marks[-1].block and not self._complete:
-            self._read_chunk(len(self._marks) - 1)
+            if number - self._marks[-1].block < _NEXT:
+                self._read_chunk(len(self._marks) - 1)
+            else:
+                self._pass_chunk()
         if number >= self._marks[-1].block or number < 0:
             return None
         chunk = bisect_right(self._marks, number, key=lambda mark: mark.block) - 1
@@ -251,7 +231,7 @@ class Document:
     def block_at(self, character: int) -> int | None:
         """Number of the block that holds a character, or of the next block; None past the end."""
         while character >= self._marks[-1].character and not self._complete:
-            self._read_chunk(len(self._marks) - 1)
+            self._pass_chunk()
         chunk = bisect_right(self._marks, character, key=lambda mark: mark.character) - 1
         chunk = min(max(chunk, 0), len(self._marks) - 2)
         number = self._marks[chunk].block
@@ -260,6 +240,13 @@ class Document:
                 return number
             number += 1
         return None
+
+    def extend(self) -> bool:
+        """Find where the next chunk ends, without making its blocks; False if all are known."""
+        if not self._complete:
+            self._pass_chunk()
+            return True
+        return False
 
     def progress(self, number: int) -> float:
         """About how much of the file stands before a block that was read, 0 to 1."""
@@ -275,6 +262,24 @@ class Document:
         while chunk := self._stream.read(CHUNK_BYTES):
             digest.update(chunk)
         return digest.hexdigest()
+
+    @property
+    def descriptor(self) -> int | None:
+        """Number of the open file, for another process; None if the text is in memory."""
+        try:
+            return self._stream.fileno()
+        except OSError:
+            return None
+
+    def read(self, offset: int, size: int) -> bytes:
+        """Bytes of the file from an offset on, as they are; fewer at its end.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read any more.
+        """
+        return self._read(offset, size)
 
     def close(self) -> None:
         """Close the file; it is closed in any case when the document is forgotten."""
@@ -299,28 +304,43 @@ class Document:
 
     def _read_chunk(self, chunk: int) -> list[Block]:
         """Read the blocks of a chunk, and mark where the next begins if that is not known yet."""
-        mark = self._marks[chunk]
-        blocks, after = self._parse(mark)
+        split, after = self._parse(self._marks[chunk])
         if chunk == len(self._marks) - 1:
-            if after is None:
-                self._complete = True
-                self._grown = self._end() > self.size
-                after = _Mark(
-                    mark.block + len(blocks),
-                    blocks[-1].text.end if blocks else mark.character,
-                    self.size,
-                    (b"", 0),
-                    0,
-                    continues=False,
-                )
-            self._marks.append(after)
+            self._take_mark(split, after)
+        blocks = split.blocks
         if len(self._recent) >= 3:
             self._recent.pop(next(iter(self._recent)))
         self._recent[chunk] = blocks
         return blocks
 
-    def _parse(self, mark: _Mark) -> tuple[list[Block], _Mark | None]:
-        """Blocks from a mark on, none only if a stretch is blank; and the mark after them."""
+    def _pass_chunk(self) -> None:
+        """Mark where the chunk after the last one that is known begins."""
+        self._take_mark(*self._parse(self._marks[-1], count=True))
+
+    def _take_mark(self, split: Split, after: ChunkMark | None) -> None:
+        """Mark where the next chunk begins, given what the last one was split into."""
+        mark = self._marks[-1]
+        if after is None:
+            self._complete = True
+            self._grown = self._end() > self.size
+            after = ChunkMark(
+                mark.block + split.count,
+                split.end or mark.character,
+                self.size,
+                (b"", 0),
+                0,
+                continues=False,
+            )
+        self._marks.append(after)
+
+    def _parse(self, mark: ChunkMark, *, count: bool = False) -> tuple[Split, ChunkMark | None]:
+        """Blocks from a mark on, none only if a stretch is blank; and the mark after them.
+
+        Parameters
+        ----------
+        count
+            Whether blocks are only to be counted.
+        """
         self._decoder.restore(mark.state)
         parts: list[Stretch] = []
         pieces: list[tuple[int, int, tuple[bytes, int]]] = []  # characters before, offset, state
@@ -350,17 +370,18 @@ class Document:
                 item=mark.item,
                 final=final,
                 keep_lines=self.keep_lines,
+                count=count,
             )
             if final:
-                return split.blocks, None
-            if split.blocks or split.used:
+                return split, None
+            if split.count or split.used:
                 break
             # Each time twice as much is read, since an unfinished block is parsed again.
             wanted = 2 * kept + 1
         used = int(parts[0].place(split.used)) if split.used < kept else place
         before, offset, state = pieces[bisect_right(pieces, used, key=lambda piece: piece[0]) - 1]
-        after = _Mark(
-            mark.block + len(split.blocks),
+        after = ChunkMark(
+            mark.block + split.count,
             used,
             offset,
             state,
@@ -368,21 +389,7 @@ class Document:
             split.continues,
             split.item,
         )
-        return split.blocks, after
-
-
-def _kept(stream: BinaryIO) -> BinaryIO:
-    """Temporary file with all that a stream gives, since a text is read more than once."""
-    from tempfile import TemporaryFile
-
-    with ExitStack() as opened:
-        kept = opened.enter_context(TemporaryFile())
-        # Python's buffer is bypassed, which asks a terminal for more after its end was typed.
-        while chunk := os.read(stream.fileno(), CHUNK_BYTES):
-            kept.write(chunk)
-        kept.flush()
-        opened.pop_all()  # closing it is left to the caller
-    return kept
+        return split, after
 
 
 def _named_encoding(name: str, sample: bytes) -> Encoding:

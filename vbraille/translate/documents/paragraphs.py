@@ -17,6 +17,7 @@ from vbraille.translate.documents.codepoints import (
     kinds_of,
 )
 from vbraille.translate.documents.items import LONGEST_MARKER, end_before_items
+from vbraille.translate.documents.words import Words
 from vbraille.translate.source import Block, BlockKind
 from vbraille.translate.text import NO_BREAK_SPACE, SPACE, Text, to_codes, to_text
 
@@ -50,19 +51,25 @@ class Split:
     Parameters
     ----------
     blocks
-        Paragraphs that are complete.
+        Paragraphs that are complete; none if they were only to be counted.
     used
         Number of characters up to the first that belongs to none of these, or may begin another.
     continues
         Whether that character continues the last paragraph.
     item
         Number of the list item that it is part of in that case; 0 for none.
+    count
+        Number of paragraphs that are complete.
+    end
+        Place after the last of them, in the document; 0 if there is none.
     """
 
     blocks: list[Block]
     used: int
     continues: bool
     item: int = 0
+    count: int = 0
+    end: int = 0
 
 
 def split_paragraphs(
@@ -72,6 +79,7 @@ def split_paragraphs(
     item: int = 0,
     final: bool = True,
     keep_lines: bool = False,
+    count: bool = False,
 ) -> Split:
     """Cut a stretch of characters into paragraphs.
 
@@ -87,44 +95,44 @@ def split_paragraphs(
         Whether the text ends here; otherwise the last paragraph is left for later.
     keep_lines
         Whether every line is a paragraph.
+    count
+        Whether paragraphs are only to be counted, which is several times as fast.
     """
     codes = stretch.codes
     kinds = kinds_of(codes)
     kinds[codes == _BYTE_ORDER_MARK] = DROPPED
     kinds[_overstruck(codes, kinds)] = DROPPED
-    text = np.flatnonzero(kinds == TEXT)
-    newline = (kinds == NEWLINE) | (kinds == BREAK)
-    newline[1:] &= ~((codes[1:] == 0x0A) & (codes[:-1] == 0x0D))
-    if text.size == 0:
-        line_ends = np.flatnonzero(newline)[-1:] + 1
-        return Split([], int(line_ends.sum()) if keep_lines else codes.size, continues, item)
-    newlines = _between(newline, text)
-    ended = final
+    words = Words(codes, kinds)
+    if words.first < 0:
+        used = int((words.newlines[-1:] + 1).sum()) if keep_lines else codes.size
+        return Split([], used, continues, item)
     codes = codes.copy()
     for space in _NO_BREAK_SPACES:
         codes[codes == space] = NO_BREAK_SPACE
+    newlines = words.counted(words.newlines)
+    ended = final
     if keep_lines:
-        keep = _keep_blanks(kinds)
-        codes[keep & (kinds == BLANK)] = SPACE
-        ends = newlines > 0
-        line_starts = np.maximum.accumulate(
-            np.where(newline | (codes == 0x0A), np.arange(codes.size), -1)
-        )
-        starts = line_starts[text] + 1
-        empty = newlines > 1
+        ends, empty = newlines > 0, newlines > 1
     else:
-        ends = (newlines > 1) | (_between(kinds == BREAK, text) > 0)
-        item = end_before_items(ends, codes, text, newlines, None if not continues else item)
-        after = slice(text[-1], None)
-        ended = final or newline[after].sum() > 1 or (kinds[after] == BREAK).any()
-        gaps = np.flatnonzero((_between((kinds != TEXT) & (kinds != DROPPED), text) > 0) & ~ends)
-        spaces = text[gaps] + 1
-        spaces = spaces[~_joins_words(codes, text, gaps, newlines)]
-        codes[spaces] = SPACE
-        keep = kinds == TEXT
-        keep[spaces] = True
-        starts = text
-        empty = np.zeros(text.size - 1, bool)
+        breaks = words.places(BREAK)
+        ends = (newlines > 1) | (words.counted(breaks) > 0)
+        item = end_before_items(ends, codes, words, newlines, None if not continues else item)
+        ended = final or (words.newlines > words.last).sum() > 1 or (breaks > words.last).any()
+        empty = np.zeros(ends.size, bool)
+    last = np.flatnonzero(ends)
+    begin = np.concatenate(([words.first], words.begins[last]))
+    stop = np.concatenate((words.stops[last] + 1, [words.last + 1]))
+    if keep_lines:
+        begin = words.line_starts(begin)
+    is_empty = [*empty[last].tolist(), False]
+    if count and int((stop - begin).max()) <= PIECE_CHARACTERS:  # none is cut
+        complete = begin.size if ended else begin.size - 1
+        continues = continues and not complete and not ended
+        used = codes.size if ended else int(begin[-1])
+        end = int(stretch.place(int(stop[complete - 1]) - 1)) + 1 if complete else 0
+        more = sum(is_empty[:complete])
+        return Split([], used, continues, item if continues else 0, complete + more, end)
+    codes, keep = _blanks_folded(codes, kinds, words, newlines, ends, keep_lines=keep_lines)
     kept = np.flatnonzero(keep)
     own, places = codes[kept], stretch.place(kept)
     seen = np.zeros(int(own.max()) + 1, np.bool_)
@@ -138,11 +146,7 @@ def split_paragraphs(
         text = Text(own[part], places[part], int(places[end - 1]) + 1, alphabet)
         return Block(_compose(text) if accents else text, kind, continues=continues)
 
-    last = np.flatnonzero(ends)
-    begin = np.concatenate((starts[:1], starts[last + 1]))
-    stop = np.concatenate((text[last] + 1, text[-1:] + 1))
     bounds = np.searchsorted(kept, [begin, stop]).T.tolist()
-    is_empty = [*empty[last].tolist(), False]
     blocks: list[Block] = []
     for n, (start, end) in enumerate(bounds):
         complete = ended or n < len(bounds) - 1
@@ -152,12 +156,51 @@ def split_paragraphs(
             rest, continues = cut, True
         if not complete:
             used = int(begin[-1]) if rest == start else int(kept[rest])
-            return Split(blocks, used, continues, item if continues else 0)
+            return _split(blocks, used, continues=continues, item=item if continues else 0)
         blocks.append(block(rest, end, continues))
         continues = False
         if is_empty[n]:
             blocks.append(Block(Text.empty(int(stretch.place(stop[n] - 1)) + 1), kind))
-    return Split(blocks, codes.size, continues=False)
+    return _split(blocks, codes.size, continues=False)
+
+
+def _split(blocks: list[Block], used: int, *, continues: bool, item: int = 0) -> Split:
+    end = blocks[-1].text.end if blocks else 0
+    return Split(blocks, used, continues, item, len(blocks), end)
+
+
+def _blanks_folded(
+    codes: NDArray[np.uint32],
+    kinds: NDArray[np.uint8],
+    words: Words,
+    newlines: NDArray[np.intp],
+    ends: NDArray[np.bool_],
+    *,
+    keep_lines: bool,
+) -> tuple[NDArray[np.uint32], NDArray[np.bool_]]:
+    """Code points with one kind of blank, and whether each belongs to a paragraph.
+
+    Parameters
+    ----------
+    newlines, ends
+        Number of line ends in each gap, and whether a paragraph ends there.
+    """
+    codes = codes.copy()
+    if keep_lines:
+        keep = _keep_blanks(kinds)
+        codes[keep & (kinds == BLANK)] = SPACE
+        return codes, keep
+    blank = ~ends
+    dropped = words.places(DROPPED)
+    if dropped.size:
+        blank &= words.begins - words.stops - 1 > words.counted(dropped)
+    gaps = np.flatnonzero(blank)
+    spaces = words.stops[gaps] + 1
+    spaces = spaces[~_joins_words(codes, words, gaps, newlines)]
+    codes[spaces] = SPACE
+    keep = kinds == TEXT
+    keep[spaces] = True
+    return codes, keep
 
 
 def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
@@ -179,11 +222,6 @@ def _overstruck(codes: NDArray[np.uint32], kinds: NDArray[np.uint8]) -> NDArray[
     )
 
 
-def _between(marked: NDArray[np.bool_], text: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Number of marked characters between each two neighbouring text characters."""
-    return np.diff(np.cumsum(marked)[text])
-
-
 def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Whether each character is text, or a blank that has text after it on its line."""
     places = np.arange(kinds.size)
@@ -196,7 +234,7 @@ def _keep_blanks(kinds: NDArray[np.uint8]) -> NDArray[np.bool_]:
 
 def _joins_words(
     codes: NDArray[np.uint32],
-    text: NDArray[np.intp],
+    words: Words,
     gaps: NDArray[np.intp],
     newlines: NDArray[np.intp],
 ) -> NDArray[np.bool_]:
@@ -205,10 +243,10 @@ def _joins_words(
     This holds after every soft hyphen. It holds after a hyphen between letters, unless the
     hyphen stands for the rest of a word ("pre- and post-war").
     """
-    joins = (codes[text[gaps] + 1] == 0xAD) & (newlines[gaps] == 1)
-    hyphens = np.isin(codes[text[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
+    joins = (codes[words.stops[gaps] + 1] == 0xAD) & (newlines[gaps] == 1)
+    hyphens = np.isin(codes[words.stops[gaps]], (0x2D, 0x2010)) & (newlines[gaps] == 1)
     for n in np.flatnonzero(hyphens):
-        at, after = text[gaps[n]], text[gaps[n] + 1]
+        at, after = words.stops[gaps[n]], words.begins[gaps[n]]
         word = to_text(codes[after : after + _WORD])
         within = at > 0 and chr(codes[at - 1]).isalnum() and word[0].isalnum()
         joins[n] |= within and word.split(maxsplit=1)[0] not in _SUSPENDED

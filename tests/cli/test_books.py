@@ -1,0 +1,83 @@
+"""``vbraille books``: one line each, and forgetting."""
+
+import json
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from vbraille.cli.commands.books import describe
+from vbraille.reading.places import KeptPlace, KeptPlaces, ListedBook
+from vbraille.reading.places.database import ENVIRONMENT
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """Two books that were read, of which one is gone."""
+    path = tmp_path / "kept" / "places.sqlite"
+    monkeypatch.setenv(ENVIRONMENT, str(path))
+    with KeptPlaces.open(now=lambda: 43_200.0) as places:
+        for name in ("first.txt", "second.txt"):
+            (tmp_path / name).write_text(f"The text of {name}.")
+            book = places.book(tmp_path / name, title=name.removesuffix(".txt").title())
+            book.keep(KeptPlace(10, share=0.434, page="xii" if name < "g" else ""))
+    (tmp_path / "second.txt").unlink()
+    return tmp_path
+
+
+def test_a_line_for_each_book_the_newest_first(call, kept):
+    said = call("books")
+    assert (said.code, said.err) == (0, "")
+    assert said.out.splitlines() == [
+        f"1: Second, 43 %, 1970-01-01, {kept}/second.txt, missing",
+        f"2: First, 43 %, page xii, 1970-01-01, {kept}/first.txt",
+    ]
+
+
+def test_for_another_program(call, kept):
+    first = json.loads(call("books", "--json").out)[1]
+    assert first == {
+        "number": 2,
+        "title": "First",
+        "path": f"{kept}/first.txt",
+        "missing": False,
+        "read": "1970-01-01T12:00:00+00:00",
+        "share": 0.434,
+        "character": 10,
+        "page": "xii",
+    }
+
+
+def test_forgetting(call, kept):
+    assert call("books", "--forget", "1").out == "forgotten: Second\n"
+    assert len(call("books").out.splitlines()) == 1
+    for number in ("0", "2"):
+        said = call("books", "--forget", number)
+        assert (said.code, said.out) == (2, "")
+        assert f"there is no book {number}; there is 1 book" in said.err
+    assert call("books", "--forget", "1").code == 0
+    assert call("books").out == "books: none\n"
+    assert (kept / "first.txt").exists()
+
+
+def test_no_database_is_one_sentence(call, tmp_path, monkeypatch):
+    monkeypatch.setenv(ENVIRONMENT, str(tmp_path))
+    said = call("books")
+    assert (said.code, said.out) == (0, "books: none\n")
+    assert said.err.startswith(f"places cannot be kept in {tmp_path}: ")
+    assert said.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("ago", "said"),
+    [
+        (timedelta(minutes=5), "today 11:55"),
+        (timedelta(hours=13), "yesterday"),
+        (timedelta(days=3), "3 days ago"),
+        (timedelta(days=40), "2026-04-01"),
+        (-timedelta(days=2), "2026-05-13"),
+    ],
+)
+def test_days_as_people_say_them(ago, said):
+    now = datetime(2026, 5, 11, 12, tzinfo=UTC)
+    book = ListedBook(1, "Title", "", (now - ago).timestamp(), None, missing=False)
+    assert describe(book, now) == f"Title, {said}, from standard input"

@@ -1,0 +1,163 @@
+"""Going by what a text is made of, and what is said there."""
+
+import pytest
+
+from tests.reading.chapters import BOOK, Chapters
+from tests.reading.commands.test_moving import finger_at
+from tests.reading.commands.test_searching import Seeker
+from tests.reading.test_reader import Bench
+from vbraille.reading.beside import Beside
+from vbraille.reading.cues import Cue
+from vbraille.reading.echo import Echo
+from vbraille.reading.seeking.answering import Answering
+from vbraille.translate import Book, BrailleTable
+from vbraille.translate.documents.parted import Passage
+
+TABLE = BrailleTable("en-ueb-g1.ctb")
+
+
+@pytest.fixture
+def bench():
+    return Bench(book=Book(BOOK, TABLE), width=26, echo=Echo.TEXT)
+
+
+def texts(said):
+    """What is said but for the numbers of lines, which come before a line's text, or alone."""
+    return [s.removeprefix("text: ") for s in said if not s.startswith("line: ")]
+
+
+@pytest.mark.parametrize(
+    ("keys", "there"),
+    [
+        ("e", ["The first part"]),
+        ("eee", ["The first part", "A section", "The second part"]),
+        ("e1", ["The first part", "The second part"]),
+        ("e2", ["The first part", "A section"]),
+        ("eeeE", ["The first part", "A section", "The second part", "A section"]),
+        (["e", "e", "e", "alt-1"], ["The first part", "A section", "The second part"] * 1
+         + ["The first part"]),
+        ("ll", ["apples", "plums"]),
+        ("lnlL", ["apples", "pears", "plums", "apples"]),
+        ("lnL", ["apples", "pears", "list: none before this"]),
+        ("r", ["Name; Age"]),
+        ("rR", ["Name; Age", "table: none before this"]),
+        ("rnr", ["Name; Age", "Ann; 7", "table: none after this"]),
+        ("fff", ["2", "iii", "page: none after this"]),
+        ("ffF", ["2", "iii", "2"]),
+        ("aaa", ["The first part", "See the end of it.", "A section"]),
+        ("aaAA", ["The first part", "See the end of it.", "The first part", "1"]),
+        ("kkk", ["See the end of it.", "A remark follows.", "More on the net."]),
+        ("kkkkK", ["See the end of it.", "A remark follows.", "More on the net.",
+         "link: none after this", "A remark follows."]),
+        ("eb", ["The first part", "1"]),
+        ("A", ["paragraph: none before this"]),
+    ],
+)  # fmt: skip
+def test_a_key_goes_to_the_next_of_its_kind_or_to_the_one_before(bench, keys, there):
+    assert texts(bench.press(keys)) == there
+
+
+def test_what_is_not_there_is_said_and_given_as_a_cue():
+    cues = []
+    bench = Bench("one", beside=Beside(cue=cues.append))
+    assert bench.press("elrk") == [
+        f"{k}: none after this" for k in ["heading", "list", "table", "link"]
+    ]
+    assert cues == [Cue.NOT_FOUND] * 4
+
+
+def test_without_pages_of_print_a_page_has_25_lines():
+    text = "\n\n".join(f"line {n}" for n in range(1, 60))
+    bench = Bench(text)
+    assert bench.press("ff") == ["line: 26", "line: 51"]
+    assert bench.press("nF") == ["line: 52", "line: 51"]
+    assert bench.press("FF") == ["line: 26", "line: 1"]
+    assert bench.press("F") == ["page: there is no such page"]
+    assert bench.press("g2\n") == ["go to: type a page, or percent as in 40%, then Enter",
+                                   "page: 2", "line: 26"]  # fmt: skip
+    assert bench.press("g9\n")[2] == "9: there is no such page"
+    assert bench.press("gtwo\n")[2] == (
+        "go to: 'two' is no page; type a number, or percent as in 40%"
+    )
+    assert bench.press("b") == ["line: 1"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "there"),
+    [
+        ("2", "2"),
+        ("III", "iii"),
+        ("0.5%", "line: 1"),
+        ("99%", "This is the note."),
+        ("50 %", "The second part"),
+        ("7", "page 7: there is no such page"),
+        ("101%", "go to: 101% is more than the book; type 0% to 100%"),
+    ],
+)
+def test_a_page_of_print_or_a_share_is_typed(bench, typed, there):
+    said = bench.press(["g", *typed, "\n"])
+    assert said[1] == f"page: {typed}"
+    assert texts(said[2:]) == [there] or said[2:] == [there]
+
+
+def test_a_note_is_followed_and_left_again(bench):
+    bench.press("kk")
+    line = bench.reader.line
+    finger_at(bench, line.text.index("remark") + 3)
+    assert texts(bench.press("\n")) == ["This is the note."]
+    assert texts(bench.press("b")) == ["A remark follows."]
+    assert texts(bench.press("k\n")) == ["More on the net.", "link: https://example.org"]
+    assert texts(bench.press("e\n")) == ["heading: none after this", "link: https://example.org"]
+    assert texts(bench.press("E\n")) == ["The second part", "link: none here"]
+
+
+def test_where_am_i_says_line_page_percent_heading_and_words(bench):
+    bench.press("rn")
+    assert bench.press("i") == [
+        f"line: {bench.reader.line_number}",
+        "page: 2",
+        f"percent: {int(100 * bench.layout.progress(bench.reader.line))}",
+        "heading: A section",
+        "words left: 20",
+    ]
+    assert bench.press("H") == ["headers: Name; Age"]
+    assert bench.press("nH")[-1] == "headers: this is no row of a table"
+
+
+def test_a_table_without_headers_says_so():
+    source = Chapters([Passage("a; b", BOOK.block(9).kind, group=1)])
+    assert Bench(book=Book(source, TABLE)).press("H") == ["headers: the table has none"]
+
+
+def test_words_left_of_a_long_book_are_told_by_those_that_are_near():
+    part = [Passage("ten words stand in each one of all these paragraphs here")] * 1_000
+    bench = Bench(book=Book(Chapters(*[part] * 8), TABLE))
+    said = bench.press("i")
+    assert said[:3] == ["line: 1", "page: 1 in braille", "percent: 0"]
+    label, _, number = said[3].rpartition(" ")
+    assert label == "words left: about"
+    assert 60_000 < int(number) < 100_000
+
+
+def test_a_page_that_is_far_is_looked_for_while_reading_goes_on():
+    text = "\n\n".join(f"line {n}" for n in range(1, 12_000))
+    seeker = Seeker()
+    bench = Bench(text, beside=Beside(seeker=seeker))
+    assert bench.press("g3\n")[-1] == "line: 51"
+    assert bench.press("g400\n")[1:] == ["page: 400", "searching"]
+    asked = seeker.asked[-1]
+    assert (asked.line, asked.width) == (399 * 25 + 1, bench.layout.width)
+    assert bench.layout.lines_to(asked.line) > 9_000  # which nobody waits for
+    assert bench.press("n") == ["line: 52"]
+    answering = Answering(bench.layout.book)
+    seeker.answers = list(answering.answer(asked))[-1:]
+    bench.run(0.05)
+    assert bench.said[-1].startswith("place: ")
+    assert bench.reader.line.text == "line 9976"
+    seeker.answers = list(answering.answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.press("b") == ["line: 52"]
+    bench.press("g500\n")
+    seeker.answers = list(answering.answer(seeker.asked[-1]))[-1:]
+    bench.run(0.05)
+    assert bench.said[-1] == "page 500: there is no such page"

@@ -1,0 +1,131 @@
+"""Keys and buttons of somebody's own."""
+
+import pytest
+
+from tests.reading.commands.test_choosing import Scroll
+from tests.reading.test_reader import TEXT, Bench
+from vbraille.errors import InputError
+from vbraille.reading.beside import Beside
+from vbraille.reading.bindings import Bindings
+from vbraille.reading.commands.table import bound_by, press_button, turn_knob
+from vbraille.reading.context import Context
+
+
+def bench_with(keys=None, buttons=None, **options):
+    bound = bound_by(Bindings(keys or {}, buttons or {}))
+    return Bench(TEXT, beside=Beside(bound=bound, scroll=Scroll()), **options)
+
+
+def test_a_key_is_moved_to_another_command_and_help_says_so():
+    bench = bench_with({"LNDN": ("j",), "PAUSE": ("space", "P"), "SPEAK_CURR_WORD": ("n",)})
+    assert bench.press("jn") == ["line: 2", "word: none here"]
+    assert bench.press(["down"]) == ["no command: 'down'; h says the keys"]
+    assert bench.press("P ") == ["paused", "reading"]
+    said = bench.press("h")
+    assert "j: next line" in said
+    assert "space or P: rest the array at once, or go on" in said
+    assert "n: say the word under the finger" in said
+
+
+def test_a_key_that_is_taken_leaves_its_command_the_others():
+    bench = bench_with({"HELP": ("n",)})
+    assert bench.press(["down"]) == ["line: 2"]
+    assert bench.press("é") == ["no command: 'é'; n says the keys"]
+    assert bench.reader.bound.keys_of("LNDN") == ("down",)
+
+
+def test_a_key_of_reading_is_still_typed_and_enter_still_ends_a_text():
+    bench = bench_with({"LNDN": ("enter",)})
+    assert bench.press("\n") == ["line: 2"]
+    assert bench.press("/seven\n")[1:] == ["text: seven", "line: 3"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "buttons", "sentence"),
+    [
+        ({"LNDWN": ("n",)}, {}, "there is no command 'LNDWN'; the nearest is LNDN"),
+        ({"lndn": ("n",)}, {}, "there is no command 'lndn'; the nearest is LNDN"),
+        ({"LNDN": ("x",), "LNUP": ("x",)}, {}, "key x calls both LNDN and LNUP"),
+        ({"LNDN": ("x", "x")}, {}, "key x calls both LNDN and LNDN"),
+        ({"LNDN": ("n", "dowm")}, {}, "there is no key 'dowm'; the nearest is down"),
+        ({"LNDN": ("ctrl-dwn",)}, {}, "there is no key 'ctrl-dwn'; the nearest is down"),
+        ({"LNDN": ("",)}, {}, "there is no key ''"),
+        ({"QUIT": ()}, {}, "no key calls QUIT"),
+        ({}, {"1": "LNDWN"}, "there is no command 'LNDWN'; the nearest is LNDN"),
+        ({}, {"one": "LNDN"}, "'one' is no button; write a number"),
+        ({}, {"knob 1": "CONTRST"}, "there is no value of the tuning 'CONTRST'; the nearest is"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(keys, buttons, sentence):
+    with pytest.raises(InputError, match="settings: ") as raised:
+        bound_by(Bindings(keys, buttons))
+    assert sentence in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_fault_among_keys_says_its_line():
+    def where(*keys):
+        return f"settings.toml line {1 if keys == ('keys', 'LNDN') else 2}"
+
+    with pytest.raises(InputError, match=r"^settings\.toml line 2: key x calls both"):
+        bound_by(Bindings({"LNDN": ("x",), "LNUP": ("x",)}, {}, where))
+    with pytest.raises(InputError, match=r"^settings\.toml line 1: there is no key 'spcae'"):
+        bound_by(Bindings({"LNDN": ("spcae",)}, {}, where))
+
+
+@pytest.mark.parametrize(
+    ("written", "sent"),
+    [
+        ("Down", "down"),
+        ("F12", "f12"),
+        ("ctrl-shift-left", "shift-ctrl-left"),
+        ("alt-x", "alt-x"),
+        ("alt-space", "alt- "),
+        ("ctrl-d", "\x04"),
+        ("shift-tab", "backtab"),
+        ("escape", "escape"),
+    ],
+)
+def test_a_key_is_written_as_people_say_it(written, sent):
+    bench = bench_with({"LNDN": (written,)})
+    assert bench.press([sent]) == ["line: 2"]
+
+
+def test_a_button_does_what_its_command_does():
+    bench = bench_with(buttons={"1": "LNDN", "button 2": "NXSEARCH"})
+    press_button(bench.reader, 1)
+    assert bench.said == ["line: 2"]
+    press_button(bench.reader, 2)
+    press_button(bench.reader, 1)
+    assert bench.said[1:] == ["search: type the text, Enter", "button 1: not now; answer first"]
+    bench.press(["escape"])
+    press_button(bench.reader, 3)
+    assert bench.said[-1] == "button 3: no command; the settings file can give it one"
+
+
+def test_a_knob_gives_its_value_once():
+    bench = bench_with(buttons={"knob 2": "CONTRAST"})
+    turn_knob(bench.reader, 2, 0.504)
+    turn_knob(bench.reader, 2, 0.501)
+    turn_knob(bench.reader, 1, 0.3)
+    assert bench.said == ["contrast: 0.5"]
+    assert bench.reader.style.tuning.contrast == 0.5
+
+
+def test_learning_a_key_says_what_it_does_and_does_nothing():
+    bench = bench_with(buttons={"1": "LNUP"})
+    for ends in ("?", "q"):
+        assert bench.press("?") == ["learn: a key says what it does; this key again or q ends it"]
+        assert bench.press("n é") == [
+            "n: next line",
+            "space: rest the array at once, or go on",
+            "é: no command",
+        ]
+        press_button(bench.reader, 1)
+        assert bench.said[-1] == "button 1: previous line"
+        assert bench.reader.line_number == 1
+        assert not bench.engine.paused
+        assert bench.press(ends) == ["learn: off"]
+        assert bench.reader.context is Context.READING
+        assert not bench.reader.done
+    assert bench.press("n") == ["line: 2"]

@@ -1,0 +1,135 @@
+"""A simulated chooser's preference is found, and a course is what its choices make of it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tiers import examples
+from vbraille.errors import InputError
+from vbraille.reading.tuning_course import (
+    CHOICES_PER_KNOB,
+    ORDER,
+    TuningCourse,
+    from_json,
+    to_json,
+)
+from vbraille.render import STRESS2, VBD
+from vbraille.render.braille.knobs import KNOBS
+
+SHARE = st.floats(0, 1)
+# Least and largest value that is tried, as the course has them for each of the two displays.
+TRIED = {
+    "stress2": {
+        "texture": (0, 1),
+        "contrast": (0.2, 1),
+        "dot_width_mm": (1.3, 5.2),
+        "dot_spacing_mm": (2.22, 6.66),
+    },
+    "vbd": {
+        "texture": (0, 1),
+        "contrast": (0.2, 1),
+        "dot_width_mm": (1, 4),
+        "dot_spacing_mm": (2.4, 7.2),
+    },
+}
+
+
+def value(course, which):
+    return course.knob.value(course.shown(which))
+
+
+def complete(model, choose):
+    course = TuningCourse(model)
+    while not course.done:
+        course = course.choose(choose(course))
+    return course
+
+
+def nearer_to(liked, noise=0.0, rng=None):
+    """Choose whichever is nearer to what is liked of each knob, but for noise."""
+
+    def choose(course):
+        away = [abs(value(course, which) - liked[course.knob.name]) for which in (1, 2)]
+        if rng is not None:
+            low, high = TRIED[course.start.name][course.knob.name]
+            away = [a + rng.normal(0, noise * (high - low)) for a in away]
+        return 1 if away[0] <= away[1] else 2
+
+    return choose
+
+
+@examples(100)
+@given(shares=st.lists(SHARE, min_size=4, max_size=4), model=st.sampled_from((STRESS2, VBD)))
+def test_what_a_chooser_likes_is_found(shares, model):
+    tried = TRIED[model.name]
+    liked = {
+        n: tried[n][0] + s * (tried[n][1] - tried[n][0]) for n, s in zip(tried, shares, strict=True)
+    }
+    course = complete(model, nearer_to(liked))
+    assert [knob.name for knob, _ in course.found] == list(ORDER)
+    for knob, found in course.found:
+        low, high = tried[knob.name]
+        assert abs(found - liked[knob.name]) <= 0.092 * (high - low) + 0.011
+        assert knob.value(course.style) == found
+
+
+def test_a_chooser_who_is_not_sure_comes_near_it():
+    rng = np.random.default_rng(20090618)
+    liked = {"texture": 0.6, "contrast": 0.9, "dot_width_mm": 2.2, "dot_spacing_mm": 4.5}
+    away = []
+    for _ in range(60):
+        course = complete(STRESS2, nearer_to(liked, 0.1, rng))
+        for knob, found in course.found:
+            low, high = TRIED["stress2"][knob.name]
+            away.append(abs(found - liked[knob.name]) / (high - low))
+    assert np.median(away) < 0.12  # of what is tried; by chance it would be some 0.3
+
+
+def test_it_takes_twenty_choices_from_far_apart_to_close_together():
+    course = TuningCourse(STRESS2)
+    apart = []
+    for number in range(course.total):
+        one, other = value(course, 1), value(course, 2)
+        assert (one < other) == (number % 2 == 0)
+        apart.append(abs(one - other))
+        course = course.choose(1)
+    assert course.total == 20
+    assert course.knob is None
+    for n in range(0, 20, CHOICES_PER_KNOB):
+        assert sorted(apart[n : n + CHOICES_PER_KNOB], reverse=True) == apart[n : n + 5]
+        assert min(apart[n : n + 5]) > 0.015  # never twice the same
+    with pytest.raises(ValueError, match="every choice"):
+        course.choose(1)
+    assert course.shown(1) == course.shown(2) == course.style
+
+
+@given(choices=st.lists(st.sampled_from((1, 2)), max_size=20))
+def test_it_goes_on_from_what_was_kept_and_back_by_undo(choices):
+    course = TuningCourse(STRESS2)
+    for which in choices:
+        again = course.choose(which)
+        assert again.undo() == course
+        course = again
+    kept = from_json(to_json(course, "evening", "stress2"), STRESS2)
+    assert kept == course
+    assert (kept.style, kept.knob) == (course.style, course.knob)
+
+
+def test_a_dot_never_becomes_wider_than_its_cell():
+    crowded = STRESS2.style.replace(dot_spacing_mm=1.0, cell_gap_mm=2.0, dot_width_mm=2.0)
+    model = type(STRESS2)("stress2", "STReSS²", STRESS2.display, crowded)
+    for which in (1, 2):
+        course = complete(model, lambda _, which=which: which)
+        geometry = course.style.geometry
+        assert geometry.dot_width_mm <= geometry.cell_pitch_mm
+    assert KNOBS["dot_width_mm"].value(model.style) == 2.0
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", '{"format": 2}', '{"format": 1, "start": {}, "choices": [3]}',
+             '{"format": 1, "start": {"texture": 7}, "choices": []}', "[" * 5000],
+)  # fmt: skip
+def test_what_is_no_course_is_refused(text):
+    with pytest.raises(InputError, match="cannot be gone on with"):
+        from_json(text, STRESS2)

@@ -1,0 +1,86 @@
+"""``vbraille books``."""
+
+from __future__ import annotations
+
+import json
+import time
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from vbraille.cli.terminal import say_line
+from vbraille.errors import InputError, VbrailleError
+from vbraille.reading.places.shelf import KeptPlaces
+from vbraille.wording import count
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.reading.places.values import ListedBook
+
+_A_WEEK = 7  # days; what is older is told by its date
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """List the books that were read, the last one first, or forget one of them."""
+    with KeptPlaces.open() as places:
+        if (note := places.note()) is not None:
+            say_line(note, aside=True)
+        books = places.listed()
+        if arguments.forget is not None:
+            _forget(places, books, arguments.forget)
+        elif arguments.json:
+            print(json.dumps([_fields(n, book) for n, book in enumerate(books, 1)], indent=1))
+        else:
+            today = datetime.fromtimestamp(time.time()).astimezone()
+            for number, book in enumerate(books, 1):
+                say_line(f"{number}: {describe(book, today)}")
+            if not books:
+                say_line("books: none")
+    return 0
+
+
+def describe(book: ListedBook, now: datetime) -> str:
+    """What is said of a book in the list, as seen from a time in the reader's zone."""
+    parts = [book.title]
+    if book.place is not None:
+        parts.append(f"{book.place.share:.0%}".replace("%", " %"))
+        if book.place.page:
+            parts.append(f"page {book.place.page}")
+    parts.append(_when(datetime.fromtimestamp(book.read_s, now.tzinfo), now))
+    parts.append(book.path or "from standard input")
+    if book.missing:
+        parts.append("missing")
+    return ", ".join(parts)
+
+
+def _when(read: datetime, now: datetime) -> str:
+    days = (now.date() - read.date()).days
+    if days == 0:
+        return f"today {read:%H:%M}"
+    if days == 1:
+        return "yesterday"
+    return f"{days} days ago" if 1 < days < _A_WEEK else f"{read:%Y-%m-%d}"
+
+
+def _fields(number: int, book: ListedBook) -> dict[str, object]:
+    place = book.place
+    return {
+        "number": number,
+        "title": book.title,
+        "path": book.path,
+        "missing": book.missing,
+        "read": datetime.fromtimestamp(book.read_s, UTC).isoformat(timespec="seconds"),
+        "share": None if place is None else round(place.share, 4),
+        "character": None if place is None else place.character,
+        "page": None if place is None else place.page,
+    }
+
+
+def _forget(places: KeptPlaces, books: list[ListedBook], number: int) -> None:
+    if not 1 <= number <= len(books):
+        there = f"there {'is' if len(books) == 1 else 'are'} {count(len(books), 'book')}"
+        raise InputError(f"there is no book {number}; {there}, and vbraille books lists them")
+    book = books[number - 1]
+    if not places.forget(book.number):
+        raise VbrailleError(places.note() or f"{book.title} is kept by another program; try again")
+    say_line(f"forgotten: {book.title}")

@@ -1,0 +1,52 @@
+"""``vbraille settings``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.cli.build import build_lengths, build_show
+from vbraille.cli.settled import chosen_profile
+from vbraille.cli.terminal import say_line
+from vbraille.render import MODELS
+from vbraille.render.braille.knobs import KNOBS
+from vbraille.settings.applying import with_profile
+from vbraille.settings.chosen import settings_path
+from vbraille.settings.loading import load_settings
+from vbraille.settings.origins import USUAL, said, say_bindings, say_settings, say_tuning
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print a line for each setting, or the path of the file."""
+    if arguments.path:
+        say_line(str(settings_path(arguments.settings)))
+        return 0
+    settings = load_settings(arguments.settings)
+    there = "" if settings.path.exists() else " (not there)"
+    say_line(f"settings file: {settings.path}{there}")
+    profile = chosen_profile(arguments, settings)
+    model = MODELS[arguments.model or "stress2"]
+    if arguments.profile is not None:
+        origin = "option"
+    else:
+        origin = settings.where("read", "profile") if "profile" in settings.read else "default"
+    say_line(f"profile: {profile} ({origin})")
+    say_line(f"display: {model.title} ({'default' if arguments.model is None else 'option'})")
+    shown = build_show(arguments, with_profile(settings, profile, model))
+    shown = build_lengths(arguments, shown)
+    usual = {name: said(value) for name, value in arguments.usual.items() if value is not None}
+    for sentence in (
+        *say_tuning(settings, profile, model, shown.style, _given(arguments)),
+        *say_settings(settings, vars(arguments), USUAL | usual),
+        *say_bindings(settings),
+    ):
+        say_line(sentence)
+    return 0
+
+
+def _given(arguments: argparse.Namespace) -> set[str]:
+    """Names, as a settings file has them, of what options say about the style."""
+    names = {name: name.removesuffix("_mm") for name in (*KNOBS, "mapping", "dot_row")}
+    return {name for name, option in names.items() if getattr(arguments, option) is not None}

@@ -1,0 +1,146 @@
+"""The book that `vbraille read` is to read, opened as it was left."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from vbraille.cli.build import build_book
+from vbraille.cli.terminal import say_line
+from vbraille.errors import InputError
+from vbraille.reading.places import BookOptions, last_book, resume
+from vbraille.reading.seeking import BookOpening, Seeker
+from vbraille.render.braille.knobs import kept_values, with_values
+from vbraille.settings.chosen import display_name
+from vbraille.translate import Document
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.reading.places import KeptBook, KeptPlace, KeptPlaces
+    from vbraille.reading.reader import Reader
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.translate import Book
+
+
+@dataclass(frozen=True, slots=True)
+class BookToRead:
+    """A book that is open, with what is kept of it.
+
+    Parameters
+    ----------
+    book
+        The book.
+    kept
+        What is kept of it; None if nothing is to be kept.
+    place
+        Place at which reading goes on; None for the beginning.
+    """
+
+    book: Book
+    kept: KeptBook | None = None
+    place: KeptPlace | None = None
+
+    def tuned(self, model: Model) -> Model:
+        """Display and style with what the reader turned when the book was read last."""
+        values = ((self.kept and self.kept.tuning) or {}).get(display_name(model))
+        style = model.style
+        if isinstance(values, dict):
+            with suppress(InputError):  # values of another version's
+                style = with_values(style, model.display, values)
+        return replace(model, style=style)
+
+    def seeker(self, arguments: argparse.Namespace) -> Seeker | None:
+        """Process that looks through the book; None if it could not open the book again."""
+        source, table = self.book.source, self.book.table
+        descriptor = None
+        if arguments.file == "-":
+            if not isinstance(source, Document):
+                return None
+            descriptor = source.descriptor
+        return Seeker(
+            BookOpening(
+                file="" if descriptor is not None else arguments.file,
+                descriptor=descriptor,
+                name=source.name,
+                encoding=arguments.encoding,
+                keep_lines=arguments.keep_lines,
+                form=arguments.form,
+                brf_table=arguments.brf_table,
+                table=None if table is None else table.name,
+                language=arguments.language,
+                grade=arguments.grade,
+                undefined=arguments.undefined,
+                index=source.index(),
+            )
+        )
+
+    def leave(self, reader: Reader, model: Model, before: BrailleStyle) -> None:
+        """Keep what another reading goes on with, apart from the place, which the reader keeps.
+
+        Parameters
+        ----------
+        reader
+            Reader of the book.
+        model
+            Display that the book was read on.
+        before
+            Style that reading began with; another one was turned to by the reader.
+        """
+        if self.kept is None:
+            return
+        if reader.style != before:
+            tuning = dict(self.kept.tuning or {})
+            tuning[display_name(model)] = kept_values(reader.style)
+            self.kept.keep_tuning(tuning)
+        self.kept.keep_index(self.book.source.index())
+        self.kept.close()
+
+
+def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToRead:
+    """Open the book of the options, or the last one if they name none.
+
+    Parameters
+    ----------
+    arguments
+        Parsed options of the command; file and options of the last book are filled in.
+    places
+        Places that are kept.
+
+    Raises
+    ------
+    InputError
+        If there is no last book, or the book cannot be read.
+    """
+    if arguments.file is None:
+        _take_last(arguments, places)
+    book = build_book(arguments)
+    if arguments.no_places or arguments.file == "-" or arguments.lines != (1, None):
+        return BookToRead(book)
+    if (note := places.note()) is not None:
+        say_line(note, aside=True)
+    given = {
+        name: None if name in arguments.settled else getattr(arguments, name)
+        for name in ("language", "grade", "table", "encoding", "form", "brf_table")
+    }
+    options = BookOptions(
+        **given, undefined=arguments.undefined, keep_lines=bool(arguments.keep_lines)
+    )
+    source = book.source
+    resumed = resume(source, places.book(arguments.file, title=source.title), options)
+    if resumed.note is not None:
+        say_line(resumed.note, aside=True)
+    return BookToRead(book, resumed.kept, resumed.place)
+
+
+def _take_last(arguments: argparse.Namespace, places: KeptPlaces) -> None:
+    """Read the last book, by the options of its last reading where no others are given."""
+    kept = last_book(places)
+    arguments.file = str(kept.path)
+    for name in BookOptions.__struct_fields__:
+        value = getattr(kept.options, name)
+        unsaid = getattr(arguments, name) in (None, False, "mark") or name in arguments.settled
+        if value is not None and unsaid:
+            setattr(arguments, name, value)
+            arguments.settled -= {name}

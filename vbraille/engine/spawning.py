@@ -1,0 +1,68 @@
+"""A host process that begins to load before anybody knows what it is to drive.
+
+Loading what drives actuators takes longer than all else that comes before a reading. So a
+command may begin it first of all, and hand it to its `vbraille.engine.host.Host`.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(slots=True)
+class Spawned:
+    """A host process that waits to be told what to drive.
+
+    Parameters
+    ----------
+    process
+        The process, which is told by its standard input.
+    descriptor
+        Descriptor of the memory that it is to share, which is empty as yet.
+
+    Attributes
+    ----------
+    taken : bool
+        Whether a host has it, which then ends it.
+    """
+
+    process: subprocess.Popen[bytes]
+    descriptor: int
+    taken: bool = False
+
+    def end(self) -> None:
+        """End the process if it was told nothing; further calls do nothing."""
+        if self.taken:
+            return
+        self.taken = True
+        for pipe in (self.process.stdin, self.process.stdout):
+            assert pipe is not None
+            pipe.close()
+        os.close(self.descriptor)
+        self.process.kill()
+        self.process.wait()
+
+
+def spawn(pass_fds: Sequence[int] = ()) -> Spawned:
+    """Begin a host process; the system ends it with the thread that calls this.
+
+    Parameters
+    ----------
+    pass_fds
+        Descriptors that the process inherits, for its device.
+    """
+    descriptor = os.memfd_create("vbraille")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "vbraille.engine.hosted", str(descriptor), str(os.getpid())],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        pass_fds=(descriptor, *pass_fds),
+    )
+    return Spawned(process, descriptor)

@@ -1,0 +1,95 @@
+"""Commands that say where the reader is, and what is under the hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.braille.dots import dots_of
+from vbraille.reading.echo import Echo
+from vbraille.reading.whereabouts import whereabouts
+from vbraille.translate.source import BlockKind
+from vbraille.translate.undefined import describe
+
+if TYPE_CHECKING:
+    from vbraille.layout.pages import Line
+    from vbraille.reading.reader import Reader
+
+
+def say_place(reader: Reader) -> None:
+    """Say line, page, percentage, heading and the number of words that are left."""
+    if reader.line is not None:
+        for sentence in whereabouts(reader.layout, reader.line):
+            reader.say(sentence)
+
+
+def say_line(reader: Reader) -> None:
+    """Say the line again."""
+    if reader.line is not None:
+        echo = Echo.TEXT if reader.echo is Echo.NONE else reader.echo
+        for sentence in echo.words(reader.line):
+            reader.say(sentence)
+
+
+def say_character(reader: Reader) -> None:
+    """Say the cell under the middle of the array by its dots, its text and its word."""
+    line, cell = reader.line, reader.cell
+    if line is None or cell is None:
+        reader.say("cell: none here")
+        return
+    reader.say(f"cell: {_dots(int(line.masks[cell]))}")
+    span = line.source(cell)
+    if span is None:
+        return
+    text = _text(line, *span)
+    if len(text) == 1:
+        named = text.isspace() or not (text.isascii() and text.isprintable())
+        reader.say(f"character: {describe(text) if named else text}")
+    elif text:
+        reader.say(f"characters: {text}")
+    word = line.word(cell)
+    if word:
+        reader.say(f"word: {word}")
+
+
+def say_word(reader: Reader) -> None:
+    """Say the word under the middle of the array."""
+    word = _word(reader)
+    reader.say(f"word: {word}" if word else "word: none here")
+
+
+def spell_word(reader: Reader) -> None:
+    """Say the letters of the word under the middle of the array."""
+    word = _word(reader)
+    reader.say(f"spelling: {' '.join(word)}" if word else "word: none here")
+
+
+def say_headers(reader: Reader) -> None:
+    """Say the headers of the table whose row is under the hand."""
+    line = reader.line
+    if line is None:
+        return
+    if line.block.kind is not BlockKind.ROW:
+        reader.say("headers: this is no row of a table")
+    elif not any(line.block.headers):
+        reader.say("headers: the table has none")
+    else:
+        reader.say(f"headers: {'; '.join(line.block.headers)}")
+
+
+def _dots(mask: int) -> str:
+    """Dots of a cell: "dot 1", "dots 1-2-4", "no dots"."""
+    dots = dots_of(mask)
+    if not dots:
+        return "no dots"
+    return f"dot{'s' if len(dots) > 1 else ''} {'-'.join(map(str, dots))}"
+
+
+def _word(reader: Reader) -> str:
+    line, cell = reader.line, reader.cell
+    return line.word(cell) if line is not None and cell is not None else ""
+
+
+def _text(line: Line, first: int, after: int) -> str:
+    """Text that stands at some places of the source."""
+    text = line.block.text
+    return str(text)[text.index(first) : text.index(after)]

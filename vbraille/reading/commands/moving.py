@@ -1,0 +1,122 @@
+"""Commands that go along lines, and from one line to the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.reading.cues import Cue
+from vbraille.reading.queries import FindShare
+
+if TYPE_CHECKING:
+    from vbraille.reading.reader import Reader
+    from vbraille.reading.window import Window
+
+
+def next_line(reader: Reader) -> None:
+    """Go to the line after the present one."""
+    _go(reader, 1)
+
+
+def previous_line(reader: Reader) -> None:
+    """Go to the line before the present one."""
+    _go(reader, -1)
+
+
+def pan_right(reader: Reader) -> None:
+    """Go on along the line; at its end, to the next line."""
+    if reader.pan(1):
+        _say_part(reader)
+    else:
+        _go(reader, 1)
+
+
+def pan_left(reader: Reader) -> None:
+    """Go back along the line; at its beginning, to the end of the line before."""
+    if reader.pan(-1):
+        _say_part(reader)
+    else:
+        _go(reader, -1, at_end=True)
+
+
+def line_start(reader: Reader) -> None:
+    """Go to the beginning of the line."""
+    window = reader.window
+    if window is not None:
+        _show(reader, window.showing(0), "start of line")
+
+
+def line_end(reader: Reader) -> None:
+    """Go to the end of the line."""
+    window = reader.window
+    if window is not None:
+        _show(reader, window if window.right is None else window.last, "end of line")
+
+
+def top(reader: Reader) -> None:
+    """Go to the first of the lines that are read."""
+    first = reader.range.first
+    before = reader.character
+    if first > 1:
+        gone = reader.go(first)
+        reader.keep_way_back(before)
+    else:
+        gone = reader.jump(0)
+    if gone:
+        reader.announce()
+
+
+def bottom(reader: Reader) -> None:
+    """Go to the last of the lines that are read."""
+    last = reader.range.last
+    before = reader.character
+    if last is not None and reader.go(last):
+        reader.keep_way_back(before)
+        reader.announce()
+        return
+
+    def arrive(place: int | None) -> None:
+        found = None if place is None else reader.layout.place(place)
+        if found is None:
+            reader.say("end: not found")
+            return
+        number = found[0].number
+        while reader.layout.line(number + 1) is not None:
+            number += 1
+        reader.go(number)
+        reader.keep_way_back(before)
+        reader.announce()
+
+    reader.find(FindShare(1.0), arrive)
+
+
+def back(reader: Reader) -> None:
+    """Go back to where the reader was before the last jump."""
+    if reader.jump_back():
+        reader.announce()
+    else:
+        reader.cue(Cue.LIMIT)
+        reader.say("back: there was no jump")
+
+
+def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
+    """Go by a line and say where that is; if there is none, say so."""
+    if reader.go_by(step, at_end=at_end):
+        reader.announce()
+    else:
+        reader.cue(Cue.LIMIT)
+        reader.say("last line" if step > 0 else "first line")
+
+
+def _show(reader: Reader, window: Window, end: str) -> None:
+    """Show another part of the line; where it is shown already, say which end this is."""
+    if reader.window is not None and window.offset == reader.window.offset:
+        reader.say(end)
+    else:
+        reader.put(window)
+        _say_part(reader)
+
+
+def _say_part(reader: Reader) -> None:
+    window = reader.window
+    if window is not None:
+        reader.say(f"cells: {max(window.offset, 0) + 1} to {window.offset + len(window)}")

@@ -1,0 +1,230 @@
+"""Commands that go by what the text is made of: paragraphs, pages, headings, lists, links."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from vbraille.reading.cues import Cue
+from vbraille.reading.queries import FindKind, FindLine, FindPage, FindShare
+from vbraille.reading.seeking.kinds import LINK, START, first_place, links_of
+from vbraille.reading.whereabouts import (
+    LINES_PER_PAGE,
+    block_of,
+    first_character,
+    has_pages,
+    is_counted,
+)
+from vbraille.translate.source import BlockKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.layout.pages import Line
+    from vbraille.reading.reader import Reader
+    from vbraille.translate.source import Block, Mark
+
+HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
+_NAMES = {LIST: "list", TABLE: "table"}
+_NEAR_LINES = 500  # that are laid out while somebody waits; farther ones are looked for meanwhile
+_PAGE_OR_SHARE = re.compile(r"(\d{1,3})(?:[.,](\d))? ?%")
+
+
+def go_to(kind: str, *, backward: bool = False, level: int = 0) -> Callable[[Reader], None]:
+    """Make a command that goes to the next block of a kind, or to the one before.
+
+    Parameters
+    ----------
+    kind
+        Value of a `BlockKind`.
+    backward
+        Whether the one before is wanted.
+    level
+        Greatest level of a heading that is wanted; 0 for any.
+    """
+    name = _NAMES.get(kind, kind) + (f" of level {level}" if level else "")
+
+    def handler(reader: Reader) -> None:
+        line = reader.line
+        if line is None:
+            return
+        source = reader.layout.book.source
+        number = block_of(source, line)
+        here = source.block(number)
+        group = here.group if here is not None and here.kind.value == kind else 0
+        if backward and here is not None and not _begins_here(line, here):
+            # In the middle of a heading, the one before is that heading itself.
+            number, group = (number + 1, 0) if kind == HEADING else (number, group)
+        query = FindKind(kind, number, backward, level, group)
+        reader.find(query, lambda place: arrive(reader, place, name, backward=backward))
+
+    return handler
+
+
+def go_to_link(*, backward: bool = False) -> Callable[[Reader], None]:
+    """Make a command that goes to the next link or reference to a note, or to the one before."""
+
+    def handler(reader: Reader) -> None:
+        line = reader.line
+        if line is None:
+            return
+        source = reader.layout.book.source
+        number = block_of(source, line)
+        here = source.block(number)
+        hit, first = reader.hit, first_character(line)
+        starts = [] if here is None else [mark.start for mark in links_of(here)]
+        if backward:
+            near = [start for start in starts if start < (first if hit is None else hit)]
+        else:
+            near = [start for start in starts if start >= (first if hit is None else hit + 1)]
+        if near:
+            place = near[-1 if backward else 0]
+            arrive(reader, place, "link", backward=backward)
+            return
+        query = FindKind(LINK, number, backward)
+        reader.find(query, lambda place: arrive(reader, place, "link", backward=backward))
+
+    return handler
+
+
+def next_paragraph(reader: Reader) -> None:
+    """Go to the next paragraph."""
+    _go_to_paragraph(reader, backward=False)
+
+
+def previous_paragraph(reader: Reader) -> None:
+    """Go to the beginning of the paragraph before, or of this one if the reader is within it."""
+    _go_to_paragraph(reader, backward=True)
+
+
+def next_page(reader: Reader) -> None:
+    """Go to the next page of print, or of braille where the book has no pages of print."""
+    _go_to_page(reader, backward=False)
+
+
+def previous_page(reader: Reader) -> None:
+    """Go to the page before, of print or of braille."""
+    _go_to_page(reader, backward=True)
+
+
+def ask_place(reader: Reader) -> None:
+    """Ask for a page or a percentage, and go there."""
+    reader.ask("go to", "type a page, or percent as in 40%, then Enter", "page", _go_to_typed)
+
+
+def follow(reader: Reader) -> None:
+    """Go to what the link or the reference to a note under the finger speaks of."""
+    mark = _link_here(reader)
+    if mark is None:
+        reader.cue(Cue.NOT_FOUND)
+        reader.say("link: none here")
+    elif not mark.target.startswith("#"):
+        reader.say(f"link: {mark.target}")
+    else:
+        place = reader.layout.book.source.anchor(mark.target[1:])
+        arrive(reader, place, mark.kind.value, backward=False)
+
+
+def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> None:
+    """Go to a place that was looked for, and say so; or that it was not found.
+
+    Parameters
+    ----------
+    place
+        The place; None if there is none.
+    name
+        What was looked for.
+    backward
+        Whether it was looked for backward.
+    """
+    if not reader.arrive(place):
+        reader.cue(Cue.NOT_FOUND)
+        reader.say(f"{name}: none {'before' if backward else 'after'} this")
+
+
+def _begins_here(line: Line, block: Block) -> bool:
+    return first_character(line) <= first_place(block)
+
+
+def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
+    line = reader.line
+    if line is None:
+        return
+    source = reader.layout.book.source
+    number = block_of(source, line)
+    here = source.block(number)
+    if backward and here is not None and not _begins_here(line, here):
+        number += 1  # the beginning of this one is before the reader, too
+    query = FindKind(START, number, backward)
+    reader.find(query, lambda place: arrive(reader, place, "paragraph", backward=backward))
+
+
+def _go_to_page(reader: Reader, *, backward: bool) -> None:
+    line = reader.line
+    if line is None:
+        return
+    if has_pages(reader.layout.book.source, line):
+        go_to(BlockKind.PAGE.value, backward=backward)(reader)
+        return
+    page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
+    wanted = (page if above else page - 1) if backward else page + 1
+    _go_to_braille_page(reader, wanted + 1, "page")
+
+
+def _go_to_braille_page(reader: Reader, page: int, name: str) -> None:
+    before, number, layout = reader.character, (page - 1) * LINES_PER_PAGE + 1, reader.layout
+    if page >= 1 and reader.seeker is not None and layout.lines_to(number) > _NEAR_LINES:
+        table = "" if layout.book.table is None else layout.book.table.name
+        query = FindLine(number, layout.width, table)
+        reader.find(query, lambda place: _arrive_at_page(reader, place, str(page)))
+    elif page >= 1 and reader.go(number):
+        reader.keep_way_back(before)
+        reader.announce()
+    else:
+        reader.cue(Cue.NOT_FOUND)
+        reader.say(f"{name}: there is no such page")
+
+
+def _go_to_typed(reader: Reader, typed: str) -> None:
+    share = _PAGE_OR_SHARE.fullmatch(typed)
+    line = reader.line
+    if line is None:
+        return
+    if share is not None:
+        percent = float(f"{share[1]}.{share[2] or 0}")
+        if percent > 100:
+            reader.say(f"go to: {typed} is more than the book; type 0% to 100%")
+            return
+        query = FindShare(percent / 100)
+        reader.find(query, lambda place: arrive(reader, place, typed, backward=False))
+    elif has_pages(reader.layout.book.source, line):
+        query = FindPage(typed)
+        reader.find(query, lambda place: _arrive_at_page(reader, place, typed))
+    elif not typed.isdecimal():
+        reader.say(f"go to: {typed!r} is no page; type a number, or percent as in 40%")
+    elif reader.seeker is None and not is_counted(reader.layout):
+        reader.say("go to: pages of this book are not counted yet; type percent as in 40%")
+    else:
+        _go_to_braille_page(reader, int(typed), typed)
+
+
+def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
+    if not reader.arrive(place):
+        reader.cue(Cue.NOT_FOUND)
+        reader.say(f"page {typed}: there is no such page")
+
+
+def _link_here(reader: Reader) -> Mark | None:
+    """Link under the finger; or the one of the line, if it has only one."""
+    line, cell = reader.line, reader.cell
+    if line is None:
+        return None
+    links = links_of(line.block)
+    span = None if cell is None else line.source(cell)
+    if span is not None:
+        under = [mark for mark in links if mark.start < span[1] and span[0] < mark.end]
+        if under:
+            return under[-1]
+    first, after = first_character(line), line.cells.end
+    on_line = [mark for mark in links if mark.start < after and first < mark.end]
+    return on_line[0] if len(on_line) == 1 else None

@@ -1,0 +1,233 @@
+"""The commands of a reader: one table of what keys do, from which help and documents are made.
+
+Names are BRLTTY's where it has the command.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.reading.bindings import ANY, Bindings, Bound, Command, bind, spoken
+from vbraille.reading.commands.deferred import Deferred, made
+from vbraille.reading.context import Context
+from vbraille.reading.keys import PASTE
+
+if TYPE_CHECKING:
+    from vbraille.reading.commands import (
+        asking,
+        choosing,
+        control,
+        marking,
+        moving,
+        searching,
+        structure,
+        turning,
+    )
+    from vbraille.reading.reader import Reader
+else:
+    asking, choosing, control, marking = map(Deferred, ("asking", "choosing", "control", "marking"))
+    moving, searching, structure, turning = map(
+        Deferred, ("moving", "searching", "structure", "turning")
+    )
+
+HEADING, LIST, TABLE = "heading", "item", "row"  # kinds of blocks
+
+_LEVELS = 6
+# Values of the tuning that a knob of the device may turn.
+TURNED = {"TEXTURE": "texture", "CONTRAST": "contrast"}
+
+
+def bound_by(bindings: Bindings) -> Bound:
+    """Give the commands somebody's keys and buttons.
+
+    Raises
+    ------
+    InputError
+        If a command is not known, a key would call two commands, or a button is none.
+    """
+    return bind(COMMANDS, bindings, tuple(TURNED))
+
+
+def commands_of(context: Context) -> tuple[Command, ...]:
+    """Commands that can be called in a context."""
+    return tuple(BOUND.of(context))
+
+
+def find(key: str, context: Context) -> Command | None:
+    """Command that a key calls in a context unless settings say otherwise; None if none."""
+    return BOUND.find(key, context)
+
+
+def press(reader: Reader, key: str) -> None:
+    """Call the command that a key stands for in the reader's context."""
+    bound = reader.bound or BOUND
+    if key == PASTE:
+        reader.say("paste: text that is pasted is passed over; type the keys")
+    elif reader.context is Context.LEARNING:
+        _learn(reader, spoken(key), bound.find(key, Context.READING))
+    else:
+        command = bound.find(key, reader.context)
+        if command is not None:
+            command.handler(reader)
+        elif reader.prompt is not None and reader.context is Context.PROMPT:
+            reader.prompt.press(key)
+        else:
+            reader.say(f"no command: {key!r}; {reader.key('HELP', 'h')} says the keys")
+
+
+def press_button(reader: Reader, number: int) -> None:
+    """Call the command that a button of the device stands for."""
+    command = (reader.bound or BOUND).buttons.get(number)
+    if reader.context is Context.LEARNING:
+        _learn(reader, f"button {number}", command)
+    elif command is None:
+        reader.say(f"button {number}: no command; the settings file can give it one")
+    elif reader.context in command.contexts:
+        command.handler(reader)
+    else:
+        reader.say(f"button {number}: not now; answer first")
+
+
+def turn_knob(reader: Reader, number: int, share: float) -> None:
+    """Give the value of the tuning that a knob of the device turns its place in the knob's range.
+
+    Parameters
+    ----------
+    share
+        Place of the knob, 0 to 1.
+    """
+    name = (reader.bound or BOUND).knobs.get(number)
+    if reader.context is Context.LEARNING:
+        says = "no value" if name is None else TURNED[name].replace("_", " ")
+        reader.say(f"knob {number}: {says}")
+    elif name is not None:
+        value = round(share, 2)
+        if getattr(reader.style.tuning, TURNED[name]) != value:
+            reader.tune(**{TURNED[name]: value})
+            reader.say(f"{TURNED[name]}: {value:g}")
+
+
+def say_keys(reader: Reader) -> None:
+    """Say what the keys do."""
+    for command in (reader.bound or BOUND).of(reader.context):
+        if command.keys:
+            reader.say(f"{command.spoken_keys}: {command.help}")
+
+
+def _learn(reader: Reader, name: str, command: Command | None) -> None:
+    if command is not None and command.name in ("LEARN", "QUIT"):
+        control.end_learning(reader)
+    else:
+        reader.say(f"{name}: {'no command' if command is None else command.help}")
+
+
+def _levels(*, backward: bool) -> tuple[Command, ...]:
+    """Commands that go by headings down to a level."""
+    return tuple(
+        Command(
+            f"{'PR' if backward else 'NX'}HEADING{level}",
+            (f"alt-{level}" if backward else str(level),),
+            f"{'previous' if backward else 'next'} heading of level {level}"
+            + (" or above" if level > 1 else ""),
+            made(structure.go_to, HEADING, backward=backward, level=level),
+        )
+        for level in range(1, _LEVELS + 1)
+    )
+
+
+_TYPING = (Context.PROMPT,)
+COMMANDS = (
+    Command("LNDN", ("n", "down"), "next line", moving.next_line),
+    Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
+    Command("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
+    Command("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
+    Command("LNBEG", ("home",), "start of the line", moving.line_start),
+    Command("LNEND", ("end",), "end of the line", moving.line_end),
+    Command("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
+    Command("PRPGRPH", ("A", "ctrl-up"), "previous paragraph", structure.previous_paragraph),
+    Command("NXPAGE", ("f", "pagedown"), "next page", structure.next_page),
+    Command("PRPAGE", ("F", "pageup"), "previous page", structure.previous_page),
+    Command("NXHEADING", ("e",), "next heading", made(structure.go_to, HEADING)),
+    Command("PRHEADING", ("E",), "previous heading", made(structure.go_to, HEADING, backward=True)),
+    *_levels(backward=False),
+    *_levels(backward=True),
+    Command("NXLIST", ("l",), "next list", made(structure.go_to, LIST)),
+    Command("PRLIST", ("L",), "previous list", made(structure.go_to, LIST, backward=True)),
+    Command("NXTABLE", ("r",), "next table", made(structure.go_to, TABLE)),
+    Command("PRTABLE", ("R",), "previous table", made(structure.go_to, TABLE, backward=True)),
+    Command("NXLINK", ("k",), "next link or note", made(structure.go_to_link)),
+    Command("PRLINK", ("K",), "previous link or note", made(structure.go_to_link, backward=True)),
+    Command("FOLLOW", ("\n",), "follow the link or note under the finger", structure.follow),
+    Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
+    Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
+    Command("GOTOLINE", ("g",), "go to a page, or to percent of the text", structure.ask_place),
+    Command("BACK", ("b",), "back to the place before the last jump", moving.back),
+    Command("NXSEARCH", ("/", "f3"), "search forward for a text", searching.search_forward),
+    Command("PRSEARCH", ("\\", "f4"), "search backward for a text", searching.search_backward),
+    Command("SEARCH_AGAIN", (".",), "search again in the same direction", searching.search_again),
+    Command("ACCENTS", ("'",), "let accents matter in a search, or not", searching.fold_accents),
+    Command("CANCEL", ("escape",), "give the search up", searching.cancel),
+    Command("SETMARK", ("m",), "set a bookmark with a name", marking.ask_mark),
+    Command("QUICKMARK", ("M",), "set a bookmark with a number", marking.quick_mark),
+    Command("GOTOMARK", ("o",), "go to a bookmark", marking.ask_way),
+    Command("SAY_MARKS", ("B",), "say the bookmarks", marking.say_marks),
+    Command("DELMARK", ("delete", "X"), "delete a bookmark", marking.ask_deletion),
+    Command("INFO", ("i",), "say line, page, percent, heading, words left", asking.say_place),
+    Command("DESC_CURR_CHAR", ("u",), "say what is under the finger", asking.say_character),
+    Command("SPEAK_CURR_WORD", ("w",), "say the word under the finger", asking.say_word),
+    Command("SPELL_CURR_WORD", ("W",), "spell the word under the finger", asking.spell_word),
+    Command("SAY_LINE", ("V", "f5"), "say the line again", asking.say_line),
+    Command("SAY_HEADERS", ("H",), "say the headers of the table", asking.say_headers),
+    Command("CONTRACTED", ("x",), "contracted braille, or uncontracted", choosing.contracted),
+    Command("LANGUAGE", ("y",), "translate by the table of a language", choosing.ask_language),
+    Command("SKPBLNKWINS", ("z",), "pass over blank lines, or read them", choosing.skip_blank),
+    Command("AUTOSCROLL", ("v", "f6"), "lines come by time, or no longer", choosing.scroll),
+    Command("AUTOSCROLL_FASTER", ("+", "f8"), "lines come sooner", choosing.faster),
+    Command("AUTOSCROLL_SLOWER", ("-", "f7"), "lines come later", choosing.slower),
+    Command("PAUSE", (" ",), "rest the array at once, or go on", control.pause),
+    Command("TEXTURE_UP", ("t",), "more texture", made(turning.turn, "texture", 1)),
+    Command("TEXTURE_DOWN", ("T",), "less texture", made(turning.turn, "texture", -1)),
+    Command("CONTRAST_UP", ("c",), "more contrast", made(turning.turn, "contrast", 1)),
+    Command("CONTRAST_DOWN", ("C",), "less contrast", made(turning.turn, "contrast", -1)),
+    Command("DOT_WIDTH_UP", ("d",), "wider dots", made(turning.turn, "dot_width_mm", 1)),
+    Command("DOT_WIDTH_DOWN", ("D",), "narrower dots", made(turning.turn, "dot_width_mm", -1)),
+    Command(
+        "DOT_SPACING_UP", ("s",), "dots farther apart", made(turning.turn, "dot_spacing_mm", 1)
+    ),
+    Command(
+        "DOT_SPACING_DOWN", ("S",), "dots closer together", made(turning.turn, "dot_spacing_mm", -1)
+    ),
+    Command("CELL_GAP_UP", ("j",), "cells farther apart", made(turning.turn, "cell_gap_mm", 1)),
+    Command(
+        "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
+    ),
+    Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
+    Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
+    Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
+    Command("HELP", ("h", "f1"), "say the keys", say_keys),
+    Command(
+        "LEARN",
+        ("?", "f2"),
+        "learn the keys: each says what it does, and does nothing",
+        control.learn,
+        (Context.READING, Context.LEARNING),
+    ),
+    Command(
+        "QUIT",
+        ("q",),
+        "stop reading",
+        control.stop,
+        (Context.READING, Context.PLACING, Context.LEARNING),
+    ),
+    Command("ENTER", ("\n",), "take the text that was typed", control.enter, _TYPING),
+    Command("ERASE", ("\x7f", "\b"), "take the last character back", control.erase, _TYPING),
+    Command("GIVE_UP", ("escape",), "forget what was typed", control.give_up, _TYPING),
+    Command(
+        "ZERO",
+        (ANY,),
+        "the carriage is at the left stop, when that is asked for",
+        control.set_zero,
+        (Context.PLACING,),
+    ),
+)
+BOUND = bound_by(Bindings())

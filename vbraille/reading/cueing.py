@@ -1,0 +1,80 @@
+"""The process that gives cues: the names of cues on standard input, sounds or bells out of it.
+
+It is told whether by "sound" or by "bell". Where there is no audio output, or none any more, it
+rings the bell.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from vbraille.reading.cues import Cue, CueKind
+from vbraille.sounds import Bell, Tones
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_BELL_S: Final = 0.2  # from one bell to the next, so that two are heard as two
+_PIPE_BYTES: Final = 1 << 16  # all that a pipe holds
+
+
+@dataclass(frozen=True, slots=True)
+class CueTone:
+    """One tone of a cue's melody: its frequency in Hz, and how long it lasts in ms."""
+
+    frequency_hz: float
+    duration_ms: float
+
+
+# Each is another melody, and another number of bells: who does not hear pitch hears the rhythm.
+MELODIES: Final = {
+    Cue.LINE_END: (CueTone(880, 50),),
+    Cue.PAGE_END: (CueTone(660, 60), CueTone(880, 60)),
+    Cue.LIMIT: (CueTone(220, 60), CueTone(220, 60), CueTone(220, 60)),
+    Cue.NOT_FOUND: (CueTone(440, 60), CueTone(370, 60), CueTone(311, 60), CueTone(262, 120)),
+}
+
+
+def give(orders: int, kind: CueKind, open_tones: Callable[[], Tones] = Tones) -> None:
+    """Give cues until the orders end.
+
+    Parameters
+    ----------
+    orders
+        Descriptor from which names of cues come, a line each.
+    kind
+        What cues are given by.
+    open_tones
+        Function that opens the audio output, or raises OSError.
+    """
+    tones = None
+    if kind is CueKind.SOUND:
+        with suppress(OSError):
+            tones = open_tones()
+    bell, rings = Bell(), 0
+    while True:
+        if rings:
+            bell.ring()
+            rings -= 1
+            if not select.select([orders], [], [], _BELL_S)[0]:
+                continue
+        names = os.read(orders, _PIPE_BYTES).decode().split()
+        if not names:
+            return
+        cue = Cue[names[-1]]  # of several the newest is what is true
+        rings = len(MELODIES[cue])
+        if tones is not None:
+            try:
+                tones.play_melody(MELODIES[cue])
+                rings = 0
+            except OSError:  # the audio output is gone
+                tones = None
+
+
+if __name__ == "__main__":
+    give(sys.stdin.fileno(), CueKind(sys.argv[1]))

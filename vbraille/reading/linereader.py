@@ -1,0 +1,285 @@
+"""Lines under the hand, one after the other, as the hand goes along them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.reading.beside import Beside
+from vbraille.reading.cues import Cue
+from vbraille.reading.echo import Echo
+from vbraille.reading.ranged import LineRange
+from vbraille.reading.underhand import UnderHand
+from vbraille.reading.whereabouts import (
+    LINES_PER_PAGE,
+    first_character,
+    line_name,
+    place_sentence,
+)
+from vbraille.reading.window import Window
+from vbraille.translate.source import BlockKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.engine.engine import Engine
+    from vbraille.layout.pages import Layout, Line
+    from vbraille.render import BrailleStyle, Model
+    from vbraille.simulation.steering import Steering
+
+_NS_PER_S = 1_000_000_000
+
+
+class LineReader:
+    """Somebody who reads one line after the other.
+
+    Parameters
+    ----------
+    layout
+        Lines of the book.
+    engine
+        Engine that drives the device.
+    model
+        Display, and style in which lines are shown on it.
+    first, last
+        Numbers of the first and last line to read, from 1; None for the end.
+    advance
+        Whether the next line comes when the hand returns; otherwise a key brings it.
+    stay
+        Whether to wait for keys at the end of the text, instead of being done.
+    echo
+        How much is said of each line.
+    steering
+        Steering that tells a simulated hand what to read; None if a person reads.
+    say
+        Function that is called with each thing to be said.
+    beside
+        What works beside the reader: keys of somebody's own, search, bookmarks, signals.
+
+    Attributes
+    ----------
+    range : LineRange
+        Lines that are read.
+    under : UnderHand
+        What is under the hand.
+    skip_blank : bool
+        Whether lines without a dot are passed over.
+    lines : int
+        Number of lines read so far: those that were under the hand.
+    done : bool
+        Whether there is no more to read, or reading was stopped.
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        engine: Engine,
+        *,
+        model: Model,
+        say: Callable[[str], None],
+        first: int = 1,
+        last: int | None = None,
+        advance: bool = True,
+        stay: bool = False,
+        echo: Echo = Echo.NONE,
+        steering: Steering | None = None,
+        beside: Beside | None = None,
+    ) -> None:
+        beside = Beside() if beside is None else beside
+        self.range = LineRange(layout, first, last)
+        self.engine = engine
+        self.say = say
+        self.echo = echo
+        self.bound, self.cue, self.scroll = beside.bound, beside.cue, beside.scroll
+        key = self.key("LNDN", "n") if stay else ""
+        self.under = UnderHand(engine, model, steering, say, by_hand=advance, key=key)
+        self.skip_blank = False
+        self.lines = 0
+        self.done = False
+        self._advance = advance
+        self._stay = stay
+        self._finished = False  # whether the end was said, until a key brings another line
+        self._prefetched = False
+        self._scrolled = 0  # how many times something was shown when scrolling began last
+        self._echoed = False  # whether the line was said when it was put under the hand last
+
+    @property
+    def layout(self) -> Layout:
+        """Lines of the book."""
+        return self.range.layout
+
+    @property
+    def style(self) -> BrailleStyle:
+        """How lines are shown."""
+        return self.under.style
+
+    @property
+    def window(self) -> Window | None:
+        """Part of a line that is under the hand; None before the first."""
+        return self.under.window
+
+    @property
+    def line(self) -> Line | None:
+        """Line under the hand; None before the first."""
+        return None if self.window is None else self.window.line
+
+    @property
+    def line_number(self) -> int:
+        """Number of the line under the hand; 0 before the first."""
+        return 0 if self.window is None else self.window.line.number
+
+    @property
+    def cell(self) -> int | None:
+        """Number of the line's cell under the middle of the array; None if there is none."""
+        x_mm = self.engine.x_mm
+        if self.window is None or x_mm is None:
+            return None
+        return self.window.cell_at(x_mm, self.style.geometry)
+
+    @property
+    def character(self) -> int:
+        """Place of the source under the finger; where the line begins if there is none."""
+        return self.character_of(self.cell)
+
+    def character_of(self, cell: int | None) -> int:
+        """Place of the source that a cell of the line stands for; where the line begins if none."""
+        window = self.window
+        if window is None:
+            return 0
+        for known in (cell, max(window.offset, 0)):
+            source = None if known is None else window.line.source(known)
+            if source is not None:
+                return source[0]
+        return first_character(window.line)
+
+    def start(self) -> None:
+        """Put the first line under the hand."""
+        line = self.range.line(self.range.first)
+        if line is None:
+            self.done = True
+        else:
+            self.put(Window(line, self.under.width))
+
+    def step(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was in ticks, which are all since the last call."""
+        if not ticks.size:
+            return
+        felt = self.under.felt(ticks)
+        if felt.size:
+            self._follow(felt)
+        self.attend(float(ticks["time_ns"][-1]) / _NS_PER_S, resting=not felt.size)
+
+    def _follow(self, ticks: NDArray[np.void]) -> None:
+        """Look where the hand was while it felt the line."""
+        was_reached = self.under.reached
+        home = self.under.follow(ticks)
+        if self.under.reached and not was_reached:
+            self.cue(self._end_cue())
+        by_hand = self._advance and not (self.scroll is not None and self.scroll.on)
+        if home and by_hand and not self._finished:
+            self.go_on()
+            return
+        if self.under.reached and not self._prefetched:
+            # On the way back to the start there is time for this.
+            self._prefetched = True
+            self.layout.line(self.line_number + 1)
+        self.under.watch(ticks, finished=self._finished)
+
+    def attend(self, now_s: float, *, resting: bool) -> None:
+        """Do what is done by time: scroll, where the reader asked for that."""
+        scroll, window = self.scroll, self.window
+        if scroll is not None and self._scrolled != self.under.shown:
+            self._scrolled = self.under.shown
+            scroll.begin(now_s)
+        if scroll is None or not scroll.on or resting or self._finished or window is None:
+            return
+        if scroll.due(len(window), now_s):
+            self.go_on()
+
+    def _end_cue(self) -> Cue:
+        """Signal for the end of the line: whether it is also that of a page."""
+        following = self.layout.line(self.line_number + 1)
+        if following is None or (self.window is not None and self.window.right is not None):
+            return Cue.LINE_END
+        if following.block.kind is BlockKind.PAGE:
+            return Cue.PAGE_END
+        number = 0 if self.line is None else self.layout.number_of(self.line)
+        return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
+
+    def go_on(self) -> None:
+        """Put what follows under the hand; if there is nothing, reading is finished."""
+        if self.window is not None and not self.pan(1) and not self.go_by(1):
+            self.finish()
+
+    def pan(self, step: int) -> bool:
+        """Put the next part of the line under the hand, or the one before; False without one."""
+        here = self.window
+        window = None if here is None else here.right if step > 0 else here.left
+        if window is not None:
+            self.put(window)
+        return window is not None
+
+    def go_by(self, step: int, *, at_end: bool = False) -> bool:
+        """Put the next line under the hand, or the one before; False if that is not to be read.
+
+        Parameters
+        ----------
+        step
+            1 for the next line, -1 for the one before; lines without dots may be passed over.
+        at_end
+            Whether to show the last part of the line.
+        """
+        line = self.range.following(self.line_number, step, skip_blank=self.skip_blank)
+        if line is None:
+            return False
+        window = Window(line, self.under.width)
+        self.put(window.last if at_end else window)
+        return True
+
+    def go(self, number: int) -> bool:
+        """Put the line of a number under the hand; False if it is none of those to read."""
+        line = self.range.line(number)
+        if line is None:
+            return False
+        self.put(Window(line, self.under.width))
+        return True
+
+    def announce(self) -> None:
+        """Say which line is under the hand, unless its echo has just done so."""
+        if not self._echoed and self.line is not None:
+            self.say(place_sentence(self.layout, self.line))
+
+    def key(self, name: str, usual: str) -> str:
+        """Key that calls a command, for a sentence."""
+        keys = () if self.bound is None else self.bound.keys_of(name)
+        return keys[0] if keys else usual
+
+    def quit(self) -> None:
+        """Stop reading."""
+        self.done = True
+
+    def finish(self) -> None:
+        """Come to the end of the text."""
+        self.cue(Cue.LIMIT)
+        if self.scroll is not None:
+            self.scroll.on = False
+        if self._stay:
+            self._finished = True
+            self.say(
+                f"end of text; {self.key('LNUP', 'p')} goes back, {self.key('QUIT', 'q')} stops"
+            )
+        else:
+            self.done = True
+
+    def put(self, window: Window) -> None:
+        """Put a part of a line under the hand."""
+        another = self.line is None or self.line.number != window.line.number
+        self.under.put(window, line_name(self.layout, window.line))
+        self.lines += another
+        self._finished = self._prefetched = False
+        self._echoed = another and self.echo is not Echo.NONE
+        if another:
+            for sentence in self.echo.sentences(window.line, self.layout):
+                self.say(sentence)

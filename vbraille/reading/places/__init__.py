@@ -1,0 +1,18 @@
+"""Places in books, kept from one reading to the next."""
+
+from vbraille.reading.places.book import KeptBook
+from vbraille.reading.places.resuming import ResumedBook, last_book, resume
+from vbraille.reading.places.shelf import KeptPlaces
+from vbraille.reading.places.values import Bookmark, BookOptions, KeptPlace, ListedBook
+
+__all__ = [
+    "BookOptions",
+    "Bookmark",
+    "KeptBook",
+    "KeptPlace",
+    "KeptPlaces",
+    "ListedBook",
+    "ResumedBook",
+    "last_book",
+    "resume",
+]

@@ -1,0 +1,132 @@
+"""Text as it is compared in a search: without case, with single blanks, perhaps without accents."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.translate.text import to_codes, to_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+# Accents that stand for themselves after a letter, in all scripts whose readers may leave them out.
+_ACCENTS = (
+    "\u0300-\u036f\u0591-\u05bd\u05bf\u05c1\u05c2\u05c4\u05c5\u05c7\u064b-\u0655\u0670"
+    "\u1ab0-\u1aff\u1dc0-\u1dff\u20d0-\u20ff\u3099\u309a"
+)
+# Accents that readers of plain text join to their letter; see `vbraille.translate.documents`.
+COMBINING = "\u0300-\u036f\u0653-\u0655\u3099\u309a"
+_ACCENT = re.compile(f"[{_ACCENTS}]+")
+_COMBINED = re.compile(f"[{COMBINING}]")
+_BLANKS = re.compile(r"\s+")
+_TABLED = 0x3100  # all letters with accents, and none of the many signs of East Asia
+_NOTHING, _SEVERAL = 0xFFFF_FFFF, 0xFFFF_FFFE
+_NOT_READ = re.compile("[\u00ad\ufeff]+")
+
+
+def fold(text: str, *, accents: bool) -> str:
+    """Text without what makes no difference in a search; a longer text's is never shorter.
+
+    Parameters
+    ----------
+    text
+        Text as it is read.
+    accents
+        Whether accents make no difference, either.
+    """
+    text = fold_letters(text, accents=accents)
+    return _BLANKS.sub(" ", text)
+
+
+def fold_letters(text: str, *, accents: bool) -> str:
+    """Text without differences of case and perhaps of accents; its blanks are as they were."""
+    if text.isascii():
+        return text.lower()
+    if _COMBINED.search(text):
+        text = unicodedata.normalize("NFC", text)
+    return _without_accents(text) if accents else text.casefold()
+
+
+def _without_accents(text: str) -> str:
+    """Text with small letters without accents, by a table as long as each remains one letter."""
+    codes = to_codes(text)
+    if int(codes.max()) < _TABLED:
+        letters = _letters()[codes]
+        if not (letters == _SEVERAL).any():
+            return to_text(letters[letters != _NOTHING])
+    return _ACCENT.sub("", unicodedata.normalize("NFD", text.casefold()))
+
+
+@cache
+def _letters() -> NDArray[np.uint32]:
+    """For each code point that has a place in the table: what remains of it."""
+    table = np.empty(_TABLED, np.uint32)
+    for code in range(_TABLED):
+        left = _ACCENT.sub("", unicodedata.normalize("NFD", chr(code).casefold()))
+        table[code] = _NOTHING if not left else _SEVERAL if len(left) > 1 else ord(left)
+    return table
+
+
+def needle_of(text: str, *, accents: bool) -> str:
+    """What is looked for, folded; empty if nothing is left of it."""
+    return fold(_NOT_READ.sub("", text).strip(), accents=accents).strip()
+
+
+def unfolded(text: str, at: int, *, accents: bool) -> int:
+    """Index of the character of a text of which `fold` made the one at an index."""
+    low, high = 0, len(text) - 1
+    while low < high:
+        middle = (low + high) // 2
+        if len(fold(text[: middle + 1], accents=accents)) > at:
+            high = middle
+        else:
+            low = middle + 1
+    return low
+
+
+def cases(letter: str) -> str:
+    """All characters that are the same as a folded one, case aside."""
+    return _cases().get(letter, letter)
+
+
+def unlike_ascii(needle: str) -> Iterable[str]:
+    """Characters beyond ASCII that may stand for ASCII or several characters of what is sought."""
+    for character, folded in _expanding():
+        ends = range(1, len(folded))
+        if (
+            folded in needle
+            or needle in folded
+            or any(needle.startswith(folded[n:]) or needle.endswith(folded[:n]) for n in ends)
+        ):
+            yield character
+
+
+_FOLDED: dict[str, str] = {}
+_EXPANDING: list[tuple[str, str]] = []
+
+
+def _cases() -> dict[str, str]:
+    """For each character beyond ASCII that others fold to: it and those; made when first asked."""
+    if not _FOLDED:
+        for code in (*range(0x80, 0xD800), *range(0xF900, 0x1_0000), *range(0x1_0400, 0x1_F000)):
+            character = chr(code)
+            folded = character.casefold()
+            if folded == character:
+                continue
+            if len(folded) > 1 or folded.isascii():
+                _EXPANDING.append((character, folded))
+            else:
+                _FOLDED[folded] = _FOLDED.get(folded, folded) + character
+    return _FOLDED
+
+
+def _expanding() -> list[tuple[str, str]]:
+    _cases()
+    return _EXPANDING

@@ -1,0 +1,119 @@
+"""Where in a book somebody is: line, page, share, heading, and what is left."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.reading.nearby import Reach, within, words_in
+from vbraille.translate.source import BlockKind
+from vbraille.translate.text import to_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vbraille.layout.pages import Layout, Line
+    from vbraille.translate.source import Block, Source
+
+LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
+_SEARCH_S = 0.005
+_LEAST_SHARE = 1e-4  # of a book, from which the rest is estimated
+
+
+def is_counted(layout: Layout) -> bool:
+    """Whether line numbers are counted from the beginning of the book."""
+    return layout.counted
+
+
+def first_character(line: Line) -> int:
+    """Place of the source at which a line begins."""
+    if len(line.cells):
+        return int(line.cells.starts[0])
+    places = line.block.text.places
+    return int(places[line.first]) if line.first < places.size else max(line.cells.end - 1, 0)
+
+
+def block_of(source: Source, line: Line) -> int:
+    """Number of the block that a line is of; 0 if the source does not find it."""
+    return source.block_at(first_character(line)) or 0
+
+
+def before(source: Source, line: Line, kind: BlockKind) -> Block | None:
+    """Nearest block of a kind at a line or before it; None if there is none near."""
+    reach = Reach(seconds=_SEARCH_S)
+    for _, block in within(source, block_of(source, line), backward=True, reach=reach):
+        if block.kind is kind and not block.continues:
+            return block
+    return None
+
+
+def has_pages(source: Source, line: Line) -> bool:
+    """Whether the book has pages of print around a line."""
+    if before(source, line, BlockKind.PAGE) is not None:
+        return True
+    reach = Reach(seconds=_SEARCH_S)
+    blocks = within(source, block_of(source, line), reach=reach)
+    return any(block.kind is BlockKind.PAGE for _, block in blocks)
+
+
+def page_label(source: Source, line: Line) -> str:
+    """Number of the page of print that a line is on, as the book writes it; empty if none."""
+    page = before(source, line, BlockKind.PAGE)
+    return "" if page is None else str(page.text).strip()
+
+
+def percent(layout: Layout, line: Line) -> int:
+    """About how many hundredths of the book stand before a line."""
+    return int(100 * layout.progress(line))
+
+
+def line_name(layout: Layout, line: Line) -> str:
+    """What a line is called in a sentence; one whose number nobody knows is "the line"."""
+    return f"line {layout.number_of(line)}" if is_counted(layout) else "the line"
+
+
+def place_sentence(layout: Layout, line: Line) -> str:
+    """Where a line is: its number, or its share and page while the lines are not counted."""
+    if is_counted(layout):
+        return f"line: {layout.number_of(line)}"
+    label = page_label(layout.book.source, line)
+    return f"place: {percent(layout, line)} %" + (f", page {label}" if label else "")
+
+
+def whereabouts(layout: Layout, line: Line) -> Iterator[str]:
+    """Sentences on where a line is, one thing each."""
+    source = layout.book.source
+    counted = is_counted(layout)
+    if counted:
+        yield f"line: {layout.number_of(line)}"
+    label = page_label(source, line)
+    if label:
+        yield f"page: {label}"
+    elif counted and not has_pages(source, line):
+        yield f"page: {(layout.number_of(line) - 1) // LINES_PER_PAGE + 1} in braille"
+    yield f"percent: {percent(layout, line)}"
+    heading = before(source, line, BlockKind.HEADING)
+    if heading is not None:
+        yield f"heading: {str(heading.text).strip()}"
+    words, exact = words_left(source, line)
+    yield f"words left: {words}" if exact else f"words left: about {words}"
+
+
+def words_left(source: Source, line: Line) -> tuple[int, bool]:
+    """Number of words from a line to the end of the book, and whether they were counted.
+
+    Where the end is far, the number is that of the words near by, multiplied.
+    """
+    number = block_of(source, line)
+    words = 0
+    last = number
+    for last, block in within(source, number):  # noqa: B007 - how far it came
+        words += words_in(block)
+    here = source.block(number)
+    if here is not None:  # what stands in the block before the line
+        words -= len(to_text(here.text.codes[: here.text.index(first_character(line))]).split())
+    if source.block(last + 1) is None:
+        return max(words, 0), True
+    before_it, after_it = source.progress(number), source.progress(last + 1)
+    share = max(after_it - before_it, _LEAST_SHARE)
+    estimate = int(words / share * (1 - before_it))
+    return round(estimate, 2 - max(len(str(estimate)), 2)), False

@@ -1,0 +1,77 @@
+"""Settings as a value, and where their file is."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from vbraille.render import Model
+
+    Values = dict[str, float | int | str]
+
+FILE = "settings.toml"
+ENVIRONMENT = "VBRAILLE_SETTINGS"  # variable with the path of the file
+DEFAULT_PROFILE = "default"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a settings file has.
+
+    Parameters
+    ----------
+    path
+        Path of the file, which need not be there.
+    read
+        Values of the table ``[read]``: only those that the file has.
+    keys
+        Keys of commands, by the command's name.
+    buttons
+        Names of commands, by the button of the device.
+    profiles
+        Values of each profile for each display, by their names.
+    lines
+        Line of the file for each value, by the keys that lead to it.
+    """
+
+    path: Path
+    read: Mapping[str, Any] = field(default_factory=dict)
+    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    buttons: Mapping[str, str] = field(default_factory=dict)
+    profiles: Mapping[str, Mapping[str, Values]] = field(default_factory=dict)
+    lines: Mapping[tuple[str | int, ...], int] = field(default_factory=dict)
+
+    @property
+    def profile(self) -> str:
+        """Name of the profile in use unless an option names another."""
+        return self.read.get("profile", DEFAULT_PROFILE)
+
+    def where(self, *keys: str) -> str:
+        """File and line of a value, such as "settings.toml line 12"."""
+        line = self.lines.get(keys)
+        return self.path.name if line is None else f"{self.path.name} line {line}"
+
+    def tuning(self, profile: str, model: Model) -> Values:
+        """Values of a profile for a display; none if it has none."""
+        return dict(self.profiles.get(profile, {}).get(display_name(model), {}))
+
+
+def settings_path(given: str | None = None) -> Path:
+    """Path of the settings file: an option's, the environment's, or the platform's."""
+    chosen = given or os.environ.get(ENVIRONMENT)
+    if chosen:
+        return Path(chosen).expanduser()
+    from platformdirs import user_config_path  # takes 20 ms to load
+
+    return user_config_path("vbraille") / FILE
+
+
+def display_name(model: Model) -> str:
+    """Name of a display in a settings file: its model's, or its own in small letters."""
+    return model.name or re.sub(r"[^a-z0-9]+", "-", model.title.lower()).strip("-") or "display"

@@ -1,0 +1,89 @@
+"""The tables of a settings file: which keys each may have, and with which values."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from vbraille.errors import check_range
+from vbraille.render.braille.knobs import KNOBS
+from vbraille.toml.tomlfile import Table
+
+
+class ReadTable(Table, frozen=True):
+    """The table ``[read]``: options of ``vbraille read`` for whoever does not give them.
+
+    Parameters
+    ----------
+    profile
+        Name of the profile in use.
+    device, language, grade, table, encoding, undefined, keep_lines, advance, echo, verbose
+        Options of the same names.
+    speech
+        Whether what is said is spoken too.
+    cues
+        How signals are given.
+    """
+
+    profile: str | None = None
+    device: str | None = None
+    language: str | None = None
+    grade: int | None = None
+    table: str | None = None
+    encoding: str | None = None
+    undefined: Literal["mark", "name", "code", "drop"] | None = None
+    keep_lines: bool | None = None
+    advance: Literal["return", "key"] | None = None
+    echo: Literal["none", "text", "cells", "both"] | None = None
+    speech: bool | None = None
+    cues: Literal["sound", "bell", "none"] | None = None
+    verbose: bool | None = None
+
+    def __post_init__(self) -> None:
+        if self.profile is not None:
+            check_name(self.profile)
+        if self.table is not None and (self.language is not None or self.grade is not None):
+            raise ValueError("table has its language and grade; give either the table or those")
+
+
+class ProfileTable(Table, frozen=True):
+    """A table ``[profile.NAME.DISPLAY]``: how braille is shown to a reader on a display.
+
+    Parameters
+    ----------
+    texture, contrast, texture_cycles, dot_width_mm, dot_spacing_mm, cell_gap_mm, line_pitch_mm
+        Values of the knobs of the same names.
+    mapping
+        Name of the mapping, on a display that shows all rows of dots.
+    dot_row
+        Row of dots that is shown, 1 to 3, on a display that shows one.
+    """
+
+    texture: float | None = None
+    contrast: float | None = None
+    texture_cycles: int | None = None
+    dot_width_mm: float | None = None
+    dot_spacing_mm: float | None = None
+    cell_gap_mm: float | None = None
+    line_pitch_mm: float | None = None
+    mapping: str | None = None
+    dot_row: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, knob in KNOBS.items():
+            unit = f" {knob.unit}" if knob.unit else ""
+            check_range(knob.label, getattr(self, name), knob.low, knob.high, unit)
+        if self.texture_cycles is not None and self.texture_cycles % 2 == 0:
+            raise ValueError(f"texture cycles are {self.texture_cycles}; they must be odd")
+        check_range("dot row", self.dot_row, 1, 3)
+
+
+def check_name(name: str) -> None:
+    """Check that a profile can have a name.
+
+    Raises
+    ------
+    ValueError
+        If it is empty, or has anything but letters, digits, blanks, ``-``, ``_`` and ``.``.
+    """
+    if not name.strip() or not all(c.isalnum() or c in " -_." for c in name):
+        raise ValueError(f"profile is {name!r}; it must be a name of letters and digits")

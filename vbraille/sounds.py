@@ -1,0 +1,138 @@
+"""Sounds: tones through the machine's audio output, or the terminal's bell."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+_RATE_HZ = 48_000
+_RAMP_S = 0.005  # a tone swells and fades for so long, so that it does not click
+_LOUDNESS = 0.5
+_GAP_S = 0.02  # between the tones of a melody
+
+
+class Pitched(Protocol):
+    """Tone that can be played: a sine."""
+
+    @property
+    def frequency_hz(self) -> float:
+        """Frequency of the sine, in Hz."""
+        ...
+
+    @property
+    def duration_ms(self) -> float:
+        """How long the tone lasts, in ms."""
+        ...
+
+
+class Sound(Protocol):
+    """Device that plays a tone without waiting for its end."""
+
+    name: str
+
+    def play(self, tone: Pitched, /) -> None:
+        """Begin to play a tone."""
+        ...
+
+
+class Silence:
+    """Sound device that plays nothing, where nobody listens."""
+
+    name = "none"
+
+    def play(self, _tone: Pitched, /) -> None:
+        """Ignore a tone."""
+
+
+class Bell:
+    """Sound device that rings the terminal's bell; without a terminal nothing is heard."""
+
+    name = "bell"
+
+    def play(self, _tone: Pitched, /) -> None:
+        """Ring the bell once for any tone."""
+        self.ring()
+
+    def ring(self) -> None:
+        """Ring the bell."""
+        if sys.stderr.isatty():
+            os.write(sys.stderr.fileno(), b"\a")
+
+
+class Tones:
+    """Sound device that uses the machine's audio output, through PortAudio.
+
+    Raises
+    ------
+    OSError
+        If PortAudio or an audio output is missing.
+    """
+
+    name = "tones"
+
+    def __init__(self) -> None:
+        with _quiet():
+            import sounddevice
+
+            try:
+                sounddevice.check_output_settings(samplerate=_RATE_HZ, channels=1)
+            except (sounddevice.PortAudioError, ValueError) as error:
+                raise OSError(f"there is no audio output ({error})") from None
+        self._play = sounddevice.play
+        self._fault = sounddevice.PortAudioError
+
+    def play(self, tone: Pitched, /) -> None:
+        """Begin to play a tone."""
+        self._play(wave(tone), _RATE_HZ)
+
+    def play_melody(self, tones: Sequence[Pitched]) -> None:
+        """Begin to play tones one after the other, in place of what is being played.
+
+        Raises
+        ------
+        OSError
+            If the audio output is gone.
+        """
+        try:
+            with _quiet():
+                self._play(melody(tones), _RATE_HZ)
+        except self._fault as error:
+            raise OSError(f"there is no audio output any more ({error})") from None
+
+
+def wave(tone: Pitched) -> NDArray[np.float32]:
+    """Samples of a tone that swells and fades; float32[n], at 48 kHz."""
+    count = max(round(tone.duration_ms / 1000 * _RATE_HZ), 1)
+    t_s = np.arange(count) / _RATE_HZ
+    edges = np.minimum(t_s, t_s[-1] - t_s) / _RAMP_S
+    swell = np.sin(np.pi / 2 * np.minimum(edges, 1.0)) ** 2
+    return (_LOUDNESS * swell * np.sin(2 * np.pi * tone.frequency_hz * t_s)).astype(np.float32)
+
+
+def melody(tones: Sequence[Pitched]) -> NDArray[np.float32]:
+    """Samples of tones one after the other, with a short gap after each; float32[n], at 48 kHz."""
+    gap = np.zeros(round(_GAP_S * _RATE_HZ), np.float32)
+    return np.concatenate([part for tone in tones for part in (wave(tone), gap)])
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep stderr silent meanwhile, where ALSA reports every card that it does not find."""
+    kept = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)

@@ -1,0 +1,324 @@
+"""Reading of TOML into typed values, or into one sentence that says what is wrong and where."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+import msgspec
+from msgspec import inspect
+
+from vbraille.errors import InputError
+from vbraille.toml.tomllines import lines_of
+from vbraille.wording import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator
+
+    from vbraille.toml.tomllines import Path
+
+_Value = TypeVar("_Value")
+
+# TOML readers differ on larger numbers, and no number of a protocol is so large.
+_MOST_WHOLE = 2**63 - 1
+_LONGEST_QUOTE = 60
+# Names that msgspec has for types, and what a file must have where such a type is wanted.
+_WANTED = {
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "str": "a string, in quotation marks",
+    "array": "a list, in brackets",
+    "object": "a table",
+}
+_EXPECTED = re.compile(r"Expected `([^`]*)`(?: of .*length (\d+))?, got")
+_STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
+_ABOUT = re.compile(r"(?:\[{1,2}(\w+)\]{1,2} )?(?:number (\d+) )?(.*)", re.DOTALL)
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A table of a TOML file, whose fields are the keys that the table may have.
+
+    A table checks its values in ``__post_init__``. If its `ValueError` is about one key, the
+    message begins with the words of that key, so that the line of the file can be found.
+    """
+
+
+class TomlFile:
+    """The text of a TOML file, together with the file's name.
+
+    Parameters
+    ----------
+    text
+        Text of the file.
+    where
+        Name of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If the text is not TOML, or has a string of several lines or a number that is far too
+        large.
+    """
+
+    def __init__(self, text: str, where: str) -> None:
+        self._text, self._where = text, where
+        try:
+            self._tree = tomllib.loads(text)
+        except RecursionError:
+            raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
+        except ValueError as error:
+            raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+        for path, value in _leaves(self._tree):
+            if isinstance(value, str) and not value.isprintable():
+                self._refuse(path, "one line without control characters")
+            if isinstance(value, int) and abs(value) > _MOST_WHOLE:
+                self._refuse(path, "a smaller number")
+
+    def read(
+        self,
+        kind: type[_Value],
+        dec_hook: Callable[[type, Any], Any] | None = None,
+        under: Path = (),
+    ) -> _Value:
+        """Convert the file, or a part of it, to a value of a type, which checks itself.
+
+        Parameters
+        ----------
+        kind
+            Type of the value, such as a `Table`.
+        dec_hook
+            Function that makes values of types which msgspec does not know.
+        under
+            Keys that lead to the part, which is there; none for the whole file.
+
+        Raises
+        ------
+        InputError
+            If a key is missing or not known, or a value has the wrong type or is out of range.
+        """
+        try:
+            return msgspec.convert(self._at(under), kind, dec_hook=dec_hook)
+        except msgspec.ValidationError as error:
+            message, _, steps = str(error).rpartition(" - at `$")
+            if not message:  # msgspec names no place if it is the value as a whole
+                message, steps = steps, ""
+            found = tuple(int(item) if item else key for key, item in _STEP.findall(steps))
+            path = (*under, *found)
+            if isinstance(error.__cause__, ValueError):
+                colon = "" if isinstance(self._at(path), dict) else ": "
+                self._fail(path, f"{colon}{error.__cause__}")
+            self._explain(path, message, _types_at(kind, found))
+
+    def names(self, *path: str | int) -> tuple[str, ...]:
+        """Keys of a table of the file; none if it is not there.
+
+        Raises
+        ------
+        InputError
+            If there is something else than a table.
+        """
+        table = self._at(path)
+        if table is not None and not isinstance(table, dict):
+            self._refuse(path, "a table")
+        return tuple(table or ())
+
+    def is_table(self, *path: str | int) -> bool:
+        """Whether there is a table at a place of the file."""
+        return isinstance(self._at(path), dict)
+
+    def lines(self) -> dict[Path, int]:
+        """Lines of keys, tables and items, from 1, by the keys that lead to them."""
+        return lines_of(self._text)
+
+    def fail(self, path: Path, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in it.
+
+        Parameters
+        ----------
+        path
+            Keys that lead to the place.
+        problem
+            Rest of a sentence that begins with the name of the place.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        self._fail(path, problem)
+
+    @contextmanager
+    def checking(self) -> Iterator[None]:
+        """Add the file and the line to the message of a `ValueError` about the file as a whole.
+
+        The message must begin with the table that it is about, such as ``[design]`` or ``[[fields]]
+        number 2``, followed by the words of the key. For a key in no table it begins with those.
+
+        Raises
+        ------
+        InputError
+            If a `ValueError` was raised within.
+        """
+        try:
+            yield
+        except ValueError as error:
+            about = _ABOUT.fullmatch(str(error))
+            table, item, problem = about.groups() if about else (None, None, "")
+            path = (*([table] if table else []), *([int(item) - 1] if item else []))
+            raise InputError(f"{self._line(path, problem)}: {error}") from None
+
+    def _explain(self, path: Path, message: str, types: list[inspect.Type]) -> NoReturn:
+        """Raise a sentence that says in plain words what msgspec found."""
+        value = self._at(path)
+        expected = _EXPECTED.match(message)
+        if message.startswith("Object missing"):
+            self._fail(path, f"lacks {message.split('`')[1]}; add it")
+        if message.startswith("Object contains unknown") and isinstance(value, dict):
+            self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
+        if message.startswith("Invalid"):
+            names = [str(n) for t in types if isinstance(t, inspect.LiteralType) for n in t.values]
+            self._fail(path, f"is {quote(value)}{which(str(value), names)}")
+        if expected and expected[2]:
+            items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
+            self._fail(path, f"has {len(value)} items; give {expected[2]}: {', '.join(items)}")
+        if expected and any(map(_is_tables, types)):
+            self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
+        if expected:
+            wanted = [_WANTED.get(name) for name in expected[1].split(" | ")]
+            self._refuse(path, " or ".join(filter(None, wanted)))
+        self._fail(path, f"cannot be used: {message}")
+
+    def _fail_unknown(
+        self, path: Path, table: dict[str, Any], kinds: list[inspect.StructType]
+    ) -> NoReturn:
+        """Raise a sentence about a key that tables, or tables of this kind, cannot have."""
+        own = [kind for kind in kinds if not kind.tag_field or table[kind.tag_field] == kind.tag]
+        known = {name for kind in own for name in _keys(kind)}
+        key = next((key for key in table if key not in known), "")
+        others = [repr(kind.tag) for kind in kinds if key in _keys(kind)]
+        if others:
+            (kind,) = own
+            self._fail(
+                (*path, key),
+                f"is of {kind.tag_field} = {' or '.join(others)}; "
+                f"leave it out of {kind.tag_field} = {kind.tag!r}",
+            )
+        self._fail(path, f"has no key {quote(key)}{which(key, known)}", key)
+
+    def _refuse(self, path: Path, wanted: str) -> NoReturn:
+        self._fail(path, f"is {quote(self._at(path))}; it must be {wanted}")
+
+    def _fail(self, path: Path, problem: str, key: str = "") -> NoReturn:
+        """Raise a sentence that names the line, the table, the key and the problem."""
+        named = self._named(path)
+        if named and not problem.startswith(":"):
+            is_item = isinstance(path[-1], int) and not isinstance(self._at(path), dict)
+            named += ", " if is_item else " "
+        line = self._line((*path, key) if key else path, problem)
+        raise InputError(f"{line}: {named}{problem}")
+
+    def _named(self, path: Path) -> str:
+        """Table, as the file writes it, and key of a place in the file."""
+        depth = 0
+        while depth < len(path) and isinstance(self._at(path[: depth + 1]), dict):
+            depth += 1
+        if depth:
+            label, rest = f"[{'.'.join(map(str, path[:depth]))}]", path[depth:]
+        elif path and isinstance(self._at(path[:2]), dict):
+            label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
+        else:
+            label, rest = "", path
+        keys = "".join(f", number {s + 1}" if isinstance(s, int) else f" {s}" for s in rest)
+        return f"{label}{keys}".strip()
+
+    def _line(self, path: Path, problem: str) -> str:
+        """File and line of a place, or of the key in it whose words begin the problem."""
+        table = self._at(path)
+        if isinstance(table, dict):
+            path = (*path, *_steps_of(problem, table))
+        lines = lines_of(self._text)
+        while path and path not in lines:
+            path = path[:-1]
+        return f"{self._where} line {lines[path]}" if path else self._where
+
+    def _at(self, path: Path) -> Any:
+        """Value at a path in the file; None if there is none."""
+        value: Any = self._tree
+        try:
+            for step in path:
+                value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+        return value
+
+
+def quote(value: object) -> str:
+    """Text for a value of a file, short enough to stand in a sentence."""
+    try:
+        said = repr(value)
+    # Python refuses to write numbers of thousands of digits, and tables that nest very deep.
+    except (ValueError, RecursionError):
+        return "too large a number" if isinstance(value, int) else "too large a table"
+    return said if len(said) <= _LONGEST_QUOTE else f"{said[:_LONGEST_QUOTE]}…"
+
+
+def which(name: str, names: Collection[str]) -> str:
+    """End of a sentence about an unknown name: the nearest known name, and all known names."""
+    return f"; {nearest(name, names)}, and there is {', '.join(sorted(names))}"
+
+
+def _leaves(tree: object) -> Iterator[tuple[Path, object]]:
+    """All values of a file that contain no other values, with their paths, at any depth."""
+    left: list[tuple[Path, object]] = [((), tree)]
+    while left:
+        path, value = left.pop()
+        if isinstance(value, dict):
+            left += [((*path, key), inner) for key, inner in value.items()]
+        elif isinstance(value, list):
+            left += [((*path, item), inner) for item, inner in enumerate(value)]
+        else:
+            yield path, value
+
+
+def _types_at(kind: type, path: Path) -> list[inspect.Type]:
+    """Types that the value at a path may have."""
+    types = _each(inspect.type_info(kind))
+    for step in path:
+        found: list[inspect.Type] = []
+        for t in types:
+            if isinstance(t, inspect.StructType) and t.array_like:
+                found += _each(t.fields[int(step)].type)
+            elif isinstance(t, inspect.StructType):
+                found += [t2 for f in t.fields if f.encode_name == step for t2 in _each(f.type)]
+                found += [inspect.LiteralType((t.tag,))] if step == t.tag_field else []
+            elif isinstance(t, inspect.VarTupleType):
+                found += _each(t.item_type)
+        types = found
+    return types
+
+
+def _each(t: inspect.Type) -> list[inspect.Type]:
+    return list(t.types) if isinstance(t, inspect.UnionType) else [t]
+
+
+def _is_tables(t: inspect.Type) -> bool:
+    return isinstance(t, inspect.VarTupleType) and isinstance(t.item_type, inspect.StructType)
+
+
+def _keys(kind: inspect.StructType) -> list[str]:
+    tag = [kind.tag_field] if kind.tag_field else []
+    return [*(field.encode_name for field in kind.fields), *tag]
+
+
+def _steps_of(problem: str, table: dict[str, Any]) -> Path:
+    """Path to the key of a table, or item of it, whose words begin a problem; empty if none."""
+    said = problem.lstrip("'\"").replace("_", " ")
+    for key in sorted(table, key=len, reverse=True):
+        words = re.escape(key.removesuffix("_mm").replace("_", " "))
+        named = re.match(rf"{words}(?!\w)(?:, number (\d+))?", said)
+        if named:
+            return (key, int(named[1]) - 1) if named[1] else (key,)
+    return ()

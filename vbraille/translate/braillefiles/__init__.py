@@ -1,0 +1,1 @@
+"""Files that are in braille already: read as they are, and written."""

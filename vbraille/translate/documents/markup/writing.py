@@ -1,0 +1,387 @@
+"""Passages as they are written: what role the next text has, and what is still to be said of it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from vbraille.translate.documents.markup.flow import Flow
+from vbraille.translate.documents.markup.lists import BULLET
+from vbraille.translate.documents.markup.tables import BETWEEN, TableState
+from vbraille.translate.documents.parted import Passage
+from vbraille.translate.source import BlockKind, Mark, MarkKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.translate.documents.markup.lists import ListState
+
+BREAK = "* * *"  # a break in the text, which print shows by a line or by stars
+_LONGEST_LEAD = 40  # characters before an item: its number, and those of the items it begins
+_TAB = 8
+_BLANK = re.compile(r"[ \t\n\r\f]")
+
+
+@dataclass(frozen=True, slots=True)
+class Role:
+    """Role of the text that is being read.
+
+    Parameters
+    ----------
+    kind, level, group
+        As in `Passage`.
+    quotes, items
+        Number of quotations and of lists around the text.
+    is_note
+        Whether the text is in a note.
+    """
+
+    kind: BlockKind = BlockKind.PARAGRAPH
+    level: int = 0
+    group: int = 0
+    quotes: int = 0
+    items: int = 0
+    is_note: bool = False
+
+
+class Writing:
+    """What a reader of markup writes: passages, one after the other.
+
+    Parameters
+    ----------
+    anchors
+        Names by which the first passage is found.
+    language
+        Tag of the language of the whole source; empty if it does not say.
+    spell
+        What spells the text that is not the document's own, such as an item's number, as the
+        document is spelt.
+
+    Attributes
+    ----------
+    sections : int
+        Number of sections around the text, where the markup counts them.
+    flow : Flow
+        Text of the block that is being read.
+    place : Role
+        Role of that block.
+    language : str
+        Tag of the language of the block that is being read.
+    given : str
+        Tag of the language of the whole source, of which no block says that it is in it.
+    table : TableState or None
+        The table that is being read.
+    lists : list of ListState
+        The lists that are being read, the innermost last.
+    in_notes : bool
+        Whether a section of notes is being read.
+    in_caption : bool
+        Whether the caption of a figure is being read, which is not said if it says the same as
+        what stands for the picture.
+    keeps_lines : bool
+        Whether the white space is to be kept, as in `pre`.
+    starts_lines : bool
+        Whether that has begun with the next text, so that a line break there is none.
+    """
+
+    def __init__(
+        self,
+        anchors: tuple[str, ...] = (),
+        language: str = "",
+        spell: Callable[[str], str] = str,
+    ) -> None:
+        self.spell = spell
+        self.sections = 0
+        self.flow = Flow()
+        self.given = self.language = self.flow.language = language
+        self.place = Role()
+        self.table: TableState | None = None
+        self.lists: list[ListState] = []
+        self.in_notes = False
+        self.in_caption = False
+        self.keeps_lines = self.starts_lines = False
+        self.passages: list[Passage] = []
+        self._anchors = list(anchors)
+        self._groups = 0
+        self._lead = ""  # number of the item that begins with the next text
+        self._fresh = False  # whether that text is the item's first
+        self._form: BlockKind | None = None  # of the next block, if not that of its place
+        self._continues = False
+        self._pages: list[tuple[str, tuple[str, ...]]] = []
+        self._broken = False
+        self._any = False
+        self._pictures: tuple[str, ...] = ()  # texts of the pictures in the figure, and its caption
+
+    def same(self, tag: str) -> str:
+        """Give a language's tag, or the source's if the one only says more than the other."""
+        one, other = tag.lower(), self.given.lower()
+        related = one == other or one.startswith(f"{other}-") or other.startswith(f"{one}-")
+        return self.given if related or one in ("", "und", "zxx") else tag
+
+    def group(self) -> int:
+        """Give the number of a new list or table."""
+        self._groups += 1
+        return self._groups
+
+    def anchor(self, name: str) -> None:
+        """Have the block that is being read, or the next, be found by a name."""
+        self._anchors.append(name)
+
+    def begin_block(self) -> None:
+        """End the block that is being read; the next text begins another one."""
+        if self.table is not None and self.table.in_row:
+            self.flow.blank()
+            return
+        if self.flow.length or self._pages:
+            self._end_block()
+        self._continues = False
+        self._form = None
+
+    def line_break(self) -> None:
+        """Begin a line of the block, or another block if the line is empty."""
+        if self.place.kind in (BlockKind.HEADING, BlockKind.ROW) or self._in_row:
+            self.flow.blank()
+        elif self.keeps_lines:
+            self.write("\n")
+        elif self.flow.length:
+            self._end_block()
+            if self.place.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM):
+                self._form = BlockKind.LINE
+        else:
+            self._form = None
+
+    def write(self, text: str) -> None:
+        """Add text of the source."""
+        if self.keeps_lines and not self._in_row:
+            self._write_lines(text)
+            return
+        if self._pages and (blank := _BLANK.search(text)):
+            self.flow.add(text[: blank.start()])
+            self._turn()
+            text = text[blank.start() :]
+        self.flow.add(text)
+        if self.flow.is_full:
+            self._relieve()
+
+    def unshown(self, text: str, what: str) -> None:
+        """Remark that something cannot be shown."""
+        self.flow.blank()
+        self.flow.say(self.spell(f"[{text}]"), MarkKind.UNSHOWN, what)
+        self.flow.blank()
+
+    def page(self, number: str, anchors: tuple[str, ...]) -> None:
+        """Begin a page of the printed book, at the next blank if there is text before."""
+        self._pages.append((number, anchors))
+        if not self.flow.length:
+            self._emit_pages()
+        elif self.flow.ends_blank:
+            self._turn()
+
+    def divide(self) -> None:
+        """Mark a break in the text, if there is text before and after it."""
+        self.begin_block()
+        self._broken = self._any and not self.in_notes
+
+    def begin_item(self, marker: str) -> None:
+        """Begin an item of a list with its number or bullet."""
+        # An item that begins with a list shows both numbers, but not two bullets.
+        marker = self.spell(marker)
+        numbered = self._lead if self._fresh and self._lead != self.spell(BULLET) else ""
+        self._lead = numbered + marker if len(numbered) < _LONGEST_LEAD else marker
+        self._fresh = True
+
+    def end_item(self) -> None:
+        """End an item; the number of one without text is not shown."""
+        self._fresh, self._lead = False, ""
+
+    def enter(self, place: Role) -> Callable[[], None]:
+        """Have the next text be in another role; what is returned leaves that again."""
+        before = self.place
+        self.place = place
+
+        def leave() -> None:
+            self.place = before
+
+        return leave
+
+    def begin_table(self) -> Callable[[], None]:
+        """Begin a table; what is returned ends it."""
+        if self.table is not None and self.table.in_row:
+            self.lay_out_table()
+        if self._fresh and self._lead:
+            alone = self._formed(Passage(""), self.language)
+            self._emit(replace(alone, text=alone.text.rstrip(" ")))
+        before, self.table = self.table, TableState(self.group())
+
+        def end() -> None:
+            self.end_row()
+            self.table = before
+
+        return end
+
+    def begin_row(self) -> None:
+        """Begin a row of the table, which ends the row before."""
+        self.end_row()
+        if self.table is not None and not self.table.lays_out:
+            self.begin_block()
+            self.table.begin_row()
+
+    def begin_cell(self, *, columns: int, rows: int, is_header: bool) -> None:
+        """Begin a cell of the row, which ends the cell before."""
+        table = self.table
+        if table is None or table.lays_out:
+            self.begin_block()
+            return
+        if not table.in_row:
+            self.begin_row()
+        table.begin_cell(self.flow.length, columns=columns, rows=rows, is_header=is_header)
+        self.flow.gap(BETWEEN)
+
+    def end_cell(self) -> None:
+        """End the cell that was begun last."""
+        if self._in_row and self.table is not None:
+            self.table.end_cell(self.flow.length)
+            self.flow.gap(BETWEEN)
+        else:
+            self.begin_block()
+
+    def end_row(self) -> None:
+        """End the row of the table, if one has begun."""
+        table = self.table
+        if table is None or not table.in_row:
+            return
+        table.end_cell(self.flow.length)
+        folded = self.flow.take(self.language)
+        headers = table.end_row(folded.text)
+        if folded.text:
+            row = Passage(folded.text, BlockKind.ROW, 0, folded.marks, folded.language)
+            self._emit(replace(row, group=table.group, headers=headers))
+        self._emit_pages()
+
+    def lay_out_table(self) -> None:
+        """Take the table for one that lays out a page: what is in its cells are blocks."""
+        if self._in_row and self.table is not None:
+            self.end_row()
+            self.table.lays_out = True
+
+    def begin_figure(self) -> Callable[[], None]:
+        """Begin a figure, within which nothing is said twice; what is returned ends it."""
+        before, self._pictures = self._pictures, ("",)
+
+        def end() -> None:
+            self._pictures = before
+
+        return end
+
+    def picture(self, text: str) -> None:
+        """Add the text that stands for a picture, unless the figure has said it."""
+        if text and text in self._pictures:
+            return
+        self.flow.say(self.spell(text), MarkKind.IMAGE)
+        if self._pictures:
+            self._pictures = (*self._pictures[-7:], text)
+
+    def close(self) -> None:
+        """End the document."""
+        self.end_row()
+        self.begin_block()
+        self._emit_pages()
+        if self._anchors and self.passages:  # they lead to the end then
+            last = self.passages[-1]
+            self.passages[-1] = replace(last, anchors=(*last.anchors, *self._anchors))
+            self._anchors = []
+
+    @property
+    def _in_row(self) -> bool:
+        return self.table is not None and self.table.in_row
+
+    def _end_block(self) -> None:
+        """Write the block that was read, and then the pages that begin within its last word."""
+        if self.flow.length:
+            folded = self.flow.take(self.language)
+            if not self.in_caption or folded.text not in self._pictures:
+                self._emit(self._formed(Passage(folded.text, marks=folded.marks), folded.language))
+            if self.in_caption:
+                self._pictures = (*self._pictures[-7:], folded.text)
+        self._continues = False
+        self._emit_pages()
+
+    def _turn(self) -> None:
+        """Go on with the block on another page of the printed book."""
+        if self.place.kind is BlockKind.HEADING or self._in_row:
+            return
+        self._end_block()
+        if self.place.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM):
+            self._form = BlockKind.LINE
+
+    def _relieve(self) -> None:
+        """Write a part of a very long block."""
+        if self._in_row:
+            self.lay_out_table()
+            return
+        folded = self.flow.take_part(self.language)
+        if folded is not None:
+            part = self._formed(Passage(folded.text, marks=folded.marks), folded.language)
+            self._emit(replace(part, continues=self._continues))
+            self._continues = True
+
+    def _formed(self, passage: Passage, language: str) -> Passage:
+        """Give a passage the role of its place, and an item its number."""
+        place = self.place
+        kind, level = self._form or place.kind, place.level
+        if self._form is not None:
+            level = 0
+        elif kind is BlockKind.ITEM and not self._fresh and not self._continues:
+            kind, level = BlockKind.PARAGRAPH, 0
+        text, marks = passage.text, passage.marks
+        if self._fresh:
+            text, marks = self._lead + text, _moved(marks, len(self._lead))
+            self._fresh, self._lead = False, ""
+        continues = self._continues
+        return Passage(text, kind, level, marks, language, (), place.group, continues=continues)
+
+    def _write_lines(self, text: str) -> None:
+        """Add text whose lines are kept, each as a passage."""
+        if self.starts_lines:
+            self.starts_lines, text = False, re.sub(r"^\r?\n", "", text)
+        lines = re.split(r"\r\n|\r|\n|\u2028", text.expandtabs(_TAB))
+        for number, line in enumerate(lines):
+            if number:
+                self._end_line()
+            if line:
+                self.flow.write(line)
+            if self.flow.is_full:
+                self._relieve()
+
+    def _end_line(self) -> None:
+        if self.flow.length:
+            self._end_block()
+        elif self.passages and self.passages[-1].text and self._any:
+            self._emit(Passage("", BlockKind.LINE, group=self.place.group))
+            self._emit_pages()
+
+    def _emit_pages(self) -> None:
+        pages, self._pages = self._pages, []
+        for number, anchors in pages:
+            self.passages.append(Passage(self.spell(number), BlockKind.PAGE, anchors=anchors))
+
+    def _emit(self, passage: Passage) -> None:
+        if self._broken and passage.text:
+            self._broken = False
+            if passage.kind not in (BlockKind.HEADING, BlockKind.NOTE):
+                self.passages.append(Passage(self.spell(BREAK)))
+        self._any = True
+        if passage.language and passage.language == self.given:
+            passage = replace(passage, language="")
+        if self._anchors:
+            passage = replace(passage, anchors=tuple(dict.fromkeys(self._anchors)))
+            self._anchors = []
+        self.passages.append(passage)
+
+
+def _moved(marks: tuple[Mark, ...], by: int) -> tuple[Mark, ...]:
+    """Marks of a text that stands further on."""
+    if not by:
+        return marks
+    return tuple(replace(mark, start=mark.start + by, end=mark.end + by) for mark in marks)

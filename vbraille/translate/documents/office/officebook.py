@@ -1,0 +1,108 @@
+"""A word processor's file as a source."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import locale
+import re
+from collections import Counter
+from typing import TYPE_CHECKING, BinaryIO, cast
+
+from vbraille.errors import InputError
+from vbraille.translate.documents.office.officehtml import written
+
+if TYPE_CHECKING:
+    from anydoc import Document, Format
+
+    from vbraille.translate.source import Source
+
+LARGEST_BYTES = 200 << 20
+_RTF_USUAL = re.compile(rb"\\deflang(\d{1,5})\b")
+_RTF_LANGUAGE = re.compile(rb"\\lang(\d{1,5})\b")
+_RTF_TITLE = re.compile(rb"\{\\title ([^{}\\]*)\}")  # of no other letters than ASCII
+_RTF_HEADER_BYTES = 65_536
+
+
+def open_office(stream: BinaryIO, name: str, form: str) -> Source:
+    """Open a DOCX, ODT or RTF file.
+
+    Parameters
+    ----------
+    stream
+        Bytes of the file. It is read to its end and closed.
+    name
+        Name of the source in messages.
+    form
+        "docx", "odt" or "rtf".
+
+    Raises
+    ------
+    InputError
+        If the file is locked, damaged or too large, or what reads such files is not installed.
+    """
+    with stream:
+        stream.seek(0)
+        content = stream.read(LARGEST_BYTES + 1)
+    if len(content) > LARGEST_BYTES:
+        raise InputError(
+            f"{name} is larger than {LARGEST_BYTES >> 20} MB, which no text is; "
+            f"save it as EPUB or without its pictures"
+        )
+    digest = hashlib.sha256(content).hexdigest()
+    title = language = ""
+    if form == "rtf":
+        title, language = _rtf_title(content), _rtf_language(content)
+    else:
+        from vbraille.translate.documents.office.officexml import annotated
+
+        found = annotated(content, form)
+        content, title, language = found.content, found.title, found.language
+    document = _document(content, name, form)
+    html = "".join(written(document, title, language)).encode("utf-8", "replace")
+    from vbraille.translate.documents.html import HtmlBook
+
+    return HtmlBook(io.BytesIO(html), name, "utf-8", digest=digest, title=title, language=language)
+
+
+def _document(content: bytes, name: str, form: str) -> Document:
+    try:
+        import anydoc
+    except ImportError:
+        raise InputError(
+            f"{name} is in {form.upper()}, and what reads that is not installed; "
+            f"pip install firecrawl-anydoc installs it"
+        ) from None
+    try:
+        return anydoc.to_document(content, cast("Format", form))
+    except anydoc.EncryptedError:
+        raise InputError(
+            f"{name} is locked with a password; open it with that and save it without one"
+        ) from None
+    except anydoc.ResourceLimitError as error:
+        raise InputError(
+            f"{name} unpacks to more than any book holds ({error.limit}); it is not opened"
+        ) from None
+    except (anydoc.ConvertError, UnicodeError, ValueError):
+        raise InputError(
+            f"{name} is damaged or no {form.upper()} file; get it again, or open it in a word "
+            f"processor and save it anew"
+        ) from None
+
+
+def _rtf_title(content: bytes) -> str:
+    """Title of an RTF file; empty if it has none, or one that is not plain ASCII."""
+    found = _RTF_TITLE.search(content[:_RTF_HEADER_BYTES])
+    return "" if found is None else " ".join(found[1].decode("ascii", "ignore").split())
+
+
+def _rtf_language(content: bytes) -> str:
+    """Tag of the language that an RTF file says its text is in; empty if it says none."""
+    usual = _RTF_USUAL.search(content[:_RTF_HEADER_BYTES])
+    named = _RTF_LANGUAGE.findall(content) if usual is None else [usual[1]]
+    for number, _ in Counter(map(int, named)).most_common():
+        # A number below 1024 is a language's without a country, which is added here.
+        tag = locale.windows_locale.get(number if number >= 0x400 else number | 0x400)
+        if tag is not None:
+            return tag.replace("_", "-") if number >= 0x400 else tag.partition("_")[0]
+    return ""

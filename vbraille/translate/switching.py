@@ -1,0 +1,159 @@
+"""Blocks in several languages: each passage by the table of its language."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.braille.cells import Cells
+from vbraille.errors import InputError
+from vbraille.translate.languages import find_table, six_dot_table
+from vbraille.translate.liblouis import BrailleTable
+from vbraille.translate.source import MarkKind
+from vbraille.translate.text import Text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from vbraille.translate.source import Block
+
+
+# What another process needs to make a translator: the table's name, what is written for characters
+# that it does not know, the book's own languages, a grade, and whether others are switched to.
+How = tuple[str, str, tuple[str, ...], int | None, bool]
+
+
+class Translator:
+    """A braille table for a book, and the tables of other languages that the book says it has.
+
+    Those are made when the first passage in their language is translated. A language that liblouis
+    has no table for, or none of six dots where the book's own has six, is written by the book's.
+
+    Parameters
+    ----------
+    table
+        Table of the book's own language.
+    own
+        Tags of the languages that are the book's own. If there are none, the language of the
+        table is.
+    grade
+        Grade that is wanted of the other languages too, where they have it; None for what is
+        usual in each.
+    switch
+        Whether other languages are translated by other tables.
+    """
+
+    def __init__(
+        self,
+        table: BrailleTable,
+        own: Iterable[str] = (),
+        grade: int | None = None,
+        *,
+        switch: bool = True,
+    ) -> None:
+        self.table = table
+        self._own = {tag.lower() for tag in own if tag}
+        self._grade = grade
+        self._switch = switch
+        self._chosen: dict[str, BrailleTable] = {}  # by the tags as blocks have them
+        self._named = {table.name: table}
+
+    @property
+    def how(self) -> How:
+        """What another process needs to make a translator like this one."""
+        own = tuple(sorted(self._own))
+        return self.table.name, str(self.table.how), own, self._grade, self._switch
+
+    @property
+    def tables(self) -> tuple[BrailleTable, ...]:
+        """Tables that were used so far, the book's own first."""
+        return tuple(self._named.values())
+
+    def translate(self, block: Block) -> Cells:
+        """Cells of a block's text, with emphasis and languages as its marks say."""
+        if not self._switch or not (block.language or block.marks):
+            return self.table.translate(block.text, block.marks)
+        whole = self._table_for(block.language)
+        if all(mark.kind is not MarkKind.LANGUAGE for mark in block.marks):
+            return whole.translate(block.text, block.marks)
+        parts = [table.translate(text, block.marks) for table, text in self._passages(block, whole)]
+        if not parts:
+            return whole.translate(block.text)
+        return Cells(
+            np.concatenate([part.masks for part in parts]),
+            np.concatenate([part.starts for part in parts]),
+            block.text.end,
+        )
+
+    def _passages(self, block: Block, whole: BrailleTable) -> Iterator[tuple[BrailleTable, Text]]:
+        """Passages of a block, each with its table; neighbours have different tables."""
+        text = block.text
+        tables = [whole]
+        owners = np.zeros(len(text), np.intp)  # which of the tables, for each character
+        for mark in block.marks:  # inner ones come after those around them
+            if mark.kind is not MarkKind.LANGUAGE:
+                continue
+            table = self._table_for(mark.target)
+            if table not in tables:
+                tables.append(table)
+            owners[text.index(mark.start) : text.index(mark.end)] = tables.index(table)
+        edges = [0, *(np.flatnonzero(np.diff(owners)) + 1).tolist(), len(text)]
+        if len(edges) == 2 and len(text):
+            yield tables[int(owners[0])], text
+            return
+        for start, stop in pairwise(edges):
+            if start < stop:
+                end = int(text.places[stop]) if stop < len(text) else text.end
+                codes = text.codes[start:stop]
+                alphabet = frozenset(codes.tolist())
+                part = Text(codes, text.places[start:stop], end, alphabet)
+                yield tables[int(owners[start])], part
+
+    def _table_for(self, language: str) -> BrailleTable:
+        """Table of a language; the book's own if that is its language, or there is none."""
+        if not language:
+            return self.table
+        table = self._chosen.get(language)
+        if table is None:
+            name = self._name_for(language)
+            table = self._named.get(name)
+            if table is None:
+                table = self._named[name] = BrailleTable(name, self.table.how)
+            self._chosen[language] = table
+        return table
+
+    def _name_for(self, language: str) -> str:
+        """Name of the table for a language."""
+        own = self._own
+        if not own and (info := self.table.info) is not None:
+            own = {info.language.lower()}
+        if language.lower() in own:
+            return self.table.name
+        try:
+            usual = find_table(language)
+            if usual in map(_usual, own):  # the same language, said otherwise
+                return self.table.name
+            name = usual if self._grade is None else _graded(language, self._grade, usual)
+            if self.table.eight_dots or not BrailleTable(name).eight_dots:
+                return name
+            return six_dot_table(language) or self.table.name
+        except InputError:
+            return self.table.name
+
+
+def _usual(language: str) -> str | None:
+    """Name of the usual table of a language; None if there is none."""
+    try:
+        return find_table(language)
+    except InputError:
+        return None
+
+
+def _graded(language: str, grade: int, usual: str) -> str:
+    """Name of the table for a grade of a language, or the usual one."""
+    try:
+        return find_table(language, grade)
+    except InputError:
+        return usual
