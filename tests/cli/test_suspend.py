@@ -34,6 +34,14 @@ def job(shell):
     return int(child)
 
 
+def until_stopped(shell):
+    """Wait until the program is stopped: the shell says that only with its next prompt."""
+    process, end = job(shell), time.monotonic() + program.PATIENCE_S
+    while Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "T":
+        assert time.monotonic() < end, "the program is not stopped"
+        os.sched_yield()
+
+
 def frames(log):
     numbers = np.fromfile(log)
     return numbers[: numbers.size // 60 * 60].reshape(-1, 6, 10)  # the last may be in the writing
@@ -77,6 +85,7 @@ def test_ctrl_z_rests_the_array_and_fg_gives_the_keys_back(shell, tmp_path, text
     shell.until(STOPPED)
     shell.type("bg\n")  # it needs the terminal, and the shell has it
     shell.until(r"&[\s\S]*" + PROMPT)
+    until_stopped(shell)
     shell.type("fg\n")
     shell.until("paused\r\n")
     shell.type(" ")
