@@ -1,0 +1,269 @@
+"""QUEST+ on a grid (Watson 2017, Journal of Vision 17(3):10): ask what tells most.
+
+The grid has a table p[o, s, θ]: how likely outcome o of stimulus s is for each combination θ of the
+parameters. After n trials the posterior is prior × Π p[oₙ, sₙ, θ], kept as logarithms. The next
+stimulus is the one with the largest expected information about θ,
+
+    I(s) = Σ_o h(Σ_θ post(θ) p[o, s, θ]) - Σ_θ post(θ) Σ_o h(p[o, s, θ]),    h(p) = -p ln p,   (1)
+
+which is the expected fall of the posterior's entropy. Stimuli within 1e-9 nats of the best count as
+equally good, and the first of them is taken: so a last bit in which two machines differ changes no
+question.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise, product
+from math import prod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.sessions.adaptive.estimates import GridEstimate, estimate
+from vbraille.sessions.adaptive.psychometric import detected, limited, nearer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.sessions.adaptive.estimates import GridAxis
+
+    Stimulus = tuple[float, ...]
+
+MOST_CELLS = 4_000_000  # of a table, which then takes 32 MB for each outcome
+MOST_AXES = 3
+_TIE = 1e-9
+_PLACES = 9  # decimal places of the values of a grid
+
+
+class GridQuest:
+    """A QUEST+ procedure; what it says depends on the history that it is given, and nothing else.
+
+    Parameters
+    ----------
+    stimuli
+        Stimuli that may be asked: single values, or ordered pairs.
+    axes
+        Parameters of whoever answers, of which one to three have several values.
+    table : float64[outcomes, stimuli, …axes]
+        Probability of each outcome.
+
+    Raises
+    ------
+    ValueError
+        If there is no stimulus, one is given twice, too many parameters have several values, or
+        the table has another shape or is no table of probabilities.
+    """
+
+    __slots__ = ("_index", "_kept", "_logs", "_prior", "_table", "_uncertain", "axes", "stimuli")
+
+    def __init__(
+        self,
+        stimuli: Sequence[Stimulus],
+        axes: Sequence[GridAxis],
+        table: NDArray[np.float64],
+    ) -> None:
+        self.stimuli, self.axes = tuple(stimuli), tuple(axes)
+        self._index = {stimulus: n for n, stimulus in enumerate(self.stimuli)}
+        if not self.stimuli or len(self._index) < len(self.stimuli):
+            raise ValueError("stimuli are none, or have one twice; give each once")
+        shape = tuple(len(axis.values) for axis in self.axes)
+        if not 1 <= sum(size > 1 for size in shape) <= MOST_AXES:
+            raise ValueError(f"1 to {MOST_AXES} parameters must have several values")
+        if table.ndim < 2 or table.shape[1:] != (len(self.stimuli), *shape):
+            raise ValueError(
+                f"the table has shape {table.shape}; it must be outcomes, {len(self.stimuli)}, "
+                f"{', '.join(map(str, shape))}"
+            )
+        sums = table.sum(axis=0)
+        if not (np.isfinite(sums).all() and (table > 0).all() and np.allclose(sums, 1.0)):
+            raise ValueError("the table must have probabilities above 0 that add up to 1")
+        flat = np.ascontiguousarray(table.reshape(len(table), len(self.stimuli), -1))
+        self._logs = np.log(flat)
+        self._uncertain = -(flat * self._logs).sum(axis=0)
+        # With two outcomes, the first follows from the second.
+        self._table = flat[1:] if len(flat) == 2 else flat
+        prior = np.ones(())
+        for axis in self.axes:
+            prior = np.multiply.outer(prior, axis.prior)
+        self._prior = np.log(prior.reshape(-1))
+        # The last history and its posterior: the next history goes on from it as a rule.
+        self._kept: tuple[tuple[tuple[Stimulus, int], ...], NDArray[np.float64]] = ((), self._prior)
+
+    def __repr__(self) -> str:
+        several = " × ".join(f"{len(axis.values)} of {axis.name}" for axis in self.axes)
+        return f"<GridQuest: {len(self.stimuli)} stimuli, {several}>"
+
+    def posterior(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
+        """Probability of each combination of parameters after some answers; float64[…axes].
+
+        Parameters
+        ----------
+        history
+            Stimuli that were asked, each with the number of its outcome.
+
+        Raises
+        ------
+        KeyError
+            If a stimulus is none of the grid.
+        """
+        return self._flat(history).reshape([len(axis.values) for axis in self.axes])
+
+    def next(self, history: Sequence[tuple[Stimulus, int]]) -> Stimulus:
+        """Stimulus that tells most after some answers, by equation (1).
+
+        `posterior` describes the arguments and the errors.
+        """
+        gains = self.information(history)
+        return self.stimuli[int(np.flatnonzero(gains >= gains.max() - _TIE)[0])]
+
+    def information(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
+        """Expected information of each stimulus in nats, equation (1); float64[stimuli]."""
+        posterior = self._flat(history)
+        likely = self._table @ posterior
+        if len(likely) == 1:
+            likely = np.stack((1.0 - likely[0], likely[0]))
+        likely = limited(likely)
+        return -(likely * np.log(likely)).sum(axis=0) - self._uncertain @ posterior
+
+    def estimate(self, history: Sequence[tuple[Stimulus, int]], name: str) -> GridEstimate:
+        """Estimate a parameter after some answers, whatever the others are.
+
+        Raises
+        ------
+        KeyError
+            If there is no parameter of that name, or a stimulus is none of the grid.
+        """
+        names = [axis.name for axis in self.axes]
+        if name not in names:
+            raise KeyError(name)
+        at = names.index(name)
+        others = tuple(n for n in range(len(names)) if n != at)
+        return estimate(self.axes[at].values, self.posterior(history).sum(axis=others))
+
+    def _flat(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
+        told = tuple((stimulus, outcome) for stimulus, outcome in history)
+        before, logs = self._kept
+        if told[: len(before)] != before:
+            before, logs = (), self._prior
+        for stimulus, outcome in told[len(before) :]:
+            logs = logs + self._logs[outcome, self._index[stimulus]]
+        self._kept = told, logs
+        shares = np.exp(logs - logs.max())
+        return shares / shares.sum()
+
+
+def steps(least: float, most: float, step: float) -> tuple[float, ...]:
+    """Values from one to another in equal steps; both ends are among them.
+
+    Raises
+    ------
+    ValueError
+        If the values do not increase, or the step does not lead from one end to the other.
+    """
+    if not (least < most and 0 < step <= most - least):
+        raise ValueError(
+            f"step is {step:g}; it must be above 0 and at most {max(most - least, 0):g}, the way "
+            f"from {least:g} to {most:g}"
+        )
+    count = round((most - least) / step)
+    if abs(least + count * step - most) > step * 1e-6:
+        raise ValueError(
+            f"step is {step:g}, and steps of it from {least:g} do not meet {most:g}; give one "
+            f"that does"
+        )
+    return tuple(round(least + n * step, _PLACES) for n in range(count + 1))
+
+
+def ordered_pairs(values: Sequence[float]) -> tuple[tuple[float, float], ...]:
+    """All pairs of two different values, the lower first."""
+    return tuple((low, high) for low, high in product(values, values) if low < high)
+
+
+def detection_quest(
+    shape: str,
+    values: Sequence[float],
+    threshold: GridAxis,
+    spread: GridAxis,
+    guess: GridAxis,
+    lapse: GridAxis,
+) -> GridQuest:
+    """QUEST+ of positive and other answers to single values; outcome 1 is the positive one.
+
+    Parameters
+    ----------
+    shape
+        Name of a shape of `vbraille.sessions.adaptive.psychometric.SHAPES`.
+    values
+        Values that may be asked.
+    threshold, spread, guess, lapse
+        Possible values of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If the grid cannot be used.
+    """
+    axes = (threshold, spread, guess, lapse)
+    _check_size(len(values), axes)
+    x, *parameters = _spread_out(np.array(values), axes)
+    positive = detected(shape, x, *parameters)
+    return GridQuest([(value,) for value in values], axes, np.stack((1 - positive, positive)))
+
+
+def nearer_quest(
+    pairs: Sequence[tuple[float, float]],
+    centre: GridAxis,
+    spread: GridAxis,
+    lapse: GridAxis,
+    *,
+    log: bool = False,
+) -> GridQuest:
+    """QUEST+ of which of two values is nearer to an inner one; outcome 1 is the first of the pair.
+
+    Parameters
+    ----------
+    pairs
+        Pairs that may be asked.
+    centre, spread, lapse
+        Possible values of the parameters of `vbraille.sessions.adaptive.psychometric.nearer`.
+    log
+        Whether distances are judged on a log scale.
+
+    Raises
+    ------
+    ValueError
+        If the grid cannot be used.
+    """
+    axes = (centre, spread, lapse)
+    _check_size(len(pairs), axes)
+    asked = np.array(pairs).reshape(-1, 2)
+    first, *parameters = _spread_out(asked[:, 0], axes)
+    second, *_ = _spread_out(asked[:, 1], axes)
+    chosen = nearer(first, second, *parameters, log=log)
+    return GridQuest(list(pairs), axes, np.stack((1 - chosen, chosen)))
+
+
+def _spread_out(
+    stimuli: NDArray[np.float64], axes: Sequence[GridAxis]
+) -> list[NDArray[np.float64]]:
+    """Stimuli and values of each axis, each along a dimension of its own."""
+    each = [stimuli, *(np.array(axis.values) for axis in axes)]
+    return [part.reshape([-1 if n == at else 1 for n in range(len(each))])
+            for at, part in enumerate(each)]  # fmt: skip
+
+
+def _check_size(stimuli: int, axes: Sequence[GridAxis]) -> None:
+    cells = stimuli * prod(len(axis.values) for axis in axes)
+    if cells > MOST_CELLS:
+        raise ValueError(
+            f"the grid has {cells} cells; it must have at most {MOST_CELLS}: make a step larger"
+        )
+
+
+def geometric(low: float, high: float, count: int) -> tuple[float, ...]:
+    """Values from one to another, each the same multiple of the one before."""
+    values = tuple(round(v, _PLACES) for v in np.geomspace(low, high, count).tolist())
+    assert all(a < b for a, b in pairwise(values)), "they increase"
+    return values
