@@ -13,6 +13,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
+from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import create, load
 from vbraille.sessions.record.progress import Progress
@@ -169,7 +170,8 @@ class Session:
         planned, plan = plan_session(protocol, participant, seed, order, texture, contrast)
         name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
         place = Path(name if folder is None else folder)
-        session = cls(place, planned, plan, conditions, Progress(plan), engine)
+        progress = Progress(plan, procedure=procedure_of(planned, plan))
+        session = cls(place, planned, plan, conditions, progress, engine)
         session.tell(fields or {})
         session._drawn = seed is None
         check_free(place, "folder")

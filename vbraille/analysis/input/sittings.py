@@ -130,7 +130,8 @@ def read_sitting(folder: Path) -> SessionTrials:
     rows: list[dict[str, Any]] = []
     readings: dict[int, Reading | str] = {}
     examples: list[tuple[float, Example]] = []
-    for trial, (row, seen) in zip(record.plan.trials, walk(record, traces), strict=True):
+    planned = [told.trial for told in progress.trials.values()]
+    for trial, (row, seen) in zip(planned, walk(record, traces), strict=True):
         rows.append(row)
         if isinstance(seen, Trajectory):
             reading = read(seen)

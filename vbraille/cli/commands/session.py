@@ -39,7 +39,8 @@ def _protocols(arguments: argparse.Namespace) -> int:
         return 0
     for name in builtin_names():
         protocol = load_protocol(name)
-        _say(f"{name}: {protocol.title}; {protocol.trials} trials, {protocol.model.title}")
+        most = "at most " if protocol.adaptive else ""
+        _say(f"{name}: {protocol.title}; {most}{protocol.trials} trials, {protocol.model.title}")
     return 0
 
 
@@ -59,12 +60,17 @@ def _plan(arguments: argparse.Namespace) -> int:
         f"protocol: {protocol.name}, {len(plan.trials)} trials, "
         f"participant {plan.participant}, seed {plan.seed}"
     )
+    if protocol.adaptive:
+        from vbraille.sessions.planning.choosing import describe
+
+        _say(f"procedure: {describe(protocol)}")
     block = None
     for trial in (*plan.practice, *plan.trials):
         if trial.block != block:
             block = trial.block
             _say(f"block: {block}" if block else "practice")
-        _say(f"{'practice' if trial.practice else 'trial'} {trial.number}: {_describe(trial)}")
+        which = "practice" if trial.practice else "trial"
+        _say(f"{which} {trial.number}: {_describe(protocol, trial)}")
     return 0
 
 
@@ -137,7 +143,7 @@ def _export(arguments: argparse.Namespace) -> int:
             sys.stdout.write(table)
         else:
             write_file(Path(arguments.out), encode(table))
-            _say(f"written: {arguments.out}, {len(record.plan.trials)} rows")
+            _say(f"written: {arguments.out}, {len(exported)} rows")
     # Where the table is printed, nothing else may be between it and who reads it.
     if arguments.anonymous and (notes := len(read_notes(record.told.events))):
         what = "1 note" if notes == 1 else f"{notes} notes"
@@ -183,8 +189,11 @@ _ACTIONS = {
 }
 
 
-def _describe(trial: Trial) -> str:
+def _describe(protocol: Protocol, trial: Trial) -> str:
     if len(trial.stimuli) == 2:
+        if protocol.adaptive and not trial.practice:
+            first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
+            return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
         return ", then ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
     return f"{trial.condition}, {_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
 

@@ -6,9 +6,12 @@ stimulus is the one with the largest expected information about θ,
 
     I(s) = Σ_o h(Σ_θ post(θ) p[o, s, θ]) - Σ_θ post(θ) Σ_o h(p[o, s, θ]),    h(p) = -p ln p,   (1)
 
-which is the expected fall of the posterior's entropy. Stimuli within 1e-9 nats of the best count as
-equally good, and the first of them is taken: so a last bit in which two machines differ changes no
-question.
+which is the expected fall of the posterior's entropy. If one parameter is asked about and the
+others are only in the way (Prins 2013, Journal of Vision 13(7):3), θ in (1) is that parameter
+alone, and p its probability with the others averaged by the posterior.
+
+Stimuli within 1e-9 nats of the best count as equally good, and the first of them is taken: so a
+last bit in which two machines differ changes no question.
 """
 
 from __future__ import annotations
@@ -48,6 +51,8 @@ class GridQuest:
         Parameters of whoever answers, of which one to three have several values.
     table : float64[outcomes, stimuli, …axes]
         Probability of each outcome.
+    about
+        Name of the parameter that the questions are to tell about; empty for all together.
 
     Raises
     ------
@@ -56,13 +61,24 @@ class GridQuest:
         the table has another shape or is no table of probabilities.
     """
 
-    __slots__ = ("_index", "_kept", "_logs", "_prior", "_table", "_uncertain", "axes", "stimuli")
+    __slots__ = (
+        "_about",
+        "_index",
+        "_kept",
+        "_logs",
+        "_prior",
+        "_table",
+        "_uncertain",
+        "axes",
+        "stimuli",
+    )
 
     def __init__(
         self,
         stimuli: Sequence[Stimulus],
         axes: Sequence[GridAxis],
         table: NDArray[np.float64],
+        about: str = "",
     ) -> None:
         self.stimuli, self.axes = tuple(stimuli), tuple(axes)
         self._index = {stimulus: n for n, stimulus in enumerate(self.stimuli)}
@@ -79,6 +95,10 @@ class GridQuest:
         sums = table.sum(axis=0)
         if not (np.isfinite(sums).all() and (table > 0).all() and np.allclose(sums, 1.0)):
             raise ValueError("the table must have probabilities above 0 that add up to 1")
+        names = [axis.name for axis in self.axes]
+        if about and about not in names:
+            raise ValueError(f"there is no parameter {about!r}; there is {', '.join(names)}")
+        self._about = names.index(about) if about else None
         flat = np.ascontiguousarray(table.reshape(len(table), len(self.stimuli), -1))
         self._logs = np.log(flat)
         self._uncertain = -(flat * self._logs).sum(axis=0)
@@ -121,11 +141,28 @@ class GridQuest:
     def information(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
         """Expected information of each stimulus in nats, equation (1); float64[stimuli]."""
         posterior = self._flat(history)
+        if self._about is None:
+            uncertain = self._uncertain @ posterior
+        else:
+            uncertain = self._uncertain_about(posterior)
         likely = self._table @ posterior
         if len(likely) == 1:
             likely = np.stack((1.0 - likely[0], likely[0]))
-        likely = limited(likely)
-        return -(likely * np.log(likely)).sum(axis=0) - self._uncertain @ posterior
+        return _entropy(likely) - uncertain
+
+    def _uncertain_about(self, posterior: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Second term of equation (1) for one parameter, others averaged; float64[stimuli]."""
+        assert self._about is not None
+        sizes = [len(axis.values) for axis in self.axes]
+        before, own = prod(sizes[: self._about]), sizes[self._about]
+        weights = posterior.reshape(before, own, -1)
+        shares = weights.sum(axis=(0, 2))
+        table = self._table.reshape(*self._table.shape[:2], *weights.shape)
+        likely = np.einsum("osbpa,bpa->osp", table, weights)
+        likely /= np.maximum(shares, 1e-300)
+        if len(likely) == 1:
+            likely = np.concatenate((1.0 - likely, likely))
+        return _entropy(likely) @ shares
 
     def estimate(self, history: Sequence[tuple[Stimulus, int]], name: str) -> GridEstimate:
         """Estimate a parameter after some answers, whatever the others are.
@@ -188,6 +225,9 @@ def detection_quest(
     spread: GridAxis,
     guess: GridAxis,
     lapse: GridAxis,
+    *,
+    falls: bool = False,
+    about: str = "",
 ) -> GridQuest:
     """QUEST+ of positive and other answers to single values; outcome 1 is the positive one.
 
@@ -199,17 +239,25 @@ def detection_quest(
         Values that may be asked.
     threshold, spread, guess, lapse
         Possible values of the parameters.
+    falls
+        Whether positive answers become rarer with larger values: the shape is mirrored then.
+    about
+        Name of the parameter that the questions are to tell about; empty for all together.
 
     Raises
     ------
     ValueError
-        If the grid cannot be used.
+        If the grid cannot be used, or the shape has no mirror image.
     """
+    if shape == "weibull" and (falls or min(*values, *threshold.values) <= 0):
+        raise ValueError("shape is 'weibull', which is for values above 0 and grows with them")
     axes = (threshold, spread, guess, lapse)
     _check_size(len(values), axes)
-    x, *parameters = _spread_out(np.array(values), axes)
-    positive = detected(shape, x, *parameters)
-    return GridQuest([(value,) for value in values], axes, np.stack((1 - positive, positive)))
+    x, at, *others = _spread_out(np.array(values), axes)
+    positive = detected(shape, -x if falls else x, -at if falls else at, *others)
+    return GridQuest(
+        [(value,) for value in values], axes, np.stack((1 - positive, positive)), about
+    )
 
 
 def nearer_quest(
@@ -219,6 +267,7 @@ def nearer_quest(
     lapse: GridAxis,
     *,
     log: bool = False,
+    about: str = "",
 ) -> GridQuest:
     """QUEST+ of which of two values is nearer to an inner one; outcome 1 is the first of the pair.
 
@@ -230,6 +279,8 @@ def nearer_quest(
         Possible values of the parameters of `vbraille.sessions.adaptive.psychometric.nearer`.
     log
         Whether distances are judged on a log scale.
+    about
+        Name of the parameter that the questions are to tell about; empty for all together.
 
     Raises
     ------
@@ -242,7 +293,13 @@ def nearer_quest(
     first, *parameters = _spread_out(asked[:, 0], axes)
     second, *_ = _spread_out(asked[:, 1], axes)
     chosen = nearer(first, second, *parameters, log=log)
-    return GridQuest(list(pairs), axes, np.stack((1 - chosen, chosen)))
+    return GridQuest(list(pairs), axes, np.stack((1 - chosen, chosen)), about)
+
+
+def _entropy(likely: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Entropy in nats of outcomes, along the first dimension."""
+    likely = limited(likely)
+    return -(likely * np.log(likely)).sum(axis=0)
 
 
 def _spread_out(

@@ -25,10 +25,13 @@ class Answered:
         The trial as it was planned.
     answer
         The answer that counts; `vbraille.braille.spelling` says how it is written.
+    t_s
+        Seconds of the session at the answer; if it was taken back, at the one given instead.
     """
 
     trial: Trial
     answer: str
+    t_s: float = 0.0
 
 
 class Procedure(Protocol):
@@ -45,6 +48,10 @@ class Procedure(Protocol):
         The history leaves practice out. Where an answer was taken back, the history has in its
         place the answer that was given instead.
         """
+        ...
+
+    def found(self, history: Sequence[Answered], /) -> Sequence[str]:
+        """Sentences on what the answers have shown; none if the procedure does not go by them."""
         ...
 
 
@@ -64,3 +71,7 @@ class FixedOrder:
         """Trial of the plan that follows the answered ones; None after the last."""
         done = len(history)
         return self.trials[done] if done < len(self.trials) else None
+
+    def found(self, _history: Sequence[Answered], /) -> Sequence[str]:
+        """No sentence: nothing is made of the answers."""
+        return ()

@@ -31,6 +31,11 @@ from vbraille.sessions.planning.design import (
     StringList,
 )
 from vbraille.sessions.planning.practice import Practice
+from vbraille.sessions.planning.procedures import (
+    FixedProcedure,
+    QuestProcedure,
+    StaircaseProcedure,
+)
 from vbraille.sessions.planning.spellings import SpellingKeys
 from vbraille.toml.tomlfile import Table, which
 
@@ -57,6 +62,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     design: Combinations | StringList | Choice
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     rules: Rules = Rules()
+    procedure: FixedProcedure | QuestProcedure | StaircaseProcedure = FixedProcedure()
     practice: Practice = Practice()
     trial: TrialPace = TrialPace()
     session: SessionPace = SessionPace()
@@ -89,6 +95,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Conditions that the file lists; empty if there is only one, which has no name there.
     rules
         Rules that the finished plan is checked for, beside its design.
+    procedure
+        Which trial comes next, and when enough was asked.
     practice
         Practice before the first block.
     trial, session
@@ -162,8 +170,17 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
+    def adaptive(self) -> bool:
+        """Whether it depends on the answers which trials there are."""
+        return not isinstance(self.procedure, FixedProcedure)
+
+    @property
     def trials(self) -> int:
-        """Number of trials in all conditions, practice left out."""
+        """Number of trials in all conditions, practice left out; the most if answers decide."""
+        table = self.procedure
+        most = None if isinstance(table, FixedProcedure) else table.trials
+        if most is not None:
+            return min(most, self.design.trials) * len(self.conditions)
         return self.design.trials * len(self.conditions)
 
     @property
@@ -211,6 +228,7 @@ def _check_agreement(protocol: Protocol) -> None:
                     f"[[{table}]] number {number} name is {name!r} again; give each its own"
                 )
     _check_tuning(protocol)
+    _check_procedure(protocol)
     problem = protocol.practice.problem(protocol.design)
     if problem:
         raise ValueError(f"[practice] {problem}")
@@ -231,8 +249,32 @@ def _check_tuning(protocol: Protocol) -> None:
         raise ValueError(f"{table} {error}") from None
 
 
+def _check_procedure(protocol: Protocol) -> None:
+    problem = protocol.procedure.problem(protocol.design)
+    if problem:
+        raise ValueError(f"[procedure] {problem}")
+    if not protocol.adaptive:
+        return
+    if protocol.medium == "paper":
+        raise ValueError(
+            "[procedure] varies what a device shows; with medium = 'paper' leave it out"
+        )
+    if protocol.task == "choice" and protocol.rules.never_twice_running:
+        raise ValueError(
+            "[rules] never_twice_running is of a fixed order of values; leave it out, since "
+            "[procedure] chooses them"
+        )
+    own = getattr(protocol.procedure, "parameter", None)
+    for condition in protocol.conditions if own else ():
+        if own in condition.given:
+            raise ValueError(
+                f"[procedure] parameter is {own!r}, which the condition {condition.name} sets "
+                f"itself; leave it out there"
+            )
+
+
 def _check_trials(protocol: Protocol) -> None:
-    trials, blocks = protocol.trials, protocol.design.blocks
+    trials, blocks = protocol.design.trials * len(protocol.conditions), protocol.design.blocks
     if trials + protocol.practice.trials > MOST_TRIALS:
         raise ValueError(
             f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
@@ -268,7 +310,9 @@ def _check_cells(protocol: Protocol) -> None:
 def _check_lines(protocol: Protocol) -> None:
     """Check that the display has room for the longest line, at each value that is compared."""
     model, design, practice = protocol.model, protocol.design, protocol.practice
-    values = design.values if isinstance(design, Choice) else (None,)
+    values = (None,)
+    if isinstance(design, Choice):
+        values = tuple(dict.fromkeys((*design.values, *protocol.procedure.values(design))))
     longest = max((design.cells, *map(len, practice.lines(design))))
     whose = "[design]" if longest == design.cells else "[practice]"
     for value in (*values, *sorted(set(practice.values))):

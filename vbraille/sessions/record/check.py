@@ -94,15 +94,32 @@ def check(record: Record) -> Iterator[Finding]:
     yield Finding("session.json, plan.json, protocol.toml: as they were when the session began")
     try:
         check_plan(record.protocol, record.plan)
-        yield Finding(f"plan: {len(record.plan.trials)} trials, all design rules hold")
+        deck = " to choose the values of" if record.protocol.adaptive else ""
+        yield Finding(f"plan: {len(record.plan.trials)} trials{deck}, all design rules hold")
     except VbrailleError as error:
         yield Finding(f"plan: {error}", good=False)
     yield from _check_journal(told)
     yield from _check_torn(record.folder, told)
     progress = Progress(record.plan, told.events, record.procedure)
     yield from _check_traces(record, progress)
+    yield from _check_choices(record, progress)
     state = "ended" if progress.ended else "not ended, session resume goes on"
-    yield Finding(f"answers: {progress.done} of {len(record.plan.trials)}; the session is {state}")
+    yield Finding(f"answers: {progress.of_all(progress.done)}; the session is {state}")
+
+
+def _check_choices(record: Record, progress: Progress) -> Iterator[Finding]:
+    """Check that each trial was shown as the procedure chooses it after the answers before it."""
+    if not record.protocol.adaptive or record.told.bad:
+        return
+    asked = 0
+    for told in progress.trials.values():
+        for showing in told.showings:
+            if showing.stimulus_of(told.trial) != told.trial.stimuli[showing.stimulus]:
+                what = "was shown with other values than the answers before it ask for"
+                yield Finding(f"procedure: trial {told.trial.number} {what}", good=False)
+                break
+        asked += bool(told.showings)
+    yield Finding(f"procedure: {asked} trials compared with what the answers before them ask for")
 
 
 def _check_journal(told: JournalContents) -> Iterator[Finding]:

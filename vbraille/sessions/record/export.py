@@ -182,8 +182,7 @@ def walk(
     traces = Traces(record) if traces is None else traces
     fields = {f"field_{name}": value for name, value in record.head["fields"].items()}
     notes = read_notes(record.told.events)
-    for trial in record.plan.trials:
-        told = progress.trials[trial.number]
+    for told in progress.trials.values():
         trial = told.shown
         row, seen = _row(record, trial, told), None
         row |= _noted(notes, trial.number)

@@ -19,8 +19,8 @@ import numpy as np
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_folder
+from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.procedure import FixedOrder
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.events import Closed, Session
@@ -185,14 +185,9 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
     plan = Plan.from_json(contents[PLAN])
-    return Record(
-        folder,
-        json.loads(contents[HEAD]),
-        parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True),
-        plan,
-        told,
-        FixedOrder(plan.trials),
-    )
+    protocol = parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True)
+    head = json.loads(contents[HEAD])
+    return Record(folder, head, protocol, plan, told, procedure_of(protocol, plan))
 
 
 def read_told_trace(folder: Path, name: str, told: JournalContents) -> Trace:

@@ -14,7 +14,7 @@ from vbraille.sessions.planning.stimuli import Stimuli
 from vbraille.sessions.record import events
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.procedure import Procedure
@@ -227,6 +227,11 @@ class Progress:
         return len(self.history)
 
     @property
+    def found(self) -> Sequence[str]:
+        """Sentences on what the answers have shown so far; none for a fixed order."""
+        return self.procedure.found(self.history)
+
+    @property
     def planned(self) -> int | None:
         """Number of trials in all, practice left out; None if it depends on the answers."""
         trials = self.procedure.trials
@@ -357,7 +362,7 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.source = self._answers
-        answered = Answered(record.trial, event.answer)
+        answered = Answered(record.trial, event.answer, event.t_s)
         if self.correcting is not None:
             self.correcting = None
             self.history[-1] = answered

@@ -185,6 +185,8 @@ class Course:
         """End the session for good."""
         self.book.log(events.End, why=why)
         self._say(f"end: {why}; {self.progress.of_all(self.progress.done)} have answers")
+        for sentence in self.progress.found:
+            self._say(sentence)
         self.phase = Phase.OVER
 
     def have_break(self) -> None:

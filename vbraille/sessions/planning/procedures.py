@@ -1,0 +1,327 @@
+"""The table ``[procedure]`` of a protocol: which trial comes next, and when enough was asked."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
+
+from vbraille.errors import check_range
+from vbraille.sessions.adaptive.estimates import GridAxis
+from vbraille.sessions.adaptive.questplus import (
+    GridQuest,
+    detection_quest,
+    nearer_quest,
+    ordered_pairs,
+    steps,
+)
+from vbraille.sessions.adaptive.staircase import StaircaseRule, Staircases
+from vbraille.sessions.adaptive.stopping import StopRule
+from vbraille.sessions.planning.design import MOST_TRIALS, Choice
+from vbraille.toml.tomlfile import Table
+
+if TYPE_CHECKING:
+    from vbraille.sessions.planning.design import Design
+
+Knob = Literal["texture", "contrast"]
+THRESHOLD, PREFERRED = "threshold", "preferred"
+_MOST_VALUES = 1000
+
+
+class FixedProcedure(Table, frozen=True, tag="fixed", tag_field="kind"):
+    """A procedure that follows the plan, whatever is answered."""
+
+    def problem(self, _design: Design) -> str:
+        """Say why this procedure does not go with a design, which it always does: empty."""
+        return ""
+
+    def values(self, _design: Design) -> tuple[float, ...]:
+        """Values that the procedure adds to those of the design: none."""
+        return ()
+
+
+class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
+    """What procedures that go by the answers have in common.
+
+    Parameters
+    ----------
+    parameter
+        What a procedure with strings varies; None if two are compared.
+    least, most
+        Bounds of its values; None if two are compared, whose values are in the design.
+    harder
+        Whether strings are harder to read with less or with more of it.
+    trials
+        Most trials of each condition; None for as many as the design has.
+    seconds
+        Seconds of the session after which no further trial is chosen; None for no limit.
+    """
+
+    parameter: Knob | None = None
+    least: float | None = None
+    most: float | None = None
+    harder: Literal["less", "more"] = "less"
+    trials: int | None = None
+    seconds: float | None = None
+
+    def __post_init__(self) -> None:
+        check_range("trials", self.trials, 1, MOST_TRIALS)
+        check_range("seconds", self.seconds, 1, 86_400, " s")
+        check_range("least", self.least, 0, 1)
+        check_range("most", self.most, 0, 1)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Least and largest value of the parameter that is varied with strings.
+
+        Raises
+        ------
+        ValueError
+            If one of them is not given.
+        """
+        if self.least is None or self.most is None:
+            raise ValueError("least or most is missing; add it")
+        return self.least, self.most
+
+    def _lacks(self) -> str:
+        """Say what a procedure with strings lacks; empty if nothing."""
+        for name in ("parameter", "least", "most"):
+            if getattr(self, name) is None:
+                return f"lacks {name}; add it"
+        least, most = self.bounds
+        if least >= most:
+            return (
+                f"least is {least:g} and most is {most:g}, and nothing can move between them; "
+                f"make most larger"
+            )
+        return ""
+
+
+class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
+    """QUEST+: the value, or the pair of values, that is expected to tell most.
+
+    Parameters
+    ----------
+    step
+        Step from one value that may be asked to the next; None, where two are compared, for the
+        values of the design alone.
+    furthest
+        Largest difference between two values that are compared; None for any.
+    scale
+        Scale on which distances between compared values are judged.
+    shape
+        Shape of the psychometric function of strings.
+    spread, guess, lapse
+        Possible values of these parameters; one value fixes the parameter.
+    sd, width
+        Standard deviation, and width of the interval of 95 %, that are precise enough; None for
+        no end by precision.
+    at_least
+        Number of trials of a condition before precision counts.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    step: float | None = None
+    furthest: float | None = None
+    scale: Literal["linear", "log"] = "linear"
+    shape: Literal["normal", "logistic", "weibull"] = "normal"
+    spread: tuple[float, ...]
+    guess: tuple[float, ...] = (0.0,)
+    lapse: tuple[float, ...] = (0.03,)
+    sd: float | None = None
+    width: float | None = None
+    at_least: int = 10
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_range("step", self.step, 1e-4, 50)
+        check_range("furthest", self.furthest, 1e-4, 50)
+        for value in self.spread:
+            check_range("spread: one", value, 1e-4, 100)
+        for name in ("guess", "lapse"):
+            for value in getattr(self, name):
+                check_range(f"{name}: one", value, 0, 0.9)
+        for name in ("spread", "guess", "lapse"):
+            GridAxis(name, getattr(self, name))
+        self.stop  # noqa: B018
+
+    @property
+    def stop(self) -> StopRule:
+        """When enough was asked in a condition."""
+        return StopRule(self.trials, self.sd, self.width, self.at_least, self.seconds)
+
+    def problem(self, design: Design) -> str:
+        """Say why this procedure does not go with a design; empty if it does."""
+        if isinstance(design, Choice):
+            if self.parameter is not None or self.least is not None or self.most is not None:
+                return "parameter, least and most are those of [design]; leave them out"
+        elif lacks := self._lacks():
+            return lacks
+        elif self.step is None:
+            return "lacks step; add it"
+        elif self.furthest is not None:
+            return "furthest is of kind = 'choice'; leave it out"
+        try:
+            self.quest(design)
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def values(self, design: Design) -> tuple[float, ...]:
+        """Values that may be asked, increasing.
+
+        Raises
+        ------
+        ValueError
+            If the step does not lead from one end to the other, or there are too many values.
+        """
+        if isinstance(design, Choice):
+            if self.step is None:
+                return tuple(sorted(design.values))
+            low, high = min(design.values), max(design.values)
+        else:
+            low, high = self.bounds
+        assert self.step is not None, "problem() has seen to that"
+        if (high - low) / self.step > _MOST_VALUES:
+            raise ValueError(f"step makes more than {_MOST_VALUES} values; make it larger")
+        return steps(low, high, self.step)
+
+    def quest(self, design: Design) -> GridQuest:
+        """Grid of this procedure for a design.
+
+        Raises
+        ------
+        ValueError
+            If there is no such grid.
+        """
+        return _make_quest(self, design)
+
+    def grid(self, design: Design) -> GridQuest:
+        """Make the grid of this procedure anew; `quest` keeps it."""
+        values = self.values(design)
+        spread, lapse = GridAxis("spread", self.spread), GridAxis("lapse", self.lapse)
+        if not isinstance(design, Choice):
+            threshold, guess = GridAxis(THRESHOLD, values), GridAxis("guess", self.guess)
+            falls = self.harder == "more"
+            return detection_quest(
+                self.shape, values, threshold, spread, guess, lapse, falls=falls, about=THRESHOLD
+            )
+        most = float("inf") if self.furthest is None else self.furthest * (1 + 1e-9)
+        pairs = [pair for pair in ordered_pairs(values) if pair[1] - pair[0] <= most]
+        if not pairs:
+            raise ValueError(
+                f"furthest is {self.furthest:g}, and no two values are so near; make it larger"
+            )
+        if self.scale == "log" and values[0] <= 0:
+            raise ValueError("scale is 'log', which is for values above 0; leave 0 mm out")
+        centre = GridAxis(PREFERRED, self._centres(values))
+        return nearer_quest(pairs, centre, spread, lapse, log=self.scale == "log", about=PREFERRED)
+
+    def _centres(self, values: tuple[float, ...]) -> tuple[float, ...]:
+        """Values that may be the preferred one: those asked, or 51 from end to end if few are."""
+        if self.step is not None:
+            return values
+        return steps(values[0], values[-1], (values[-1] - values[0]) / 50)
+
+
+class StaircaseProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="staircase"):
+    """Staircases: harder after right answers, easier after wrong ones.
+
+    Parameters
+    ----------
+    start
+        Values that the staircases begin with: as many staircases as values, interleaved.
+    steps
+        Sizes of the step before the first reversal, before the second, and so on.
+    right, wrong
+        Number of right answers running that make it harder, and of wrong ones that make it easier.
+    target
+        Share of right answers that a weighted staircase converges to; None if steps are as large
+        one way as the other.
+    reversals
+        Number of reversals after which a staircase is over; None for no such end.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    start: tuple[float, ...]
+    steps: tuple[float, ...]
+    right: int = 2
+    wrong: int = 1
+    target: float | None = None
+    reversals: int | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_range("target", self.target, 0.05, 0.95)
+        if self.target is not None and (self.right, self.wrong) != (1, 1):
+            raise ValueError("target is of staircases with right = 1 and wrong = 1; give these")
+        if not self.start:
+            raise ValueError("start has no value; give one for each staircase")
+
+    @property
+    def stop(self) -> StopRule:
+        """When enough was asked in a condition."""
+        return StopRule(self.trials, seconds=self.seconds)
+
+    def problem(self, design: Design) -> str:
+        """Say why this procedure does not go with a design; empty if it does."""
+        if isinstance(design, Choice):
+            return "kind is 'staircase', which needs right answers; for a choice give 'quest'"
+        if lacks := self._lacks():
+            return lacks
+        trials = min(self.trials or MOST_TRIALS, design.trials)
+        if trials < min(self.right, self.wrong):
+            return (
+                f"right is {self.right} and wrong is {self.wrong}, and a condition has {trials} "
+                f"trials: the staircase cannot move; give it more trials"
+            )
+        try:
+            self.staircases("")
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def values(self, _design: Design) -> tuple[float, ...]:
+        """Ends of the values that may be shown."""
+        return self.bounds
+
+    def staircases(self, seed: str) -> Staircases:
+        """The staircases of a condition.
+
+        Raises
+        ------
+        ValueError
+            If one could not move.
+        """
+        least, most = self.bounds
+        easier = 1.0 if self.target is None else self.target / (1 - self.target)
+        rules = tuple(
+            StaircaseRule(
+                start,
+                least,
+                most,
+                self.steps,
+                self.right,
+                self.wrong,
+                easier,
+                self.harder == "less",
+                self.reversals,
+            )
+            for start in self.start
+        )
+        return Staircases(rules, seed)
+
+
+@lru_cache(maxsize=8)
+def _make_quest(table: QuestProcedure, design: Design) -> GridQuest:
+    return table.grid(design)
+
+
+ProcedureTable = FixedProcedure | QuestProcedure | StaircaseProcedure
