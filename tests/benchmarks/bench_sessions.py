@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.benchmarks.killing import kill_often
+from tests.benchmarks.killing import ADAPTIVE, kill_often
+from tests.benchmarks.killing import KILLS as KILLED
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
 from tests.sessions.planning.rulebook import broken_rules
@@ -80,18 +81,26 @@ with Host("sim:?hand=sweep:150", display, VBD.style.room(display, 4)) as host:
 def run() -> Iterator[Result]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for part in (_planned, _acknowledged, _resumed, _block, _recorded, _killed):
+        for part in (
+            _planned,
+            _acknowledged,
+            _resumed,
+            _block,
+            _recorded,
+            _killed,
+            _killed_by_answers,
+        ):
             inner = folder / part.__name__
             inner.mkdir()
             yield part(inner)
 
 
-def _killed(folder: Path) -> Result:
-    tally = kill_often(KILLS, SEED, folder)
+def _killed(folder: Path, toml: str = KILLED, how: str = "scripted sessions") -> Result:
+    tally = kill_often(KILLS, SEED, folder, toml)
     for problem in (*tally.lost, *tally.skipped, *tally.others):
         print(problem, file=sys.stderr)
     return Result(
-        f"SIGKILL at {tally.kills} random moments of {tally.sessions} scripted sessions, each "
+        f"SIGKILL at {tally.kills} random moments of {tally.sessions} {how}, each "
         f"gone on with to its end, seed {SEED}: acknowledged answers lost or asked again, trials "
         f"skipped, other faults",
         "0, 0, 0",
@@ -100,6 +109,10 @@ def _killed(folder: Path) -> Result:
         f"{tally.torn} torn lines, up to {tally.most_attempts} attempts)",
         not (tally.lost or tally.skipped or tally.others),
     )
+
+
+def _killed_by_answers(folder: Path) -> Result:
+    return _killed(folder, ADAPTIVE, "scripted sessions whose trials QUEST+ chooses")
 
 
 def _planned(_: Path) -> Result:

@@ -57,6 +57,16 @@ gap_s = 0.0
 [session]
 break_every = 10
 """
+# The same strings, but the contrast of each is chosen by the answers in its condition.
+ADAPTIVE = f"""{KILLS}
+[procedure]
+kind = "quest"
+parameter = "contrast"
+least = 0.1
+most = 1.0
+step = 0.05
+spread = [0.1, 0.2, 0.4]
+"""
 TRIALS = 64
 MOST_LINES = 24
 MOST_PAUSE_S = 0.012  # some more than a trial takes
@@ -96,11 +106,11 @@ class Ended:
     first_line_s: float = 0.0
 
 
-def kill_often(kills: int, seed: int, folder: Path) -> Tally:
+def kill_often(kills: int, seed: int, folder: Path, toml: str = KILLS) -> Tally:
     """Kill so many runs of sessions at random moments, and bring every session to its end."""
     random = np.random.default_rng(seed)
     protocol = folder / "kills.toml"
-    protocol.write_text(KILLS)
+    protocol.write_text(toml)
     tally = Tally()
     while tally.kills < kills:
         tally.sessions += 1
@@ -215,7 +225,9 @@ class _Killed:
         if _done(events) != _done(whole) or _answers(events) != _answers(whole):
             self._add(self._lost, "what the file says was not done line by line, once each")
         if _first_shown(events) != _first_shown(whole):
-            self._add(self._skipped, "the order in which trials were first shown is another one")
+            self._add(
+                self._skipped, "what the trials first showed, or their order, is another"
+            )
         self._compare_said(_last(events, "presented", "attempt"))
         for problem in _wrong_attempts(events):
             self._add(self._skipped, problem)
@@ -368,7 +380,7 @@ def _parse(line: str) -> tuple[str, int]:
 
 def _acknowledged(lines: list[str]) -> list[tuple[int, str]]:
     """Trials and answers that the program said are in."""
-    found = (re.fullmatch(r"answer: trial (\d+) of \d+, (.+)", line) for line in lines)
+    found = (re.fullmatch(r"answer: trial (\d+)(?: of \d+)?, (.+)", line) for line in lines)
     return [(int(f[1]), "".join(_CELLS[name] for name in f[2].split())) for f in found if f]
 
 
@@ -386,8 +398,12 @@ def _done(events: list[Event]) -> list[tuple]:
     return [tuple(map(event.get, names)) for event in events if event["event"] in _DONE]
 
 
-def _first_shown(events: list[Event]) -> list[int]:
-    return list(dict.fromkeys(event["trial"] for event in _of(events, "presented")))
+def _first_shown(events: list[Event]) -> list[tuple[int, dict]]:
+    """Trials in the order in which they were first shown, and what each then showed."""
+    first: dict[int, dict] = {}
+    for event in _of(events, "presented"):
+        first.setdefault(event["trial"], event["shown"])
+    return list(first.items())
 
 
 def _last(events: list[Event], name: str, member: str) -> dict:

@@ -1,10 +1,11 @@
 """The program killed in the middle of sessions: what it said is in, is in."""
 
-from tests.benchmarks.killing import kill_often
+from tests.benchmarks.killing import ADAPTIVE, kill_often
 from tests.conftest import SEED
 from tests.tiers import by_tier
 
 KILLS = by_tier(6, 20, 300)
+KILLS_BY_ANSWERS = by_tier(2, 20, 300)
 
 
 def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
@@ -16,3 +17,11 @@ def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
     assert tally.torn or KILLS < 20
     assert tally.acknowledged >= KILLS
     assert tally.most_attempts > 1
+
+
+def test_one_that_goes_by_the_answers_asks_what_it_would_have_asked(tmp_path):
+    print(f"seed: {SEED}")
+    tally = kill_often(KILLS_BY_ANSWERS, SEED, tmp_path, ADAPTIVE)
+    assert (tally.lost, tally.skipped, tally.others) == ([], [], [])
+    assert tally.kills == KILLS_BY_ANSWERS
+    assert tally.acknowledged >= KILLS_BY_ANSWERS

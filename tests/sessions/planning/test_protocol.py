@@ -43,7 +43,9 @@ class TestBuiltIns:
             "legibility",
             "letters",
             "tuning-spacing",
+            "tuning-spacing-adaptive",
             "tuning-width",
+            "tuning-width-adaptive",
             "words",
         ]
 

@@ -115,6 +115,9 @@ class GridQuest:
         several = " × ".join(f"{len(axis.values)} of {axis.name}" for axis in self.axes)
         return f"<GridQuest: {len(self.stimuli)} stimuli, {several}>"
 
+    def __contains__(self, stimulus: object) -> bool:
+        return stimulus in self._index
+
     def posterior(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
         """Probability of each combination of parameters after some answers; float64[…axes].
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import structs
 
+from vbraille.errors import VbrailleError
 from vbraille.sessions.adaptive.stopping import Asked
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.procedure import FixedOrder
@@ -67,7 +68,7 @@ class ByQuest:
         """Value or pair of values that is asked next; None if enough was asked."""
         if self.stop.out_of_limits(history):
             return None
-        told = _told(history)
+        told = self._told(history)
         if self.stop.by_precision and self.stop.precise(
             len(told), self.quest.estimate(told, self.name)
         ):
@@ -76,11 +77,21 @@ class ByQuest:
 
     def found(self, history: Sequence[Asked], what: str, unit: str) -> tuple[str, ...]:
         """Sentences on the parameter that is estimated."""
-        known = self.quest.estimate(_told(history), self.name)
+        known = self.quest.estimate(self._told(history), self.name)
         return (
             f"{self.name} {what}: {known.mean:.3g}{unit}",
             f"95 % interval: {known.low:.3g} to {known.high:.3g}{unit}",
         )
+
+    def _told(self, history: Sequence[Asked]) -> list[tuple[tuple[float, ...], int]]:
+        for asked in history:
+            if asked.stimulus not in self.quest:
+                values = " and ".join(f"{value:g}" for value in asked.stimulus)
+                raise VbrailleError(
+                    f"the journal is damaged: it has shown {values}, which the protocol's "
+                    f"procedure never asks; nothing was changed"
+                )
+        return [(asked.stimulus, asked.outcome) for asked in history]
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,10 +247,6 @@ def describe(protocol: Protocol) -> str:
     if isinstance(table, QuestProcedure):
         return f"quest, {what} by the answers, {len(values)} values from {ends}"
     return f"staircase, {what} by the answers, from {ends}"
-
-
-def _told(history: Sequence[Asked]) -> list[tuple[tuple[float, ...], int]]:
-    return [(asked.stimulus, asked.outcome) for asked in history]
 
 
 def _asked(answered: Answered, parameter: str) -> Asked:

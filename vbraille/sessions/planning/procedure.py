@@ -22,7 +22,7 @@ class Answered:
     Parameters
     ----------
     trial
-        The trial as it was planned.
+        The trial as it was shown.
     answer
         The answer that counts; `vbraille.braille.spelling` says how it is written.
     t_s

@@ -362,7 +362,7 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.source = self._answers
-        answered = Answered(record.trial, event.answer, event.t_s)
+        answered = Answered(record.shown, event.answer, event.t_s)
         if self.correcting is not None:
             self.correcting = None
             self.history[-1] = answered
