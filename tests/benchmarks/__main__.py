@@ -16,6 +16,7 @@ PARTS = (
     "faults",
     "jumps",
     "sessions",
+    "adaptive",
     "analysis",
     "coverage",
     "reader",

@@ -225,9 +225,7 @@ class _Killed:
         if _done(events) != _done(whole) or _answers(events) != _answers(whole):
             self._add(self._lost, "what the file says was not done line by line, once each")
         if _first_shown(events) != _first_shown(whole):
-            self._add(
-                self._skipped, "what the trials first showed, or their order, is another"
-            )
+            self._add(self._skipped, "what the trials first showed, or their order, is another")
         self._compare_said(_last(events, "presented", "attempt"))
         for problem in _wrong_attempts(events):
             self._add(self._skipped, problem)

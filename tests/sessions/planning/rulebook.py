@@ -10,9 +10,10 @@ def broken_rules(protocol, participant, seed):
     plan = make_plan(protocol, participant, seed)
     practised, tested = ([_shows(protocol, t) for t in run] for run in (plan.practice, plan.trials))
     problems = []
-    # Where the answers choose the values, those of the plan say only which of two comes first.
-    by_answers = protocol.adaptive and protocol.task == "choice"
-    if not by_answers and any(one == other for run in (practised, tested) for one, other in pairwise(run)):
+    runs = [practised, tested]
+    if protocol.adaptive and protocol.task == "choice":
+        runs.pop()  # the answers choose the values; the plan says which of two comes first
+    if any(one == other for run in runs for one, other in pairwise(run)):
         problems.append("twice running")
     if set(practised) & set(tested):
         problems.append("practice of what is tested")

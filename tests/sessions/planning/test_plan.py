@@ -87,9 +87,11 @@ class TestPlans:
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
             "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",
-            "tuning-spacing-adaptive": "3821d9bb7c556f447dd31ed0eb70a54f3f1b01f78f29bd2adaff6fc0740b584f",
+            "tuning-spacing-adaptive": "3821d9bb7c556f447dd31ed0eb70a54f"
+            "3f1b01f78f29bd2adaff6fc0740b584f",
             "tuning-width": "e45e7b4e3f18bb90e58a2b716adc9e220a459dd803242bbf7268ad0ac34cab7a",
-            "tuning-width-adaptive": "b26190b9e0345fc1e707cf889bf0c191e7c064d8e6606c53d8dfaf787aee1590",
+            "tuning-width-adaptive": "b26190b9e0345fc1e707cf889bf0c191"
+            "e7c064d8e6606c53d8dfaf787aee1590",
             "words": "b16b3cc68f5161937e6c724723e728b9464f7231f63801202b098c7d237899a7",
         }
 

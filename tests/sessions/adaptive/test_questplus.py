@@ -1,0 +1,143 @@
+"""QUEST+ on a grid: by brute force, by what must hold of any history, and what it refuses."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tiers import examples
+from vbraille.sessions.adaptive.estimates import GridAxis, estimate
+from vbraille.sessions.adaptive.questplus import (
+    GridQuest,
+    detection_quest,
+    geometric,
+    nearer_quest,
+    ordered_pairs,
+    steps,
+)
+
+VALUES = steps(0.5, 3.0, 0.25)
+AXES = (GridAxis("centre", VALUES), GridAxis("spread", (0.1, 0.4)), GridAxis("lapse", (0.02,)))
+PAIRS = ordered_pairs(VALUES)
+HISTORIES = st.lists(st.tuples(st.sampled_from(PAIRS), st.integers(0, 1)), max_size=12)
+
+
+def quest(about=""):
+    return nearer_quest(PAIRS, *AXES, about=about)
+
+
+def entropy(p):
+    p = p[p > 0]
+    return -(p * np.log(p)).sum()
+
+
+@examples(10)
+@given(HISTORIES, st.sampled_from(["", "centre", "spread"]))
+def test_it_asks_what_lowers_the_entropy_most(history, about):
+    asks = quest(about)
+    now = asks.posterior(history)
+    axis = {"": None, "centre": (1, 2), "spread": (0, 2)}[about]
+    gains = []
+    for pair in PAIRS:
+        later = [asks.posterior([*history, (pair, outcome)]) for outcome in (0, 1)]
+        # Bayes: the posterior is a mixture of what it becomes, weighted by the outcomes.
+        first, other = (part.reshape(-1) for part in later)
+        at = np.argmax(np.abs(first - other))
+        share = (now.reshape(-1)[at] - other[at]) / (first[at] - other[at])
+        before, *after = (entropy(p.sum(axis=axis) if axis else p) for p in (now, *later))
+        gains.append(before - share * after[0] - (1 - share) * after[1])
+    assert np.allclose(asks.information(history), gains, atol=1e-6)
+    assert gains[PAIRS.index(asks.next(history))] >= max(gains) - 1e-6
+
+
+@examples(20)
+@given(HISTORIES, HISTORIES)
+def test_what_was_asked_of_it_before_changes_nothing(history, other):
+    used = quest()
+    used.next(other)
+    used.next(history[: len(history) // 2])
+    assert used.next(history) == quest().next(history)
+    assert (used.posterior(history) == quest().posterior(history)).all()
+
+
+def test_of_equally_good_questions_it_asks_the_first():
+    table = np.full((2, 3, 2), 0.5)
+    table[1, 1:, 1], table[0, 1:, 1] = 0.9, 0.1
+    table[:, 2] += [[0, 1e-12], [0, -1e-12]]  # a last bit, as machines differ in it
+    same = GridQuest([(1.0,), (2.0,), (3.0,)], [GridAxis("it", (0.0, 1.0))], table)
+    assert same.next([]) == (2.0,)
+
+
+def test_three_outcomes():
+    random = np.random.default_rng(1)
+    table = random.dirichlet((1, 1, 1), size=(4, 5)).transpose(2, 0, 1)
+    asks = GridQuest([(float(n),) for n in range(4)], [GridAxis("it", VALUES[:5])], table)
+    post = asks.posterior([((0.0,), 2), ((3.0,), 0)])
+    by_hand = table[2, 0] * table[0, 3]
+    assert np.allclose(post, by_hand / by_hand.sum())
+    gains = [
+        entropy(np.full(5, 0.2))
+        - sum(p.sum() / 5 * entropy(p / p.sum()) for p in table[:, stimulus])
+        for stimulus in range(4)
+    ]
+    assert np.allclose(asks.information([]), gains)
+
+
+def test_what_falls_is_the_mirror_image_of_what_grows():
+    values = steps(-1.0, 1.0, 0.1)
+    rest = [GridAxis("spread", (0.2, 0.4)), GridAxis("guess", (0.0,)), GridAxis("lapse", (0.02,))]
+    grows = detection_quest("normal", values, GridAxis("threshold", values), *rest)
+    falls = detection_quest("normal", values, GridAxis("threshold", values), *rest, falls=True)
+    history = [((values[n],), n % 3 // 2) for n in (1, 5, 13, 14, 15)]
+    mirrored = [((-x[0],), yes) for x, yes in history]
+    found = grows.estimate(history, "threshold").mean
+    assert falls.estimate(mirrored, "threshold").mean == pytest.approx(-found)
+
+
+def test_an_estimate_is_of_the_posterior():
+    values = tuple(np.linspace(0, 10, 2001).tolist())
+    shares = np.exp(-((np.array(values) - 4) ** 2) / 2 / 0.5**2)
+    found = estimate(values, shares / shares.sum())
+    assert (found.mean, found.median, found.sd) == pytest.approx((4, 4, 0.5), abs=1e-3)
+    assert (found.low, found.high) == pytest.approx((4 - 0.98, 4 + 0.98), abs=1e-3)
+    assert estimate((2.0,), np.ones(1)).width == 0
+
+
+def test_grids():
+    assert steps(0.5, 3.0, 0.05)[1] == 0.55
+    assert (len(steps(0.5, 3.0, 0.05)), len(PAIRS)) == (51, 55)
+    assert geometric(0.05, 1.0, 3) == pytest.approx((0.05, 0.2236, 1.0), abs=1e-4)
+
+
+AXIS = GridAxis("it", (0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda: steps(1, 1, 0.1), "step is 0.1; it must be above 0 and at most 0"),
+        (lambda: steps(0, 1, 0.3), "step is 0.3, and steps of it from 0 do not meet 1"),
+        (lambda: GridAxis("it", ()), "it has no values"),
+        (lambda: GridAxis("it", (1.0, 1.0)), "values that do not increase"),
+        (lambda: GridAxis("it", (1.0, 2.0), (1.0,)), "has 1 weights; there must be 2"),
+        (lambda: GridAxis("it", (1.0, 2.0), (1.0, 0.0)), "a weight that is not above 0"),
+        (lambda: GridQuest([], [AXIS], np.ones((2, 0, 2))), "stimuli are none"),
+        (lambda: GridQuest([(1.0,)], [AXIS], np.ones((2, 1, 3))), "the table has shape"),
+        (lambda: GridQuest([(1.0,)], [AXIS], np.ones((2, 1, 2))), "add up to 1"),
+        (lambda: GridQuest([(1.0,)], [GridAxis("it", (0.0,))], np.full((2, 1, 1), 0.5)),
+         "1 to 3 parameters must have several values"),
+        (lambda: GridQuest([(1.0,)], [AXIS], np.full((2, 1, 2), 0.5), "that"),
+         "there is no parameter 'that'; there is it"),
+        (lambda: detection_quest("weibull", (0.0, 1.0), *[AXIS] * 4), "for values above 0"),
+        (lambda: nearer_quest(PAIRS, GridAxis("centre", steps(0, 1, 1e-5)), *AXES[1:]),
+         "the grid has 11000110 cells; it must have at most 4000000"),
+    ],
+)  # fmt: skip
+def test_refusals(make, says):
+    with pytest.raises(ValueError, match=says):
+        make()
+
+
+def test_a_parameter_that_there_is_not():
+    with pytest.raises(KeyError):
+        quest().estimate([], "that")
