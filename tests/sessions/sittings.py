@@ -124,7 +124,7 @@ class Session:
         )
         session.run(person if script else f"simulated:{noise:g}", say=said.append, sound=played)
         record = session.record
-        progress = Progress(self.plan, record.told.events)
+        progress = Progress(self.plan, record.told.events, record.procedure)
         return Sat(said, record.told.events, played.tones, record, progress, session.progress)
 
 

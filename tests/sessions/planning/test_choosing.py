@@ -1,0 +1,168 @@
+"""Trials chosen by the answers: the deck, its conditions, when enough was asked; bad tables."""
+
+import pytest
+
+from tests.sessions.planning.test_bad_protocols import PAIRS, STRINGS, VBD_HEAD, parse, refuse
+from vbraille.errors import InputError
+from vbraille.sessions.planning.choosing import ByAnswers, describe, procedure_of
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.procedure import Answered, FixedOrder
+
+WIDTHS = (
+    '[design]\nkind = "choice"\nparameter = "dot_width_mm"\nvalues = [0.5, 3.0]\nstring = "a"\n'
+    "repeats = 15\n"
+)
+TWO = '[[conditions]]\nname = "smooth"\ntexture = 0.0\n[[conditions]]\nname = "rough"\n'
+QUEST = '[procedure]\nkind = "quest"\nspread = [0.1, 0.3]\n'
+STEP = f"{QUEST}step = 0.1\n"
+OF_CONTRAST = 'parameter = "contrast"\nleast = 0.1\nmost = 1.0\n'
+STAIRS = f'[procedure]\nkind = "staircase"\n{OF_CONTRAST}start = [0.9]\nsteps = [0.1]\n'
+
+
+def made(text, seed=1):
+    protocol = parse(VBD_HEAD + text)
+    return procedure_of(protocol, make_plan(protocol, "P1", seed))
+
+
+def nearer_to(liked):
+    """Answers of somebody who never errs."""
+
+    def answer(trial):
+        first, second = (abs(stimulus.value - liked) for stimulus in trial.stimuli)
+        return "1" if first < second else "2"
+
+    return answer
+
+
+def through(procedure, answer, each_s=4.0):
+    """All trials that are asked, with their answers."""
+    history = []
+    while (trial := procedure.next(history)) is not None:
+        assert trial.number == len(history) + 1
+        history.append(Answered(trial, answer(trial), each_s * trial.number))
+    return history
+
+
+def test_a_plan_is_followed_without_a_procedure():
+    assert isinstance(made(WIDTHS), FixedOrder)
+    assert made(WIDTHS).found([]) == ()
+
+
+def test_it_finds_what_is_liked_and_keeps_the_order_of_the_plan():
+    procedure = made(WIDTHS + STEP + "furthest = 0.8\n")
+    history = through(procedure, nearer_to(1.83))
+    assert len(history) == 30
+    for planned, past in zip(procedure.deck, history, strict=True):
+        low_first = [t.stimuli[0].value < t.stimuli[1].value for t in (planned, past.trial)]
+        assert low_first[0] == low_first[1]
+        values = [stimulus.value for stimulus in past.trial.stimuli]
+        assert abs(values[0] - values[1]) <= 0.8 + 1e-9
+        assert [s.geometry.dot_width_mm for s in past.trial.stimuli] == values
+    liked, interval = procedure.found(history)
+    assert float(liked.removeprefix("preferred dot width: ").removesuffix(" mm")) == pytest.approx(
+        1.83, abs=0.06
+    )
+    assert interval.startswith("95 % interval: 1.")
+
+
+def test_the_history_alone_decides_whatever_was_asked_before():
+    procedure = made(WIDTHS + STEP)
+    history = through(procedure, nearer_to(2.2))
+    for count in (17, 3, 29, 0):
+        assert procedure.next(history[:count]) == history[count].trial
+        assert made(WIDTHS + STEP).next(history[:count]) == history[count].trial
+
+
+@pytest.mark.parametrize(
+    ("stop", "asked"),
+    [("trials = 12", 12), ("seconds = 20", 5), ("width = 0.2\nat_least = 6", range(6, 29)),
+     ("sd = 0.1", range(10, 29)), ("sd = 2.0\nat_least = 4", 4)],
+)  # fmt: skip
+def test_when_enough_was_asked(stop, asked):
+    history = through(made(f"{WIDTHS}{STEP}{stop}\n"), nearer_to(1.5))
+    assert len(history) in ([asked] if isinstance(asked, int) else asked)
+
+
+def test_conditions_have_their_own_answers_and_ends():
+    procedure = made(f"{TWO}{WIDTHS.replace('15', '6')}{STEP}sd = 0.12\nat_least = 4\n")
+    sharp, low, high = nearer_to(1.0), nearer_to(0.6), nearer_to(2.9)
+
+    def answer(trial):
+        # Whoever likes one thing, then another, is never known precisely.
+        if trial.condition == "smooth":
+            return sharp(trial)
+        return (low if trial.number % 2 else high)(trial)
+
+    history = through(procedure, answer)
+    asked = [past.trial.condition for past in history]
+    assert 4 <= asked.count("smooth") < 12
+    assert asked.count("rough") == 12
+    said = procedure.found(history)
+    assert said[0] == "condition: smooth"
+    assert said[3] == "condition: rough"
+    assert said[1].startswith("preferred dot width: ")
+
+
+def test_strings_are_those_of_the_plan_with_the_chosen_contrast():
+    for table in (STAIRS, f"{STEP}{OF_CONTRAST}", f'{STEP}{OF_CONTRAST}harder = "more"\n'):
+        procedure = made(PAIRS + "repeats = 4\n" + table)
+        history = through(procedure, lambda trial: trial.presented)
+        assert isinstance(procedure, ByAnswers)
+        assert [p.trial.presented for p in history] == [t.presented for t in procedure.deck]
+        contrasts = [past.trial.stimuli[0].tuning.contrast for past in history]
+        assert len(set(contrasts)) > 2
+        assert all(0.1 <= contrast <= 1.0 for contrast in contrasts)
+        assert procedure.found(history)[0].startswith("threshold contrast: ")
+        easy = contrasts[-1] < contrasts[0]
+        assert easy == ("more" not in table)
+
+
+def test_most_trials_and_what_a_plan_says():
+    protocol = parse(f"{VBD_HEAD}{TWO}{WIDTHS}{STEP}trials = 8\n")
+    assert protocol.trials == made(f"{TWO}{WIDTHS}{STEP}trials = 8\n").most == 16
+    says = "quest, dot width by the answers, 26 values from 0.5 to 3 mm"
+    assert describe(protocol) == says
+    stairs = parse(f"{VBD_HEAD}{PAIRS}{STAIRS}")
+    assert describe(stairs) == "staircase, contrast by the answers, from 0.1 to 1"
+
+
+BAD = [
+    (WIDTHS + '[procedure]\nkind = "qest"', "[procedure] kind is 'qest'; the nearest is quest…"),
+    (WIDTHS + "[procedure]\nkind = 'quest'", "[procedure] lacks spread; add it"),
+    (f"{WIDTHS}{STEP}{OF_CONTRAST}", "[procedure] parameter, least and most are those of…out"),
+    (WIDTHS + STEP.replace("0.1\n", "0.3\n"), "[procedure] step is 0.3, and steps of it…does"),
+    (WIDTHS + STEP.replace("0.1\n", "9\n"), "[procedure] step is 9; it must be above 0…"),
+    (f"{WIDTHS}{STEP}furthest = 0.01", "[procedure] furthest is 0.01, and no two…larger"),
+    (f"{WIDTHS}{STEP}sd = 0", "[procedure] sd is 0; it must be above 0"),
+    (f"{WIDTHS}{STEP}lapse = [0.1, 0.1]", "[procedure] lapse has values that do not…them"),
+    (f"{WIDTHS}{STEP}start = [1]", "[procedure] start is of kind = 'staircase'; leave it out…"),
+    (f"{WIDTHS}{STEP}[rules]\nnever_twice_running = true", "[rules] never_twice_running is of…"),
+    (f"{WIDTHS}{STAIRS}", "[procedure] kind is 'staircase', which needs right answers…'quest'"),
+    (f"{STRINGS}{STEP}", "[procedure] lacks parameter; add it"),
+    (f"{STRINGS}{QUEST}{OF_CONTRAST}", "[procedure] lacks step; add it"),
+    (f"{STRINGS}{STEP}{OF_CONTRAST}furthest = 1", "[procedure] furthest is of kind = 'choice'…"),
+    (f"{STRINGS}{STAIRS}".replace("most = 1.0", "most = 0.1"), "…nothing can move between…larger"),
+    (f"{STRINGS}{STAIRS}".replace("steps = [0.1]", "steps = [0]"), "…the staircase cannot move…"),
+    (f"{STRINGS}{STAIRS}".replace("steps = [0.1]", "steps = [2]"), "…only stand at its ends…"),
+    (f"{STRINGS}{STAIRS}right = 9\nwrong = 9", "…has 2 trials: the staircase cannot move…"),
+    (f"{STRINGS}{STAIRS}target = 0.75", "[procedure] target is of staircases with right = 1…"),
+    (f"{TWO}{STRINGS}{STEP}{OF_CONTRAST}".replace("contrast", "texture"),
+     "[procedure] parameter is 'texture', which the condition smooth sets itself…"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "says"), BAD)
+def test_what_cannot_be_used_is_said(text, says):
+    beginning, _, end = says.partition("…")
+    with pytest.raises(InputError, match=r"^mine\.toml( line \d+)?: ") as refused:
+        parse(VBD_HEAD + text)
+    said = str(refused.value).split(": ", 1)[1]
+    assert said.startswith(beginning)
+    assert all(part in said for part in end.split("…"))
+
+
+def test_paper_cannot_vary():
+    refuse(
+        f'{VBD_HEAD}medium = "paper"\n{STRINGS}{STEP}{OF_CONTRAST}', 10,
+        ": [procedure] varies what a device shows; with medium = 'paper' leave it out",
+    )  # fmt: skip
