@@ -15,6 +15,7 @@ from vbraille.analysis.measures import (
     doterrors,
     legibility,
     levels,
+    liked,
     movement,
     overtime,
     preferences,
@@ -97,7 +98,7 @@ def analyse_study(study: Study, options: Options) -> Results:
     if study.trials is not None:
         chapters += _of_trials(study, study.trials, options, left_out)
     if study.comparisons is not None:
-        chapters.append(_of_comparisons(study.comparisons, options))
+        chapters.append(_of_comparisons(study, study.comparisons, options))
     if any(sitting.notes for sitting in study.sittings):
         table = remarks.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
@@ -247,12 +248,13 @@ def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut
     )
 
 
-def _of_comparisons(comparisons: pd.DataFrame, options: Options) -> Chapter:
+def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -> Chapter:
     table, preferred = preferences.tuning(comparisons, seed=options.seed)
     own = preferences.choices_of_participants(comparisons)
+    each = liked.liked(comparisons, [sitting.protocol for sitting in study.sittings])
     return Chapter(
         "Which of two was chosen",
         "What participants took for closer to the reference.",
-        (table, own, preferred),
+        (table, own, preferred, each),
         tuple(bars.choices(table, preferred, own)),
     )

@@ -85,22 +85,17 @@ def test_when_enough_was_asked(stop, asked):
 
 def test_conditions_have_their_own_answers_and_ends():
     procedure = made(f"{TWO}{WIDTHS.replace('15', '6')}{STEP}sd = 0.12\nat_least = 4\n")
-    sharp, low, high = nearer_to(1.0), nearer_to(0.6), nearer_to(2.9)
-
-    def answer(trial):
-        # Whoever likes one thing, then another, is never known precisely.
-        if trial.condition == "smooth":
-            return sharp(trial)
-        return (low if trial.number % 2 else high)(trial)
-
-    history = through(procedure, answer)
+    likes = {"smooth": nearer_to(1.0), "rough": nearer_to(2.5)}
+    history = through(procedure, lambda trial: likes[trial.condition](trial))
     asked = [past.trial.condition for past in history]
-    assert 4 <= asked.count("smooth") < 12
-    assert asked.count("rough") == 12
+    assert all(4 <= asked.count(name) < 12 for name in likes)
     said = procedure.found(history)
-    assert said[0] == "condition: smooth"
-    assert said[3] == "condition: rough"
-    assert said[1].startswith("preferred dot width: ")
+    assert [said[0], said[3]] == ["condition: smooth", "condition: rough"]
+    found = [float(line.split()[3]) for line in (said[1], said[4])]
+    assert found == pytest.approx([1.0, 2.5], abs=0.2)
+    over = procedure.asked(history)["smooth"]
+    assert procedure.choosers["smooth"].next(over) is None
+    assert procedure.choosers["smooth"].next(over[:-1]) is not None
 
 
 def test_strings_are_those_of_the_plan_with_the_chosen_contrast():
