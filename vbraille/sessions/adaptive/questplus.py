@@ -145,10 +145,11 @@ class GridQuest:
         """Expected information of each stimulus in nats, equation (1); float64[stimuli]."""
         posterior = self._flat(history)
         if self._about is None:
-            uncertain = self._uncertain @ posterior
+            uncertain = np.einsum("sp,p->s", self._uncertain, posterior)
         else:
             uncertain = self._uncertain_about(posterior)
-        likely = self._table @ posterior
+        # This is no product by BLAS, whose threads would wait for each other on a busy machine.
+        likely = np.einsum("osp,p->os", self._table, posterior)
         if len(likely) == 1:
             likely = np.stack((1.0 - likely[0], likely[0]))
         return _entropy(likely) - uncertain
@@ -165,7 +166,7 @@ class GridQuest:
         likely /= np.maximum(shares, 1e-300)
         if len(likely) == 1:
             likely = np.concatenate((1.0 - likely, likely))
-        return _entropy(likely) @ shares
+        return np.einsum("sp,p->s", _entropy(likely), shares)
 
     def estimate(self, history: Sequence[tuple[Stimulus, int]], name: str) -> GridEstimate:
         """Estimate a parameter after some answers, whatever the others are.
