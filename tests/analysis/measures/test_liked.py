@@ -7,7 +7,6 @@ from tests.analysis.measures.test_preferences import WIDTHS_MM, comparisons, nea
 from vbraille.analysis.measures.liked import liked
 from vbraille.sessions.planning.protocolfiles import load_protocol
 
-
 W = "dot_width_mm"
 
 
