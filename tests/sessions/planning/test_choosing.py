@@ -156,6 +156,14 @@ def test_what_cannot_be_used_is_said(text, says):
     assert all(part in said for part in end.split("…"))
 
 
+def test_what_the_procedure_chooses_is_no_option():
+    protocol = parse(f"{VBD_HEAD}{STRINGS}{STEP}{OF_CONTRAST}")
+    assert make_plan(protocol, "P1", 1, texture=0.5).trials[0].stimuli[0].tuning.texture == 0.5
+    says = "^the procedure of mine chooses contrast; leave ‹contrast› out$"
+    with pytest.raises(InputError, match=says):
+        make_plan(protocol, "P1", 1, contrast=0.5)
+
+
 def test_paper_cannot_vary():
     refuse(
         f'{VBD_HEAD}medium = "paper"\n{STRINGS}{STEP}{OF_CONTRAST}', 10,

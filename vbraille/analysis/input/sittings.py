@@ -220,7 +220,8 @@ def _state(progress: Progress) -> str:
     if trial is not None and progress.correcting is None and progress.told(trial).attempts:
         return f"broken off in {'practice ' if trial.practice else ''}trial {trial.number}"
     answered = sum(told.answer is not None for told in progress.trials.values())
-    return f"not ended: {answered} of {len(progress.trials)} trials answered"
+    of_all = "" if progress.planned is None else f" of {progress.planned}"
+    return f"not ended: {answered}{of_all} trials answered"
 
 
 def _versions(record: Record, progress: Progress) -> dict[str, str]:

@@ -175,16 +175,12 @@ class ByAnswers:
     def next(self, history: Sequence[Answered], /) -> Trial | None:
         """Trial that follows a history, with the values that the procedure chooses."""
         asked = self.asked(history)
-        over: set[str] = set()
         for place, condition in self._places(asked):
-            if condition in over:
-                continue
             chosen = self.choosers[condition].next(asked[condition])
             if chosen is not None:
                 trial = self._of[condition][place]
                 stimuli = _at(self.protocol, trial.stimuli, chosen)
                 return structs.replace(trial, number=len(history) + 1, stimuli=stimuli)
-            over.add(condition)
         return None
 
     def found(self, history: Sequence[Answered], /) -> tuple[str, ...]:

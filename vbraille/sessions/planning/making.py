@@ -10,6 +10,7 @@ from msgspec import structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.chance import Chance, balanced_orders
+from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.rules import check_plan, is_balanced
@@ -94,6 +95,10 @@ def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition
     """Conditions of a protocol, with the given values where a condition has none of its own."""
     given = {name: float(value) for name, value in given.items() if value is not None}
     for name in given:
+        if name == varied(protocol):
+            raise ValueError(
+                f"the procedure of {protocol.name} chooses {name}; leave {setting(name)} out"
+            )
         if all(name in condition.given for condition in protocol.conditions):
             raise ValueError(
                 f"every condition of {protocol.name} has its own {name}; leave {setting(name)} out"

@@ -31,11 +31,7 @@ from vbraille.sessions.planning.design import (
     StringList,
 )
 from vbraille.sessions.planning.practice import Practice
-from vbraille.sessions.planning.procedures import (
-    FixedProcedure,
-    QuestProcedure,
-    StaircaseProcedure,
-)
+from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.spellings import SpellingKeys
 from vbraille.toml.tomlfile import Table, which
 
@@ -62,7 +58,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     design: Combinations | StringList | Choice
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     rules: Rules = Rules()
-    procedure: FixedProcedure | QuestProcedure | StaircaseProcedure = FixedProcedure()
+    procedure: ProcedureTable = FixedProcedure()
     practice: Practice = Practice()
     trial: TrialPace = TrialPace()
     session: SessionPace = SessionPace()
