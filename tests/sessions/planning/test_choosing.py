@@ -157,7 +157,7 @@ def test_what_cannot_be_used_is_said(text, says):
 
 
 def test_what_the_procedure_chooses_is_no_option():
-    protocol = parse(f"{VBD_HEAD}{STRINGS}{STEP}{OF_CONTRAST}")
+    protocol = parse(f"{VBD_HEAD}{PAIRS}{STEP}{OF_CONTRAST}")
     assert make_plan(protocol, "P1", 1, texture=0.5).trials[0].stimuli[0].tuning.texture == 0.5
     says = "^the procedure of mine chooses contrast; leave ‹contrast› out$"
     with pytest.raises(InputError, match=says):
