@@ -22,7 +22,7 @@ class Answered:
     Parameters
     ----------
     trial
-        The trial as it was shown.
+        The trial; as it was shown, if the answers choose what is shown.
     answer
         The answer that counts; `vbraille.braille.spelling` says how it is written.
     t_s

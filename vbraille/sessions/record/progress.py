@@ -362,7 +362,9 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.source = self._answers
-        answered = Answered(record.shown, event.answer, event.t_s)
+        # A procedure that goes by the answers goes by what was felt, whatever it would choose today.
+        shown = record.trial if self.procedure.trials is not None else record.shown
+        answered = Answered(shown, event.answer, event.t_s)
         if self.correcting is not None:
             self.correcting = None
             self.history[-1] = answered
