@@ -362,7 +362,7 @@ class Progress:
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
         record.source = self._answers
-        # A procedure that goes by the answers goes by what was felt, whatever it would choose today.
+        # What goes by the answers goes by what was felt, whatever it would choose today.
         shown = record.trial if self.procedure.trials is not None else record.shown
         answered = Answered(shown, event.answer, event.t_s)
         if self.correcting is not None:
