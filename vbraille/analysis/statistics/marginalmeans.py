@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import expit
+from scipy.stats import t as student
 
 from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.scores import check_level
 from vbraille.analysis.statistics.trialsmodel import combine
 
 if TYPE_CHECKING:
@@ -74,10 +76,10 @@ def difference(
 ) -> Estimates:
     """Difference of two shares of right answers, first less second, -1…1.
 
-    The interval is put together of the two shares' own, with their correlation (Newcombe 1998;
-    Zou and Donner 2008), so that it is not the same width on both sides near 0 and 1. By the slope
-    of the difference along the coefficients instead (delta method), it holds the truth 91 times in
-    100 near the ceiling.
+    The interval is put together of the two shares' own, by the degrees of freedom of their odds
+    ratio and with their correlation (Newcombe 1998; Zou and Donner 2008), so that it has not the
+    same width on both sides near 0 and 1. By the slope of the difference along the coefficients
+    instead (delta method), it holds the truth 91 times in 100 near the ceiling.
 
     Parameters
     ----------
@@ -88,16 +90,23 @@ def difference(
     level
         Level of confidence.
     """
+    check_level(level)
     one, two = (np.asarray(of, np.float64) for of in (first, second))
-    errors = [combine(fit, of).errors for of in (one, two)]
-    apart = combine(fit, one - two).errors
+    apart = combine(fit, one - two)
+    quantile = student.ppf((1 + level) / 2, apart.degrees)
+    ends, errors = [], []
+    for of in (one, two):
+        at = combine(fit, of)
+        half = quantile * at.errors
+        ends.append([expit(at.estimates + way * half) for way in (-1, 0, 1)])
+        errors.append(at.errors)
     with np.errstate(invalid="ignore", divide="ignore"):
-        common = (errors[0] ** 2 + errors[1] ** 2 - apart**2) / (2 * errors[0] * errors[1])
+        common = (errors[0] ** 2 + errors[1] ** 2 - apart.errors**2) / (2 * errors[0] * errors[1])
     common = np.clip(common, -1.0, 1.0)
-    high, low = (mean(fit, of, level) for of in (one, two))
-    value = high.value - low.value
-    down = _both(high.value - high.low, low.high - low.value, common)
-    up = _both(high.high - high.value, low.value - low.low, common)
+    (low_1, value_1, high_1), (low_2, value_2, high_2) = ends
+    value = value_1 - value_2
+    down = _both(value_1 - low_1, high_2 - value_2, common)
+    up = _both(high_1 - value_1, value_2 - low_2, common)
     return Estimates(value, value - down, value + up)
 
 
