@@ -119,7 +119,10 @@ def test_where_no_block_is_given_there_is_none():
 def test_all_right_is_said():
     trials = study(conditions={"T0": 1.0, "T25": 0.5})
     (row,) = tables(trials)[1].records()
-    assert row["note"] == "everything is right in T0: the odds are Firth's finite ones"
+    assert row["note"] == (
+        "everything is right in T0: the odds are Firth's finite ones; "
+        "no interval of the difference: all are alike in one of them"
+    )
     assert 1 < row["low"] < row["odds_ratio"]
 
 

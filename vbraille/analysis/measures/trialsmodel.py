@@ -199,8 +199,11 @@ def _contrasts(fit: TrialsFit, counts: Counts, correction: str) -> list[Row]:
         tested = _tested(fit, first - second, row["participants"], 1 - (1 - LEVEL) / len(pairs))
         if "p" in tested:
             apart = difference(fit, first, second)
-            low, high = float(apart.low[0]), float(apart.high[0])
-            row |= {"difference_low": low, "difference_high": high}
+            if np.isnan(apart.low[0]):
+                notes.append("no interval of the difference: all are alike in one of them")
+            else:
+                row["difference_low"] = float(apart.low[0])
+                row["difference_high"] = float(apart.high[0])
             logs = np.log([tested["odds_ratio"], tested["low"], tested["high"]]) * TO_D
             row |= dict(zip(("d", "d_low", "d_high"), logs.tolist(), strict=True))
         else:

@@ -185,15 +185,16 @@ def combine(fit: TrialsFit, weights: ArrayLike) -> Contrasts:
     if participants < 2:
         raise Unanswerable("one participant; how people differ is not seen")
     adjusted, alone = _adjusted(fit, np.einsum("spq,sq->sp", fit.spread, ell))
-    # Firth's penalty leaves the sum of all scores above or below 0, which is nobody's own.
+    variance = (np.einsum("skp,skp->sk", adjusted, fit.scores) ** 2).sum(axis=1)
+    # Firth's penalty leaves a sum of scores that is not 0 even if everybody is alike.
     left = np.einsum("spq,sq->sp", fit.spread, fit.scores.sum(axis=1))
-    scores = fit.scores - np.einsum("skpq,sq->skp", fit.leverages, left)
-    variance = (np.einsum("skp,skp->sk", adjusted, scores) ** 2).sum(axis=1)
+    own = fit.scores - np.einsum("skpq,sq->skp", fit.leverages, left)
+    differing = (np.einsum("skp,skp->sk", adjusted, own) ** 2).sum(axis=1)
     form = _form(fit, adjusted)
     trace = np.trace(form, axis1=1, axis2=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         degrees = trace**2 / (form**2).sum(axis=(1, 2))
-    unknown = alone | ~fit.settled | ~(variance > _ALIKE * trace) | ~(degrees > 0)
+    unknown = alone | ~fit.settled | ~(differing > _ALIKE * trace) | ~(degrees > 0)
     return Contrasts(
         np.einsum("sp,sp->s", fit.coefficients, ell),
         np.where(unknown, np.nan, np.sqrt(variance)),
