@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 DOCUMENT = Path("docs/analysis.md")
 BEGIN, END = "<!-- coverage of trials: begin -->", "<!-- coverage of trials: end -->"
-STUDIES, SLOW = 10_000, 300
+STUDIES, FEWER, SLOW = 10_000, 2_000, 150
 LOW, HIGH, MOST_MISLED = 93.0, 98.0, 6.0
 PROCESSES = 2
 WITHIN, BETWEEN = (3, 5, 10, 20), (6, 10, 20)
@@ -62,11 +62,11 @@ def wanted() -> dict[str, Wanted]:
     }
     found = {
         f"{what}, {kind}": Wanted(
-            f"{what.capitalize()}, {words}, by mean share and SD of log odds ({STUDIES:,} studies)",
+            f"{what.capitalize()}, {words}, by mean share and SD of log odds ({FEWER:,} studies)",
             model.intervals,
             people[kind],
             columns,
-            (kind, what, STUDIES),
+            (kind, what, FEWER),
         )
         for what in model.WHAT
         for kind, words in told.items()
