@@ -18,6 +18,7 @@ PARTS = (
     "sessions",
     "analysis",
     "coverage",
+    "trials_coverage",
     "reader",
     "turning",
 )

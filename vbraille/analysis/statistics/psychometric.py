@@ -64,7 +64,7 @@ class PsychometricFit:
     spread, spread_interval
         The larger, the flatter; in the unit of the levels, but for the Weibull, which has none.
     slope
-        Of the share at the threshold, in one over the unit of the levels.
+        Rise of the share at the threshold, in one over the unit of the levels.
     guess, lapse
         Shares γ and λ.
     deviance, df, p
@@ -89,7 +89,7 @@ class PsychometricFit:
     note: str
 
 
-class Answers(NamedTuple):
+class LevelCounts(NamedTuple):
     """Counts of answers by level, with the function that is fitted to them."""
 
     levels: NDArray[np.float64]
@@ -115,7 +115,7 @@ def fit_psychometric(
     levels : float[n]
         What was presented, in any unit; a level may stand there several times.
     positive, trials : int[n]
-        Answers that say there is more, or that are right, and all answers, at each level.
+        LevelCounts that say there is more, or that are right, and all answers, at each level.
     shape
         A key of `SHAPES`.
     guess
@@ -173,8 +173,8 @@ def fit_psychometric(
 
 def _answers(
     levels: ArrayLike, positive: ArrayLike, trials: ArrayLike, shape: str, guess: float | None
-) -> Answers:
-    """Answers with equal levels put together, in their order, after checks."""
+) -> LevelCounts:
+    """Counts with equal levels put together, in their order, after checks."""
     if shape not in SHAPES:
         raise ValueError(f"no shape {shape!r}; there are {', '.join(SHAPES)}")
     if guess is not None and not 0 <= guess < 1:
@@ -194,10 +194,10 @@ def _answers(
         raise Unanswerable("all answers are the same; they show no threshold")
     if (n * (found - np.average(found, weights=n)) * (y / n)).sum() <= 0:
         raise Unanswerable("the share of answers does not rise with the level")
-    return Answers(found, y, n, SHAPES[shape], guess)
+    return LevelCounts(found, y, n, SHAPES[shape], guess)
 
 
-def _first_axes(asked: Answers, shape: str) -> list[NDArray[np.float64]]:
+def _first_axes(asked: LevelCounts, shape: str) -> list[NDArray[np.float64]]:
     """Grid over all that the levels could show: threshold, logarithm of the spread, lapses, …."""
     low, high = float(asked.levels[0]), float(asked.levels[-1])
     reach, gap = high - low, float(np.diff(asked.levels).min())
@@ -211,7 +211,7 @@ def _first_axes(asked: Answers, shape: str) -> list[NDArray[np.float64]]:
     return [thresholds, spreads, rare] + ([rare.copy()] if asked.guess is None else [])
 
 
-def _log_posterior(asked: Answers, axes: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+def _log_posterior(asked: LevelCounts, axes: list[NDArray[np.float64]]) -> NDArray[np.float64]:
     """Logarithm of the posterior on a grid, up to a constant."""
     m, s = axes[0][:, None, None], np.exp(axes[1])[None, :, None]
     rising = asked.curve(asked.levels, m, s)
@@ -244,13 +244,13 @@ def _nearer(
     return found
 
 
-def _shares(asked: Answers, at: list[float]) -> NDArray[np.float64]:
+def _shares(asked: LevelCounts, at: list[float]) -> NDArray[np.float64]:
     floor = at[3] if asked.guess is None else asked.guess
     rising = asked.curve(asked.levels, np.array(at[0]), np.array(math.exp(at[1])))
     return np.clip(floor + (1 - floor - at[2]) * rising, _EDGE, 1 - _EDGE)
 
 
-def _best(asked: Answers, start: list[float]) -> list[float]:
+def _best(asked: LevelCounts, start: list[float]) -> list[float]:
     """Most likely parameters, from a start near them; to 1e-6 of their size."""
 
     def lost(at: NDArray[np.float64]) -> float:
@@ -267,7 +267,7 @@ def _best(asked: Answers, start: list[float]) -> list[float]:
     return [float(value) for value in found.x]
 
 
-def _deviance(asked: Answers, share: NDArray[np.float64]) -> float:
+def _deviance(asked: LevelCounts, share: NDArray[np.float64]) -> float:
     own = asked.positive / asked.trials
     best = xlogy(asked.positive, own) + xlog1py(asked.trials - asked.positive, -own)
     found = asked.positive * np.log(share) + (asked.trials - asked.positive) * np.log1p(-share)

@@ -27,7 +27,7 @@ class RatingSummary:
         Mean of the participants' own means, and Student's interval of the population's; None
         where `note` says why.
     median, low_quartile, high_quartile
-        Of all ratings, each participant weighing the same.
+        Quartiles over all ratings, each participant weighing the same.
     note
         Why there is no interval; may be empty.
     """
