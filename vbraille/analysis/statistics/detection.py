@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm
 
@@ -190,7 +190,9 @@ def _differenced(hits: float, false_alarms: float) -> float:
     def excess(d: float) -> float:
         return float(ndtr((d - k) / math.sqrt(2)) + ndtr((-d - k) / math.sqrt(2))) - hits
 
-    return float(brentq(excess, 0.0, 4 * LARGEST_D)) if excess(4 * LARGEST_D) > 0 else 4 * LARGEST_D
+    if excess(4 * LARGEST_D) <= 0:
+        return 4 * LARGEST_D
+    return float(root_scalar(excess, bracket=(0.0, 4 * LARGEST_D)).root)
 
 
 def _z(yes: int, trials: int, what: str) -> tuple[float, float]:

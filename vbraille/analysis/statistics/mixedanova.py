@@ -154,16 +154,16 @@ def _columns(
     """Columns of each effect between participants, and of their mean; codes add up to 0."""
     names = tuple(between)
     codes = []
-    every = [tuple(dict.fromkeys(cell[i] for cell in groups)) for i in range(len(names))]
+    every = [tuple(dict.fromkeys(column)) for column in zip(*groups, strict=True)]
     for name, levels in zip(names, every, strict=True):
         if len(levels) < 2:
             raise Unanswerable(f"everybody has the same {name}, '{levels[0]}'")
     for cell in product(*every):
         if cell not in groups:
             raise Unanswerable(f"nobody with every score is in '{', '.join(cell)}'")
-    for i, levels in enumerate(every):
+    for levels, own in zip(every, zip(*groups, strict=True), strict=True):
         code = np.vstack([np.eye(len(levels) - 1), -np.ones(len(levels) - 1)])
-        codes.append(code[[levels.index(cell[i]) for cell in groups]])
+        codes.append(code[[levels.index(level) for level in own]])
     parts: list[tuple[tuple[str, ...], NDArray[np.float64]]] = []
     for size in range(len(names) + 1):
         for subset in combinations(range(len(names)), size):
@@ -196,7 +196,7 @@ def _of_contrasts(
         df1, df2 = d * column.shape[1], d * df_error
         if error <= rounding:
             note = "all participants of a group are alike; F has no value"
-            yield MixedEffect(name, df1, df2, *[None] * 7, note)
+            yield MixedEffect(name, df1, df2, None, None, None, None, None, None, None, note)
             continue
         ratio = effect / df1 / (error / df2)
         narrow = error**2 / (d * float((squares**2).sum()))

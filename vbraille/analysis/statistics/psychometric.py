@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Curve = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]], NDArray]
+    Curve = Callable[..., NDArray[np.float64]]  # of levels, threshold and spread
 
 MOST_LAPSES = 0.1
 FEWEST_LEVELS = 3
@@ -135,10 +135,10 @@ def fit_psychometric(
     check_level(level)
     asked = _answers(levels, positive, trials, shape, guess)
     axes = _first_axes(asked, shape)
-    for last in range(_PASSES):
+    log_posterior = _log_posterior(asked, axes)
+    for _ in range(_PASSES - 1):
+        axes = _nearer(axes, log_posterior)
         log_posterior = _log_posterior(asked, axes)
-        if last < _PASSES - 1:
-            axes = _nearer(axes, log_posterior)
     at = np.unravel_index(np.argmax(log_posterior), log_posterior.shape)
     best = _best(asked, [float(axis[i]) for axis, i in zip(axes, at, strict=True)])
     mass = np.exp(log_posterior - log_posterior.max())
@@ -187,7 +187,7 @@ def _answers(
     if shape == "weibull" and not (x > 0).all():
         raise ValueError("levels of a Weibull must be above 0")
     found, at = np.unique(x, return_inverse=True)
-    y, n = np.bincount(at, y, found.size), np.bincount(at, n, found.size)
+    y, n = (np.asarray(np.bincount(at, of, found.size), np.float64) for of in (y, n))
     if found.size < FEWEST_LEVELS:
         raise Unanswerable(f"{found.size} levels; a curve needs {FEWEST_LEVELS}")
     if y.sum() in (0, n.sum()):
