@@ -154,7 +154,7 @@ def _columns(
     """Columns of each effect between participants, and of their mean; codes add up to 0."""
     names = tuple(between)
     codes = []
-    every = [tuple(dict.fromkeys(column)) for column in zip(*groups, strict=True)]
+    every = [list(dict.fromkeys(column)) for column in zip(*groups, strict=True)]
     for name, levels in zip(names, every, strict=True):
         if len(levels) < 2:
             raise Unanswerable(f"everybody has the same {name}, '{levels[0]}'")
