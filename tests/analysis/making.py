@@ -11,6 +11,7 @@ from vbraille.analysis.measures import (
     legibility,
     movement,
     overtime,
+    trialsmodel,
 )
 from vbraille.analysis.measures import levels as compared
 from vbraille.analysis.schemas import Schema
@@ -87,4 +88,5 @@ def all_tables(trials, places):
         compared.level_means(measures),
         compared.t_tests(measures, "holm"),
         compared.analyses(measures)[0],
+        *trialsmodel.trials_model(trials, ["condition"], "holm"),
     ]

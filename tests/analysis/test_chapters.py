@@ -78,6 +78,7 @@ def test_sessions_of_all_kinds_together(sessions):
         "Over time",
         "How strings were read",
         "Levels compared",
+        "Trials modelled",
         "Which of two was chosen",
     ]
     rows = [(row["participant"], row["condition"]) for row in found["legibility"].records()]

@@ -19,6 +19,7 @@ PARTS = (
     "adaptive",
     "analysis",
     "coverage",
+    "trials_coverage",
     "reader",
     "turning",
 )

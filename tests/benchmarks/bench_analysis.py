@@ -61,6 +61,11 @@ def run() -> Iterator[Result]:
             f"analyse of {TABLE_TRIALS:,} trials of CSV", "≤ 10 s, ≤ 500 MB", 10, 500,
             [table, "--json"],
         )  # fmt: skip
+        report = Path(name, "report-of-table-{number}")
+        yield _program(
+            f"analyse of {TABLE_TRIALS:,} trials of CSV, with the report", "≤ 20 s, ≤ 500 MB", 20,
+            500, [table, "--out", report],
+        )  # fmt: skip
 
 
 def mauchly() -> Iterator[Result]:

@@ -20,6 +20,7 @@ from vbraille.analysis.measures import (
     overtime,
     preferences,
     remarks,
+    trialsmodel,
 )
 from vbraille.analysis.results import Chapter, Results
 from vbraille.analysis.statistics.correction import METHODS
@@ -158,6 +159,7 @@ def _of_trials(
         _over_time(trials),
         _motion(study, trials),
         _compared(scores, options, left_out),
+        _modelled(trials, options),
     ]
 
 
@@ -245,6 +247,14 @@ def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut
         "Differences within participants.",
         (means, own, levels.t_tests(scores, options.correction), table),
         tuple(bars.level_means(means, own)) if len(means) else (),
+    )
+
+
+def _modelled(trials: pd.DataFrame, options: Options) -> Chapter:
+    return Chapter(
+        "Trials modelled",
+        "Conditions, and what else legibility goes with, by a logistic model of single trials.",
+        trialsmodel.trials_model(trials, options.factors, options.correction),
     )
 
 

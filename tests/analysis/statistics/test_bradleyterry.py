@@ -310,7 +310,7 @@ def test_what_has_no_preferred_value():
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"values_mm": [1, 1]}, "twice"),
+        ({"values": [1, 1]}, "twice"),
         ({"first": [0, 2]}, "first must be in 0…1"),
         ({"first": [0.0, 1.0]}, "whole numbers"),
         ({"first": [1, 1]}, "with itself"),
@@ -322,7 +322,7 @@ def test_what_has_no_preferred_value():
 )
 def test_what_are_no_comparisons(change, reason):
     good = {
-        "values_mm": [1, 2],
+        "values": [1, 2],
         "first": [0, 1],
         "second": [1, 0],
         "chosen": [0, 0],

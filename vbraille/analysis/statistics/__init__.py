@@ -6,6 +6,12 @@
     Proportions and means with their intervals; tests between conditions.
 `bradleyterry`
     Scales and preferred values of paired comparisons.
+`trialsmodel`, `marginalmeans`
+    Logistic models of single trials, with participants as clusters, of many studies at once.
+`mixedanova`
+    Factors between participants beside those within.
+`psychometric`, `detection`, `ratings`
+    Thresholds of a reader, d′ and criterion, ratings on a scale.
 `information`
     How much of what was presented came through, from a table of answers.
 

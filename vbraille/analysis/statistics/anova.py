@@ -158,8 +158,8 @@ def anova(
     subsets = [
         s for size in range(1, len(names) + 1) for s in combinations(range(len(names)), size)
     ]
-    contrasts = [_contrast_scores(cube, subset) for subset in subsets]
-    between = _contrast_scores(cube, ())
+    contrasts = [contrast_scores(cube, subset) for subset in subsets]
+    between = contrast_scores(cube, ())
     error = [_deviations(z) for z in contrasts]
     all_errors = sum(error) + _deviations(between)
     rounding = ROUNDING * float((cube**2).sum())
@@ -181,7 +181,7 @@ def orthonormal_contrasts(levels: int) -> NDArray[np.float64]:
     return (raw / np.linalg.norm(raw, axis=1, keepdims=True)).T
 
 
-def _contrast_scores(cube: NDArray[np.float64], subset: tuple[int, ...]) -> NDArray[np.float64]:
+def contrast_scores(cube: NDArray[np.float64], subset: tuple[int, ...]) -> NDArray[np.float64]:
     """Each participant's scores on the contrasts of an effect, float64[participants, df1].
 
     The contrasts are the Kronecker product of each factor's: its own if it acts

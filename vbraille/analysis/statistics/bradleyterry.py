@@ -67,7 +67,7 @@ class Preference:
     Parameters
     ----------
     value, interval
-        Preferred value and its interval, in mm as the values are; None for no interval.
+        Preferred value and its interval, in the unit of the values; None for no interval.
     how
         Clause for a report on what the interval comes from; empty if there is no interval.
     note
@@ -130,7 +130,7 @@ def bradley_terry(wins: ArrayLike) -> Scale:
 
 
 def preferred(
-    values_mm: Sequence[float] | NDArray[np.float64],
+    values: Sequence[float] | NDArray[np.float64],
     first: ArrayLike,
     second: ArrayLike,
     chosen: ArrayLike,
@@ -151,7 +151,7 @@ def preferred(
 
     Parameters
     ----------
-    values_mm : float[k]
+    values : float[k]
         Values that were compared, in any order, none of them twice.
     first, second : int[n]
         Which value came first and which second, 0…k - 1.
@@ -176,7 +176,7 @@ def preferred(
     check_level(level)
     if resamples < 1:
         raise ValueError(f"{resamples} resamples; one at least is needed")
-    values = finite_scores("values_mm", values_mm)
+    values = finite_scores("values", values)
     if np.unique(values).size != values.size:
         raise ValueError(f"a value occurs twice in {values.tolist()}")
     wins = _wins_of_each(values.size, first, second, chosen, groups)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import gammaln
+from scipy.stats import t as student
 from scipy.stats import ttest_rel
 
 from vbraille.analysis.statistics.effectsizes import d_z_interval
@@ -142,3 +143,31 @@ def paired_t(
         d_high=None if of_d is None else of_d.high,
         g_z=hedges_correction(n - 1) * mean / sd if n > 2 else None,
     )
+
+
+def paired_p_values(differences: NDArray[np.float64]) -> NDArray[np.float64]:
+    """P of paired t-tests of many studies at once, as power is simulated with.
+
+    Parameters
+    ----------
+    differences : float64[studies, n]
+        Differences of the participants' scores, of two participants or more.
+
+    Returns
+    -------
+    float64[studies]
+        Two-sided p; NaN where all differences of a study are the same.
+
+    Raises
+    ------
+    Unanswerable
+        If there are fewer than two participants.
+    """
+    n = differences.shape[1]
+    if n < 2:
+        raise Unanswerable(f"{'one participant' if n else 'no participants'}; a t-test needs two")
+    mean = differences.mean(axis=1)
+    # By their spread, since the sd of equal differences is not quite 0.
+    alike = np.ptp(differences, axis=1) <= ROUNDING * np.abs(differences).max(axis=1)
+    sd = np.where(alike, np.nan, differences.std(axis=1, ddof=1))
+    return 2 * student.sf(np.abs(mean) / sd * math.sqrt(n), n - 1)

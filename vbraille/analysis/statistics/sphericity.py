@@ -92,12 +92,25 @@ def sphericity(z: NDArray[np.float64], *, cells: int, one_factor: bool) -> Spher
     )
 
 
-def huynh_feldt(epsilon: float, n: int, d: int) -> float:
-    """Huynh and Feldt's epsilon from Greenhouse and Geisser's; n participants, d contrasts."""
-    rank = epsilon * d  # 1 … n - 1; at its upper end the estimate is without bound
-    if n < 3 or n - 1 - rank <= 1e-9:
-        return epsilon if n < 3 else 1.0
-    return max(epsilon, min(1.0, (n * rank - 2) / (d * (n - 1 - rank))))
+def huynh_feldt(epsilon: float, n: int, d: int, groups: int = 1) -> float:
+    """Huynh and Feldt's epsilon from Greenhouse and Geisser's.
+
+    With N participants in g groups it is ((N - g + 1) d ε - 2) / (d (N - g - d ε)), which is what
+    Lecoutre (1991) made of it: their own has N in place of N - g + 1, the same for one group. It
+    is taken for 1 where it is larger, and for Greenhouse and Geisser's where it is smaller.
+
+    Parameters
+    ----------
+    epsilon
+        Greenhouse and Geisser's epsilon.
+    n, d, groups
+        Numbers of participants, contrasts and groups.
+    """
+    rank = epsilon * d  # 1 … n - groups; at its upper end the estimate is without bound
+    left = n - groups
+    if left < 2 or left - rank <= 1e-9:
+        return epsilon if left < 2 else 1.0
+    return max(epsilon, min(1.0, ((left + 1) * rank - 2) / (d * (left - rank))))
 
 
 def mauchly_p(log_w: float, n: int, d: int, cells: int) -> tuple[float, int, float]:

@@ -1,0 +1,49 @@
+"""How often intervals of single readers hold the truth: d′, and psychometric functions."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import ndtr
+
+from tests.benchmarks.coverage_people import Found
+from tests.conftest import SEED
+from vbraille.analysis.statistics.detection import yes_no
+from vbraille.analysis.statistics.psychometric import SHAPES, fit_psychometric
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+LEVELS = np.linspace(0.25, 1.75, 7)
+THRESHOLD, SPREAD, LAPSES = 1.0, 0.25, 0.02
+
+
+def sensitivity(trials: int, d: float, criterion: float, studies: int) -> Found:
+    """Coverage of d′ of yes and no; counts that come again are worked out once."""
+    random = np.random.default_rng([SEED, trials, round(10 * d), round(10 * criterion)])
+    shares = ndtr([d / 2 - criterion, -d / 2 - criterion])
+    counts, often = np.unique(random.binomial(trials, shares, (studies, 2)), axis=0,
+                              return_counts=True)  # fmt: skip
+    held = 0
+    for (hits, falses), times in zip(counts.tolist(), often.tolist(), strict=True):
+        ends = yes_no(hits, trials, falses, trials).d_interval
+        held += times * (ends.low <= d <= ends.high)
+    return Found(studies, held, studies)
+
+
+def curve(trials: int, shape: str, free: bool, what: str, studies: int) -> Found:
+    """Coverage of a psychometric function's threshold or spread; `free` of yes and no."""
+    random = np.random.default_rng([SEED, trials, len(shape), free])
+    guess = 0.03 if free else 0.5
+    rising = SHAPES[shape](LEVELS, np.array(THRESHOLD), np.array(SPREAD))
+    shares = guess + (1 - guess - LAPSES) * rising
+    given = held = 0
+    for _ in range(studies):
+        try:
+            found = fit_psychometric(
+                LEVELS, random.binomial(trials, shares), np.full(7, trials), shape=shape,
+                guess=None if free else guess,
+            )  # fmt: skip
+        except Unanswerable:
+            continue
+        ends = found.threshold_interval if what == "threshold" else found.spread_interval
+        given += 1
+        held += ends.low <= (THRESHOLD if what == "threshold" else SPREAD) <= ends.high
+    return Found(given, held, studies)
