@@ -1,0 +1,1 @@
+"""Recordings and traces of sessions, played back in the live view."""
