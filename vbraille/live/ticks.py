@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 # The numbers that a record begins with, taken at once: field by field takes twenty times as long.
 _NUMBERS: Final = struct.Struct(f"<{len(INTS)}q{len(FLOATS)}d")
-_STEPS: Final = np.arange(MOST_SAMPLES)
 _COUNT_BYTES: Final = 8
 
 
@@ -40,11 +39,11 @@ class NewestTick(NamedTuple):
     numbers
         Its numbers, in the order of `vbraille.engine.record.INTS` and `FLOATS`.
     deflections
-        Its frame, float32[rows, columns].
+        Its frame, float32[rows, columns], as bytes.
     """
 
     numbers: tuple[int | float, ...]
-    deflections: NDArray[np.float32]
+    deflections: bytes
 
 
 class TickViews:
@@ -59,6 +58,8 @@ class TickViews:
 
     Attributes
     ----------
+    shape : tuple[int, int]
+        Rows and columns of a frame.
     mailbox : Mailbox
         Pictures that were posted to the host.
 
@@ -78,13 +79,16 @@ class TickViews:
         begin = Ring.bytes_needed(extent.shape, 0)
         dtype = tick_dtype(extent.shape)
         records = np.frombuffer(ring, dtype, extent.ticks, begin)
-        self._shape = extent.shape
+        self.shape = extent.shape
         self._size = extent.ticks
         self._bytes = dtype.itemsize
         self._memory = ring[begin:]
         self._published = ring[:_COUNT_BYTES].cast("q")
         self._times_ns, self._x_mm = records["time_ns"], records["x_mm"]
         self._frames = records["frame"]
+        self._frame_end = _NUMBERS.size + 4 * extent.rows * extent.columns
+        self._samples = np.empty((MOST_SAMPLES, 3), np.float32)
+        self._ago_s, self._places, self._follows = self._samples.T
 
     @property
     def published(self) -> int:
@@ -95,12 +99,10 @@ class TickViews:
         """Copy the last of the first ``end`` records, which must be above 0."""
         begin = (end - 1) % self._size * self._bytes
         record = bytes(self._memory[begin : begin + self._bytes])
-        rows, columns = self._shape
-        frame = np.frombuffer(record, np.float32, rows * columns, _NUMBERS.size)
-        return NewestTick(_NUMBERS.unpack_from(record), frame.reshape(self._shape))
+        return NewestTick(_NUMBERS.unpack_from(record), record[_NUMBERS.size : self._frame_end])
 
-    def samples(self, first: int, end: int, row: int, column: int) -> NDArray[np.float32]:
-        """Make the samples of records, as `vbraille.live.framing.frame_bytes` takes them.
+    def samples(self, first: int, end: int, row: int, column: int) -> bytes:
+        """Make the samples of records.
 
         Parameters
         ----------
@@ -111,23 +113,29 @@ class TickViews:
 
         Returns
         -------
-        float32[n, 3]
-            At most `MOST_SAMPLES`. Records that may have been overwritten meanwhile are left out.
+        bytes
+            float32[n, 3] as `vbraille.live.framing.frame_bytes` describes it, of at most
+            `MOST_SAMPLES`. Records that may have been overwritten meanwhile are left out.
         """
         first = max(first, end - self._size)
         count = end - first
-        steps = _STEPS[:count] if count <= MOST_SAMPLES else thinned(count)
-        numbers = steps + first
-        slots = numbers % self._size
-        samples = np.empty((slots.size, 3), np.float32)
-        if not slots.size:
-            return samples
+        at = first % self._size
+        slots: slice | NDArray[np.intp] = slice(at, at + count)
+        if count > MOST_SAMPLES or at + count > self._size:
+            slots = (first + thinned(count)) % self._size
+            count = slots.size
+        if not count:
+            return b""
         times_ns = self._times_ns[slots]
-        samples[:, 0] = (times_ns[-1] - times_ns) * 1e-9
-        samples[:, 1] = self._x_mm[slots]
-        rows, columns = self._shape
+        rows, columns = self.shape
         is_there = 0 <= row < rows and 0 <= column < columns
-        samples[:, 2] = self._frames[slots, row, column] if is_there else math.nan
+        # Filled column by column, in memory of its own, since that is made for each frame.
+        np.multiply(times_ns[-1] - times_ns, 1e-9, out=self._ago_s[:count], casting="unsafe")
+        self._places[:count] = self._x_mm[slots]
+        self._follows[:count] = self._frames[slots, row, column] if is_there else math.nan
         # The slot after the last published one may just be written.
-        whole = self.published + 1 - self._size
-        return samples if whole <= first else samples[numbers >= whole]
+        overwritten = self.published + 1 - self._size - first
+        if overwritten > 0:
+            numbers = thinned(end - first)
+            return self._samples[:count][numbers >= overwritten].tobytes()
+        return self._samples[:count].tobytes()

@@ -7,14 +7,13 @@ that happens here can reach the loop.
 
 from __future__ import annotations
 
-import math
 import time
 from typing import TYPE_CHECKING, Final, Protocol
 
 import msgspec
 
 from vbraille.errors import InputError
-from vbraille.live.framing import NO_DEFLECTIONS, FrameHeader, frame_bytes
+from vbraille.live.framing import FrameHeader, frame_bytes, joined
 from vbraille.live.messages import LetGo, Point, Press, State, Turn
 from vbraille.simulation.steering import BeAt
 
@@ -180,12 +179,13 @@ class WatchingViewer:
         if end == self._cursor and not again:
             return None
         numbers, deflections = watched.newest(end)
-        samples = watched.samples(self._cursor, end, request.row, request.column)
+        row = -1 if self._source.blind else request.row
+        samples = watched.samples(self._cursor, end, row, request.column)
         self._cursor = end
+        shape = watched.shape
         if self._source.blind:
-            samples[:, 2] = math.nan
-            deflections = NO_DEFLECTIONS
-        return frame_bytes(_header(numbers, self._source.told[0]), deflections, samples)
+            shape, deflections = (0, 0), b""
+        return joined(_header(numbers, self._source.told[0]), shape, deflections, samples)
 
 
 def _header(numbers: Sequence[float], state: int) -> FrameHeader:
