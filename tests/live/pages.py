@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from websockets.sync.client import ClientConnection
 
-    from vbraille.live.sources import Source
+    from vbraille.live.sources import LiveSource
 
 
 class FrameRead(NamedTuple):
@@ -143,7 +143,7 @@ def get(address: str, path: str = "/", method: str = "GET", **headers: str):
 
 
 @contextmanager
-def served(source: Source, **options) -> Iterator[LiveServer]:
+def served(source: LiveSource, **options) -> Iterator[LiveServer]:
     """Run a server in a thread of its own."""
     started, ended = threading.Event(), asyncio.Event()
     found: list[LiveServer | BaseException] = []

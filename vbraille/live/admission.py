@@ -40,7 +40,7 @@ class Admission:
     host
         Name or address that the server listens at.
     port
-        Its port.
+        Port that it listens at.
     steers
         Whether anybody may steer at all.
     watch_token, steer_token

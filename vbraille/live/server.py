@@ -1,7 +1,7 @@
 """The server of the live view: the files of its page, and a WebSocket by which pages pull frames.
 
-What it shows comes from a `Source`, and `Talk` is the talk with one page. Here stands who is let
-in, and how many. `docs/live-view.md` has the rules and limits.
+What it shows comes from a `LiveSource`, and `Talk` is the talk with one page. Here stands who is
+let in, and how many. `docs/live-view.md` has the rules and limits.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from vbraille.live.sources import Source
+    from vbraille.live.sources import LiveSource
 
 SOCKET_PATH: Final = "/live"
 # Pages at a time; more are told so.
@@ -85,7 +85,7 @@ class LiveServer:
 
     def __init__(
         self,
-        source: Source,
+        source: LiveSource,
         *,
         host: str | None = None,
         port: int | None = None,

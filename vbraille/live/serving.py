@@ -49,7 +49,7 @@ _KEYS: Final = (signal.SIGINT, signal.SIGHUP, signal.SIGTSTP, signal.SIGTTIN, si
 _log = logging.getLogger("vbraille.live.serving")  # it runs as __main__
 
 
-class Line:
+class ServerLine:
     """The server's end of the line to the program.
 
     Parameters
@@ -129,7 +129,7 @@ def addresses(admission: Admission) -> list[str]:
     return said
 
 
-async def serve(begin: Begin, line: Line) -> None:
+async def serve(begin: Begin, line: ServerLine) -> None:
     """Serve until the program is gone.
 
     Raises
@@ -166,7 +166,7 @@ def main() -> int:
 
 
 async def _main(begin: Begin) -> int:
-    line = Line(begin.line)
+    line = ServerLine(begin.line)
     try:
         await serve(begin, line)
     except VbrailleError as error:

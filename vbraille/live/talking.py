@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from websockets.asyncio.server import ServerConnection
 
     from vbraille.live.admission import Admission
-    from vbraille.live.sources import Source, Steering, Viewer
+    from vbraille.live.sources import LiveSource, Steering, Viewer
 
 # Messages of a page that wait to be looked at, and frames that it may ask for ahead.
 MOST_QUEUED: Final = 8
@@ -79,7 +79,7 @@ class Talk:
     def __init__(
         self,
         connection: ServerConnection,
-        source: Source,
+        source: LiveSource,
         admission: Admission,
         drawer: Executor,
         held: Held,

@@ -37,9 +37,9 @@ class NewestTick(NamedTuple):
     Parameters
     ----------
     numbers
-        Its numbers, in the order of `vbraille.engine.record.INTS` and `FLOATS`.
+        Numbers of the tick, in the order of `vbraille.engine.record.INTS` and `FLOATS`.
     deflections
-        Its frame, float32[rows, columns], as bytes.
+        Frame of the tick, float32[rows, columns], as bytes.
     """
 
     numbers: tuple[int | float, ...]

@@ -42,7 +42,7 @@ class HandHolder(Protocol):
 
 
 class Watching:
-    """A `vbraille.live.sources.Source` of a device that is read now.
+    """A `vbraille.live.sources.LiveSource` of a device that is read now.
 
     Parameters
     ----------
