@@ -293,6 +293,22 @@ def test_messages_of_the_line_are_what_they_were():
             assert to_server(other.recv(MOST_MESSAGE_BYTES)) == message
 
 
+_LOADED = """
+import sys
+import vbraille.live.monitor
+heavy = {"websockets", "PIL", "numba", "llvmlite", "liblouis", "asyncio", "playwright"}
+print(*sorted(heavy & set(sys.modules)), sep=",")
+import vbraille.live.serving
+print(*sorted(heavy & set(sys.modules)), sep=",")
+"""
+
+
+def test_neither_end_loads_what_it_does_not_need():
+    command = [sys.executable, "-c", _LOADED]
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert said == "\nasyncio,websockets\n"
+
+
 def test_a_browser_is_opened_for_somebody_at_a_terminal_only(monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
     assert not _has_browser()  # tests have no terminal

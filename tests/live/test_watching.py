@@ -20,6 +20,8 @@ from vbraille.errors import InputError
 from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, Point, Press, Turn
 from vbraille.live.ticks import _NUMBERS, TickViews
 from vbraille.live.watching import Watching
+from vbraille.render import STRESS2
+from vbraille.render.program import vibration
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.steering import BeAt
 
@@ -247,3 +249,14 @@ def test_commands_and_knobs_go_to_whoever_reads():
     for request in asked:
         source.ask(request)
     assert heard == asked
+
+
+def test_the_map_is_of_what_is_under_the_hand(ring, source):
+    pytest.importorskip("vbraille.live.maps")
+    model = STRESS2.on(STRESS2.style.geometry)
+    ring.mailbox.post(STRESS2.style.render(np.arange(20, dtype=np.uint8) + 30, model), 1)
+    assert source.map(Map("png")).startswith(b"\x89PNG")
+    assert b"<svg" in source.map(Map("svg"))
+    ring.mailbox.post(vibration(model), 2)
+    with pytest.raises(InputError, match="there is no map"):
+        source.map(Map())

@@ -126,6 +126,7 @@ class LiveServer:
             self._port,
             compression=None,
             process_request=self._answer,
+            process_response=_secure,
             server_header=None,
             open_timeout=_OPEN_S,
             ping_interval=_PING_S,
@@ -177,6 +178,13 @@ class LiveServer:
             self.pages -= 1
 
 
+def _secure(_connection: ServerConnection, _request: HttpRequest, response: Response) -> None:
+    """Give an answer the headers of safety; a WebSocket that begins is no page."""
+    if response.status_code != HTTPStatus.SWITCHING_PROTOCOLS:
+        for name, value in HEADERS:
+            response.headers[name] = value
+
+
 def _response(status: HTTPStatus, body: str | bytes, kind: str = _TEXT) -> Response:
     content = body.encode() if isinstance(body, str) else body
     headers = Headers(
@@ -185,8 +193,6 @@ def _response(status: HTTPStatus, body: str | bytes, kind: str = _TEXT) -> Respo
     )
     headers["Content-Type"] = kind
     headers["Content-Length"] = str(len(content))
-    for name, value in HEADERS:
-        headers[name] = value
     return Response(status.value, status.phrase, headers, content)
 
 

@@ -106,12 +106,17 @@ class Watching:
         InputError
             If stimuli are hidden, or nothing that has a map is under the hand.
         """
-        if self.blind:
+        drawn = b"" if self.blind else self._drawn(request)
+        if self.blind:  # meanwhile, at the latest
             raise InputError("there is no map: stimuli are hidden until all answers are given")
-        if self.watched is None or not self.watched.mailbox.published:
+        return drawn
+
+    def _drawn(self, request: Map) -> bytes:
+        watched = self.watched
+        if watched is None or not watched.mailbox.published:
             raise InputError("there is no map: nothing is under the hand yet")
         for _ in range(_TAKES):
-            posted = self.watched.mailbox.take()
+            posted = watched.mailbox.take()
             if posted is not None:
                 break
             time.sleep(_TAKE_S)
