@@ -66,7 +66,11 @@ class StyleKnob:
 
     def turned(self, value: float, steps: int) -> float:
         """Value after so many steps up, or down if negative; it stops at the bounds."""
-        after = round(min(max(value + steps * self.step, self.low), self.high), _PLACES)
+        return self.nearest(value + steps * self.step)
+
+    def nearest(self, value: float) -> float:
+        """Value that the knob can have, within its bounds, that is nearest to another."""
+        after = round(min(max(value, self.low), self.high), _PLACES)
         return round(after) if isinstance(self.low, int) else after
 
 
