@@ -70,8 +70,10 @@ class StyleKnob:
 
     def nearest(self, value: float) -> float:
         """Value that the knob can have, within its bounds, that is nearest to another."""
-        after = round(min(max(value, self.low), self.high), _PLACES)
-        return round(after) if isinstance(self.low, int) else after
+        within = min(max(value, self.low), self.high)
+        if isinstance(self.low, int):  # only whole steps make sense
+            return round(self.low + self.step * round((within - self.low) / self.step))
+        return round(within, _PLACES)
 
 
 def _length(name: str, step: float) -> StyleKnob:
