@@ -109,8 +109,8 @@ class Viewed:
         """State of the reading; None if it is what it was at the last call."""
         device, reader = self._device, self._device.reader
         under = reader.under
-        # What is compared is small, for this is asked fifty times a second. Values that cannot
-        # change are compared as objects, which are kept here, so that no other can take their place.
+        # What is compared is small, for this is asked fifty times a second. What cannot change is
+        # compared as an object, and kept here, so that no other can take its place in memory.
         now = (
             *(reader.window, under.style, reader.layout, under.shown, under.reached),
             *(reader.layout.counted, reader.done, device.paused, device.placing, device.held),
