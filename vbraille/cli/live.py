@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Self
 
 from vbraille.cli.terminal import say_line
@@ -57,7 +58,8 @@ class LiveView:
         if self.pointer is not None:
             facts.append(("hand", hand))
         self._device = device
-        self._viewed = Viewed(device, source.title or source.name, self._said, facts)
+        title = source.title or PurePath(source.name).name
+        self._viewed = Viewed(device, title, self._said, facts)
         self.tell()
 
     def tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
@@ -92,7 +94,6 @@ class LiveView:
             obey(self._device.reader, asked)
 
     def __enter__(self) -> Self:
-        self._monitor.__enter__()
         self._monitor.launch()
         return self
 
