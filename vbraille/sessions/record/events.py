@@ -451,8 +451,8 @@ class Lost(JournalEvent, frozen=True):
 
 AnyEvent = (
     Session | Run | Presented | Cue | Contact | Read | Warning | Answer | Undo | Repeat
-    | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break | Begin | Tuning | Note
-    | Stop | End | Closed
+    | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
+    | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)
 _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")
