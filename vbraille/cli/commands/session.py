@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
@@ -104,8 +105,12 @@ def _conduct(session: Session, answers: Answers) -> int:
 
 def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
+    from vbraille.sessions.conditions import LiveAddress
+
     names = ("device", "hand", "answers", "sound")
     given = {name: getattr(arguments, name) for name in names}
+    check_live_options(arguments)
+    given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None
     return {name: value for name, value in given.items() if value is not None}
 
 

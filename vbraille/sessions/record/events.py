@@ -97,7 +97,7 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     stimulus: int
 
 
-class Watched(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
     """How the live view shows a run to those who watch it.
 
     Parameters
@@ -191,7 +191,7 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     clock_moved_s: float | None = None
     torn_bytes: int = 0
     torn_file: dict[str, Any] = {}
-    monitor: Watched | None = None
+    monitor: LiveView | None = None
 
 
 class Presented(WithStimulus, frozen=True, kw_only=True):
