@@ -291,6 +291,7 @@ class Session:
         warn: Say = _nobody,
         sound: Sound | None = None,
         before_rest: Callable[[], None] = _nothing,
+        onlookers: Onlookers | None = None,
     ) -> Self:
         """Conduct the session until its end, or until it is stopped.
 
@@ -309,6 +310,8 @@ class Session:
         before_rest
             Function that is called just before the array is brought to rest, which nothing may
             interrupt.
+        onlookers
+            Pages that watch; None for those that the conditions ask for.
 
         Returns
         -------
@@ -324,9 +327,10 @@ class Session:
         """
         given = self.answers(answers)
         begins = not self._begun
-        onlookers = self._watch(say)
+        onlookers = self._usual_onlookers() if onlookers is None else onlookers
         if onlookers is not None:
-            say = onlookers.say
+            say = onlookers.beside(say)
+            onlookers.begin(self._engine)
         try:
             if isinstance(self._engine, Host):
                 self._engine.launch()
@@ -367,8 +371,8 @@ class Session:
                 onlookers.close()
         return self
 
-    def _watch(self, say: Say) -> Onlookers | None:
-        """Begin the live view, which is given the engine's memory; None if none is wanted."""
+    def _usual_onlookers(self) -> Onlookers | None:
+        """Make the pages of the live view that is wanted; None if none is."""
         live = self.conditions.live
         if live is None:
             return None
@@ -384,15 +388,8 @@ class Session:
             blind=blind,
             steers=pointer is not None,
         )
-        onlookers = Onlookers(
-            monitor,
-            blind=blind,
-            host=live.host or LOOPBACK,
-            simulated=pointer is not None,
-            say=say,
-        )
-        onlookers.begin(self._engine)
-        return onlookers
+        host = live.host or LOOPBACK
+        return Onlookers(monitor, blind=blind, host=host, simulated=pointer is not None)
 
     def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
         """Make the usual engine: a process of its own, or a loop in this one if it runs fast."""

@@ -67,8 +67,6 @@ class Onlookers:
         Address at which the pages are served.
     simulated
         Whether a page may be the hand of a simulated device.
-    say
-        Function that is called with each sentence for the experimenter.
     """
 
     def __init__(
@@ -78,12 +76,11 @@ class Onlookers:
         blind: bool,
         host: str,
         simulated: bool,
-        say: Callable[[str], None],
     ) -> None:
         self._monitor: ToldMonitor | None = monitor
         self._simulated = simulated
         self._host = host
-        self._say = say
+        self._say: Callable[[str], None] = _nobody
         self._heard = Heard(blind=blind)
         self._newest: State | None = None
         self._number = 0
@@ -111,10 +108,19 @@ class Onlookers:
             _log.info("the live view was not given the memory: %r", fault)
             self._end(self._monitor)
 
-    def say(self, sentence: str) -> None:
-        """Say a sentence to the experimenter, and to the pages as far as they may hear it."""
-        self._say(sentence)
-        self._heard.hear(sentence)
+    def beside(self, say: Callable[[str], None]) -> Callable[[str], None]:
+        """Give the function that says a sentence to the experimenter by ``say``, and to the pages.
+
+        The pages are told it as far as they may hear it. What the live view itself has to say goes
+        to the experimenter alone.
+        """
+        self._say = say
+
+        def tell(sentence: str) -> None:
+            say(sentence)
+            self._heard.hear(sentence)
+
+        return tell
 
     def told(self) -> LiveView:
         """What the journal has about the live view of a run."""
@@ -150,6 +156,10 @@ class Onlookers:
         self._monitor = None
         _close(monitor)
         self._say(ENDED)
+
+
+def _nobody(_sentence: str) -> None:
+    """Ignore a sentence, before it is known who hears them."""
 
 
 def _close(monitor: ToldMonitor) -> None:
