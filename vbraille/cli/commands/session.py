@@ -173,8 +173,7 @@ def _check(arguments: argparse.Namespace) -> int:
     good = True
     for finding in check_folder(Path(arguments.folder), arguments.expect):
         good &= finding.good
-        text = spelled(finding.text)
-        _say(text if finding.good else f"fault: {text}")
+        _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1
 
 
@@ -251,7 +250,7 @@ def _ask(field: Question, typed: Typed) -> str:
 
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because nobody listens
-        print(printable(sentence), flush=True)
+        print(printable(spelled(sentence)), flush=True)
 
 
 def _warn(sentence: str) -> None:

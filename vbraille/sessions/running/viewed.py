@@ -122,7 +122,7 @@ def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
         rows_shown=list(zip(protocol.mapping.left, protocol.mapping.right, strict=True)),
         place=_place(course),
         mapping=f"mapping: {protocol.mapping.name}",
-        paused=engine.paused,
+        paused=course.paused,
         simulated=simulated,
         held=course.progress.pointed,
         device=_device(course.display.newest),
