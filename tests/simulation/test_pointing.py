@@ -120,7 +120,7 @@ def test_a_hold_ends_with_the_process_that_holds(ends, reaped):
         assert theirs.at() is None
 
 
-def test_two_who_write_at_once_leave_orders_and_poses_whole(clock):
+def test_two_who_write_at_once_leave_orders_and_poses_whole():
     steering, pointer = Steering(), Pointer()
     taking, holding = Steering(steering.descriptor), Pointer(pointer.descriptor)
     count = by_tier(2000, 20_000, 200_000)

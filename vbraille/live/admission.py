@@ -50,8 +50,8 @@ class Admission:
     host: str
     port: int
     steers: bool = True
-    watch_token: str = field(default_factory=new_token)
-    steer_token: str = field(default_factory=new_token)
+    watch_token: str = field(default_factory=new_token, repr=False)
+    steer_token: str = field(default_factory=new_token, repr=False)
 
     @property
     def on_loopback(self) -> bool:

@@ -36,6 +36,7 @@ from vbraille.live.ticks import TickViews
 from vbraille.live.watching import Watching
 from vbraille.logs import keep
 from vbraille.simulation.pointing import Pointer
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from vbraille.live.admission import Admission
@@ -169,7 +170,7 @@ async def _main(begin: Begin) -> int:
     try:
         await serve(begin, line)
     except VbrailleError as error:
-        line.say(f"live view: {error}", ends=True)
+        line.say(spelled(f"live view: {error}"), ends=True)
         return error.exit_code
     except Exception as error:
         _log.exception("the live view has ended")

@@ -109,7 +109,7 @@ class Talk:
         except Exception as error:
             _log.exception("a page could not be served")
             await self._end(
-                f"the live view has a fault, which its authors want to hear of: {error!r}"
+                f"a fault of vbraille's own, which its authors want to hear of: {error!r}"
             )
         finally:
             self._leave()
