@@ -381,9 +381,7 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     )
 
 
-def _inherited(
-    kind: type[_Channel], name: str, descriptor: str
-) -> _Channel:
+def _inherited(kind: type[_Channel], name: str, descriptor: str) -> _Channel:
     """What moves a hand, in memory that this process has made or inherited."""
     try:
         return kind(int(descriptor))

@@ -64,6 +64,7 @@ class ChunkedTrace:
             self._places, self.record = self._walk()
         except OSError as error:
             raise self._fault(error) from None
+
     def __len__(self) -> int:
         """Count the chunks."""
         return len(self._places)
