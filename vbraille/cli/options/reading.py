@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vbraille.cli.options.live import add_live_options
 from vbraille.cli.options.values import duration, lines, number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -30,8 +31,8 @@ SETTLED = (
 
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
-    "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, and "
-    "wander:SPEED goes about without reading"
+    "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
+    "wander:SPEED goes about without reading, and still moves only in the live view of --monitor"
 )
 SPEC = "Name the device, such as serial:/dev/ttyACM0, or sim for a simulated one"
 
@@ -49,6 +50,7 @@ def read(parser: ArgumentParser) -> None:
         action="store_true",
         help="Begin at the beginning, and keep neither the place nor anything else of the book.",
     )
+    add_live_options(parser)
 
 
 def settings(parser: ArgumentParser) -> None:
