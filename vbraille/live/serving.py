@@ -32,7 +32,8 @@ from vbraille.live.channel import (
     to_server,
 )
 from vbraille.live.server import LiveServer
-from vbraille.live.watching import Watched, Watching
+from vbraille.live.ticks import TickViews
+from vbraille.live.watching import Watching
 from vbraille.logs import keep
 from vbraille.simulation.pointing import Pointer
 
@@ -114,7 +115,7 @@ def _take(said: bytes, descriptors: list[int], source: Watching) -> None:
     elif descriptors:
         try:
             extent = Extent(**msgspec.structs.asdict(message))
-            source.watch(Watched.of(descriptors[0], extent))
+            source.watch(TickViews(descriptors[0], extent))
         except (OSError, ValueError) as error:
             _log.warning("the host's memory cannot be watched: %s", error)
 
