@@ -102,7 +102,7 @@ def line_map(
     lines = lines_of(program)
     if places * lines * program.shape[0] > MOST_PIXELS:
         raise ValueError(f"the map would have {places} columns; choose a longer step")
-    x_mm = start_mm + step_mm * np.arange(places)
+    x_mm = start_mm + step_mm * np.arange(places, dtype=np.float64)
     # The left column tells its own place then. What it does, all columns do at that place.
     left = program.with_anchor(0.0)
     if program.kind is ProgramKind.LINE:
@@ -248,7 +248,7 @@ font-size="3">{_BAR_MM:g} mm</text>
 
 def _on_canvas(
     deflections: NDArray[np.floating], shape: MapShape, black: int
-) -> NDArray[np.uint8] | NDArray[np.uint16]:
+) -> NDArray[np.unsignedinteger]:
     """Draw rows as bands, each line's in the middle of its line; what is not known is white."""
     lines = _lines(deflections, shape)
     kind = np.uint8 if black == 255 else np.uint16

@@ -13,7 +13,6 @@ import numpy as np
 from vbraille.errors import InputError
 from vbraille.live.framing import NO_DEFLECTIONS, FrameHeader, frame_bytes, thinned
 from vbraille.live.maps import picture
-from vbraille.live.messages import Next
 from vbraille.playback.reels import PLAYED
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.live.messages import Map, Moment
+    from vbraille.live.messages import Map, Moment, Next
     from vbraille.live.sources import Steering
     from vbraille.playback.reels import Piece, Reel
 
@@ -43,20 +42,18 @@ class Playback:
     ----------
     reel
         What is played back.
-
-    Attributes
-    ----------
-    playback : bool
-        True: pages name times.
     """
-
-    playback: Final = True
 
     def __init__(self, reel: Reel) -> None:
         self._reel = reel
         self._pieces: OrderedDict[int, Piece] = OrderedDict()
         self._states: OrderedDict[int, bytes] = OrderedDict()
         self._lock = RLock()  # maps are drawn in a thread of their own
+
+    @property
+    def playback(self) -> bool:
+        """Whether pages name times; always."""
+        return True
 
     @property
     def length_s(self) -> float:
@@ -99,7 +96,7 @@ class Playback:
         except ValueError as error:
             raise InputError(str(error)) from None
 
-    def ask(self, request: Steering) -> None:
+    def ask(self, request: Steering) -> None:  # noqa: ARG002
         """Refuse what a page wants changed.
 
         Raises

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from vbraille.live.messages import Moment, State
@@ -65,18 +63,15 @@ class Reel(Protocol):
     ----------
     length_s : float
         Length in seconds.
-    moments : sequence of Moment
+    moments : list[Moment]
         What happened, by time.
-    notes : sequence of str
+    notes : list[str]
         Sentences for whoever plays it, such as on damage.
     """
 
-    @property
-    def length_s(self) -> float: ...
-    @property
-    def moments(self) -> Sequence[Moment]: ...
-    @property
-    def notes(self) -> Sequence[str]: ...
+    length_s: float
+    moments: list[Moment]
+    notes: list[str]
 
     def find(self, at_s: float) -> int:
         """Number of the piece that has the frame of a time: the last one that is not later."""

@@ -35,6 +35,7 @@ _AROUND: Final = 3
 _MOST_MOMENTS: Final = 4000
 _MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
 _NUMBERS: Final = ("t_s", "x_mm", "line")
+_LATER: Final = ("y_mm", "theta_rad", "part")  # from format 2 on
 # What reading a file raises that is HDF5, but not as `vbraille render` writes it.
 _UNLIKE: Final = (
     OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
@@ -56,10 +57,9 @@ class Rendered:
         If it is no such file, has no frames, or is of a newer format.
     """
 
-    notes: Final = ()
-
     def __init__(self, path: Path) -> None:
         self._path = path
+        self.notes: list[str] = []
         try:
             self._file = h5py.File(path, "r")
         except _UNLIKE as error:
@@ -90,7 +90,7 @@ class Rendered:
             times_s = np.nan_to_num(self._numbers["t_s"][span], posinf=0.0)
             x_mm = self._numbers["x_mm"][span].astype(np.float64) + self._right_mm
             lines = self._numbers["line"][span].astype(np.int64)
-            for name in ("y_mm", "theta_rad", "part"):
+            for name in _LATER:
                 if name in self._numbers:
                     ticks[name] = self._numbers[name][span]
         except OSError:
@@ -132,38 +132,29 @@ class Rendered:
         first, stop = self._page(scene - 1)
         masks = [self._masks(row) for row in range(first, stop)]
         if self._paged:
-            title = (
-                f"{self._title}, lines {first + self._first_line} to {stop - 1 + self._first_line}"
-            )
+            title = f"{self._title}, {self._name(first)} to {self._name(stop - 1)}"
             return self._style.render_page(masks, self._display), title
         return self._style.render(masks[0], self._display), f"{self._title}, {self._name(first)}"
 
     def _open(self) -> None:
         file = self._file
         anchor_mm(file)  # refuses newer formats
-        found = {name: file[name] for name in (*_NUMBERS, "frames", "page/cells", "page/length")}
-        found |= {name: file[name] for name in ("y_mm", "theta_rad", "part") if name in file}
-        for dataset in found.values():
-            if not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "iuf":
-                raise TypeError
-        self._numbers: dict[str, h5py.Dataset] = found
+        needed = (*_NUMBERS, "frames", "page/cells", "page/length")
+        more = [name for name in _LATER if name in file]
+        self._numbers = found = {name: _dataset(file, name) for name in (*needed, *more)}
         count, rows, columns = found["frames"].shape
-        if any(
-            found[name].shape != (count,) for name in found if name[0] != "p" and name != "frames"
-        ) or found.get("part", found["line"]).shape != (count,):
+        if any(found[name].shape != (count,) for name in (*_NUMBERS, *more)):
             raise ValueError
         if not count:
-            raise InputError(
-                f"{self._path} is a recording without a frame; there is nothing to play"
-            )
+            raise InputError(f"{self._path} has no frame; there is nothing to play")
         offsets_mm = [np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in ("column", "row")]
         if [offsets.shape for offsets in offsets_mm] != [(columns,), (rows,)]:
             raise ValueError
         self._count, self._pieces = count, -(-count // _PIECE_FRAMES)
-        self._rate_hz = float(np.asarray(file.attrs["rate_hz"]))
+        self._rate_hz = float(self._told("rate_hz", "nan"))
         self._style, self._display = self._describe(*offsets_mm)
         self._right_mm = 0.0 if "y_mm" in found else self._display.span_mm / 2
-        self._first_line = max(int(np.asarray(file.attrs.get("first_line", 1))), 0)
+        self._first_line = max(int(self._told("first_line", "1")), 0)
         self._lengths = found["page/length"][:].astype(np.int64)
         self._title = self._told("source", self._path.name)
         self._facts = [
@@ -175,9 +166,8 @@ class Rendered:
         self.length_s = float(self._time_s(count - 1))
         starts, lines = changes(found["line"])
         self._paged = "part" in found and not always_zero(found["part"])
-        self._pages = (
-            self._find_pages(starts, lines) if self._paged else np.arange(len(self._lengths))
-        )
+        alone = np.arange(self._lengths.size)
+        self._pages = self._find_pages(starts, lines) if self._paged else alone
         if self._paged and self._style is not None:
             height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
             self._display = replace(self._display, height_mm=height_mm)
@@ -271,6 +261,13 @@ class Rendered:
             Moment(start / self._rate_hz if even else self._time_s(start), "line", self._name(row))
             for start, row in zip(starts[::every].tolist(), lines[::every].tolist(), strict=True)
         ]
+
+
+def _dataset(file: h5py.File, name: str) -> h5py.Dataset:
+    found = file[name]
+    if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "iuf":
+        raise TypeError
+    return found
 
 
 def _not_one(path: Path, why: str) -> str:

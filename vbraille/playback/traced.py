@@ -244,7 +244,7 @@ class Traced:
         return self._firsts_ns[key]
 
     def _before(self, trace: ChunkedTrace, chunk: int, ticks: NDArray[np.void]) -> NDArray[np.void]:
-        """Ticks before a chunk that its first frames are made from: those of a fade that goes on."""
+        """Ticks before a chunk that its first frames are made from: those of an unended fade."""
         parts: list[NDArray[np.void]] = []
         earliest = ticks
         while earliest["share"][0] < 1 and chunk > 0 and len(parts) < _MOST_BEFORE:
