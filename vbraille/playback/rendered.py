@@ -14,7 +14,7 @@ from vbraille.braille.geometry import Geometry
 from vbraille.display import Display
 from vbraille.errors import InputError
 from vbraille.live.messages import Moment, State
-from vbraille.playback.changes import always_zero, changes
+from vbraille.playback.changes import changes
 from vbraille.playback.reels import PLAYED, Piece
 from vbraille.playback.shown import array_shown, distances_shown, line_shown, rows_shown
 from vbraille.recording import anchor_mm
@@ -165,9 +165,11 @@ class Rendered:
         self._firsts_s: dict[int, float] = {}
         self.length_s = float(self._time_s(count - 1))
         starts, lines = changes(found["line"])
-        self._paged = "part" in found and not always_zero(found["part"])
-        alone = np.arange(self._lengths.size)
-        self._pages = self._find_pages(starts, lines) if self._paged else alone
+        part_starts, parts = changes(found["part"]) if "part" in found else (starts[:1], [0])
+        self._paged = bool(np.any(parts))
+        self._pages = np.arange(self._lengths.size)
+        if self._paged:
+            self._pages = self._find_pages(starts, lines, part_starts, np.asarray(parts))
         if self._paged and self._style is not None:
             height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
             self._display = replace(self._display, height_mm=height_mm)
@@ -213,9 +215,14 @@ class Rendered:
             self._firsts_s[number] = self._time_s(number * _PIECE_FRAMES)
         return self._firsts_s[number]
 
-    def _find_pages(self, starts: NDArray[np.int64], lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _find_pages(
+        self,
+        starts: NDArray[np.int64],
+        lines: NDArray[np.int64],
+        part_starts: NDArray[np.int64],
+        parts: NDArray[np.int64],
+    ) -> NDArray[np.int64]:
         """Rows at which pages of lines begin."""
-        part_starts, parts = changes(self._numbers["part"])
         at = np.union1d(starts, part_starts)
         row = lines[np.searchsorted(starts, at, "right") - 1]
         part = parts[np.searchsorted(part_starts, at, "right") - 1]
