@@ -198,8 +198,8 @@ def to_png(
         raise ValueError(f"a map has 8 or 16 bits a pixel, not {bits}")
     grey = _on_canvas(deflections, shape, _BLACK[bits])
     words = PngInfo()
-    words.add_itxt("Title", title)
-    words.add_itxt("Description", _description(deflections, shape, desc))
+    words.add_itxt("Title", _clean(title))
+    words.add_itxt("Description", _clean(_description(deflections, shape, desc)))
     made = io.BytesIO()
     per_inch = 25.4 / shape.step_mm
     image = Image.fromarray(grey)
@@ -295,5 +295,9 @@ def _description(deflections: NDArray[np.floating], shape: MapShape, desc: str) 
 
 
 def _xml(text: str) -> str:
-    """Text for XML, which has no word for most control characters and for lone surrogates."""
-    return escape("".join(c if c.isprintable() or c in "\n\t" else "\ufffd" for c in text))
+    return escape(_clean(text))
+
+
+def _clean(text: str) -> str:
+    """Text that any file can hold: control characters and lone surrogates are replaced."""
+    return "".join(c if c.isprintable() or c in "\n\t" else "\ufffd" for c in text)
