@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import weakref
 import zlib
 from typing import TYPE_CHECKING
 
@@ -59,8 +60,9 @@ class ChunkedTrace:
         self.damage: list[int] = []
         self.torn_bytes = 0
         try:
-            self._file = path.open("rb", buffering=0)
-            self._size = os.fstat(self._file.fileno()).st_size
+            self._file = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+            self._close = weakref.finalize(self, os.close, self._file)
+            self._size = os.fstat(self._file).st_size
             self._places, self.record = self._walk()
         except OSError as error:
             raise self._fault(error) from None
@@ -81,8 +83,8 @@ class ChunkedTrace:
         return np.frombuffer(chunk, self.record, len(chunk) // self.record.itemsize)
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file; it is closed with the last use of this, too."""
+        self._close()
 
     def _walk(self) -> tuple[list[tuple[int, int]], np.dtype]:
         """Places and lengths of all chunks that have something in them, by their headers alone."""
@@ -98,7 +100,7 @@ class ChunkedTrace:
                 continue
             rest = self._read(at, self._size - at)
             after = next_start(rest, 1)
-            if after < len(rest):
+            if after < len(rest) or not _is_torn(rest, record):
                 self.damage.append(len(places))
             else:
                 self.torn_bytes = len(rest)
@@ -122,9 +124,17 @@ class ChunkedTrace:
 
     def _read(self, at: int, length: int) -> bytes:
         try:
-            return os.pread(self._file.fileno(), length, at)
+            return os.pread(self._file, length, at)
         except OSError as error:
             raise self._fault(error) from None
 
     def _fault(self, error: OSError) -> VbrailleError:
         return VbrailleError(f"{self._path} cannot be read: {error.strerror}")
+
+
+def _is_torn(rest: bytes, record: np.dtype | None) -> bool:
+    """Whether a trace that ends with this was cut short in a chunk that may have been whole."""
+    try:
+        return check_member(memoryview(rest), record) is None
+    except ValueError:
+        return False
