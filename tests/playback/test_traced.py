@@ -108,7 +108,7 @@ def test_a_state_tells_the_trial_its_condition_and_its_answer():
 
 def test_a_trace_alone_begins_with_its_own_first_tick():
     whole, alone = open_recording(RESUMED), open_recording(RESUMED / "trace-002.gz")
-    header, frame, _ = asked(alone.viewer(), 0.0)
+    header, *_ = asked(alone.viewer(), 0.0)
     assert header["time_s"] == 0
     assert header["tick"] == 0
     assert alone.length_s < whole.length_s

@@ -41,18 +41,11 @@ def open_recording(path: Path | str) -> Playback:
 
 
 def _reel(path: Path) -> Reel:
-    if path.is_dir():
+    start = _start(path)
+    if start is None:
         from vbraille.playback.traced import Traced
 
         return Traced(path)
-    try:
-        with path.open("rb") as file:
-            start = file.read(len(_HDF5))
-    except FileNotFoundError:
-        raise InputError(f"there is no file {_named(path)}") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"{_named(path)} cannot be read: {reason}") from None
     if start == _HDF5:
         from vbraille.playback.rendered import Rendered
 
@@ -65,6 +58,25 @@ def _reel(path: Path) -> Reel:
     raise InputError(
         f"{_named(path)} {what}; give what vbraille render wrote, or the directory of a session"
     )
+
+
+def _start(path: Path) -> bytes | None:
+    """Read the first bytes of a file; None if it is a directory."""
+    try:
+        if path.is_dir():
+            return None
+        if path.exists() and not path.is_file():  # a pipe would be waited for
+            raise InputError(
+                f"{_named(path)} is no file; give what vbraille render wrote, or the directory of "
+                f"a session"
+            )
+        with path.open("rb") as file:
+            return file.read(len(_HDF5))
+    except FileNotFoundError:
+        raise InputError(f"there is no file {_named(path)}; check the name") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"{_named(path)} cannot be read: {reason}") from None
 
 
 def _named(path: Path) -> str:
