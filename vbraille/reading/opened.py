@@ -23,7 +23,9 @@ from vbraille.reading.underhand import MOST_CELLS
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
+    STILL,
     device_spec,
+    has_hand,
     is_simulated,
     parse_hand,
     steering_of,
@@ -39,12 +41,14 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.local import LocalEngine
+    from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
     from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
 HAND = "sweep:60"
@@ -76,10 +80,16 @@ class OpenDevice:
         Whether somebody is at a keyboard, who can end a line that no hand ends.
     begun
         Host process that was begun for the device, and the steering of a simulated hand that it
-        inherited; None to begin it now.
+        inherited, with the pointer if there is one; None to begin it now.
+    pointer
+        Where somebody may hold the hand of a simulated device; None if nobody can.
+    on_share
+        Function that is called with the memory that a host process shares; see `Host`.
 
     Attributes
     ----------
+    pointer : Pointer or None
+        The pointer; None also if a person moves the device.
     placing : Placing
         What the device waits for before it knows where its carriage is; see `set_zero`.
     """
@@ -95,6 +105,8 @@ class OpenDevice:
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
         begun: tuple[Spawned, Steering] | None = None,
+        pointer: Pointer | None = None,
+        on_share: Callable[[int, Extent], None] | None = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted
@@ -107,7 +119,9 @@ class OpenDevice:
         self._engine: Host | LocalEngine
         self._closed = False
         # A recorded hand reads no more than it has recorded.
-        self._once = isinstance(parse_hand(hand, seed), Recorded)
+        moved = parse_hand(hand, seed, pointed=pointer is not None)
+        self._once = isinstance(moved, Recorded)
+        self._still = hand == STILL
         self._simulated = isinstance(device, str) and is_simulated(device)
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
@@ -115,7 +129,9 @@ class OpenDevice:
             from vbraille.engine.local import LocalEngine
 
             rate_hz = min(wanted.rate_hz, device.display.rate_hz)
-            self._steering = device.steering if isinstance(device, SimulatedDevice) else None
+            simulated = isinstance(device, SimulatedDevice)
+            self._steering = device.steering if simulated else None
+            self.pointer = device.pointer if simulated else None
             self._engine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -124,14 +140,17 @@ class OpenDevice:
             )
         else:
             spawned, self._steering = begun or (None, steering_of(device))
-            if not self._simulated and not device.startswith("sim:?"):
-                self._steering = None  # a person moves the device
+            self.pointer = pointer
+            if not has_hand(device):
+                self._steering = self.pointer = None  # a person moves the device
+            channels = (self._steering, self.pointer)
             self._engine = Host(
-                device_spec(device, hand, seed, self._steering),
+                device_spec(device, hand, seed, self._steering, self.pointer),
                 wanted,
-                pass_fds=() if self._steering is None else (self._steering.descriptor,),
+                pass_fds=[channel.descriptor for channel in channels if channel is not None],
                 spawned=spawned,
             )
+            self._engine.on_share = on_share
             if self._simulated:
                 self._engine.launch()  # it loads while the text is laid out
 
@@ -290,6 +309,7 @@ class OpenDevice:
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
         shown = reader.under.shown
+        reader.under.patient = self._still or self.held
         reader.step(ticks)
         if self._attended:
             return
@@ -303,6 +323,11 @@ class OpenDevice:
                 reader.go_on()
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
+
+    @property
+    def held(self) -> bool:
+        """Whether somebody holds the simulated hand."""
+        return self.pointer is not None and self.pointer.held
 
     @property
     def display(self) -> Display:
