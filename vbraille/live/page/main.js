@@ -43,6 +43,9 @@ let woken = false;
 let noticed = 0;
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
+let lostBefore = false;
+
+/** @type {Connection} */
 const connection = new Connection(token(), {
   welcomed: (said) => {
     welcome = said;
@@ -79,9 +82,9 @@ const connection = new Connection(token(), {
     wake();
   },
 });
-let lostBefore = false;
 
-const ask = (/** @type {{ask: string} & Record<string, unknown>} */ request) => connection.ask(request);
+/** @type {(request: {ask: string} & Record<string, unknown>) => boolean} */
+const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
 const traces = new Traces(byId("scopes"));

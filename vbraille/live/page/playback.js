@@ -7,7 +7,7 @@ import { clock } from "./traces.js";
 
 const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 const STEP_S = 0.1;
-const INSET_PX = 8; // half of a slider's thumb
+const INSET_PX = 5; // half of a slider's thumb
 const MOST_LISTED = 2000;
 
 /** A mark for each kind of moment: a shape around (x, 0), 10 pixels high. */

@@ -171,7 +171,7 @@ export class Sheet {
    * @param {number} height
    */
   #print(d, line, y, height) {
-    const group = svg("g", { class: "print", "font-size": height });
+    const group = svg("g", { class: "gloss", "font-size": height });
     for (let cell = 0; cell < line.cells.length; cell++) {
       const [from, to] = line.sources[cell] ?? [0, 0];
       if (to <= from) continue;

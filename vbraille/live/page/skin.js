@@ -64,6 +64,7 @@ export class Skin {
   #made = "";
   #dots = "";
   chosen = { row: 0, column: 0 };
+  #first = true;
   /** Called when another actuator is chosen. */
   onchoose = () => {};
 
@@ -192,7 +193,8 @@ export class Skin {
     this.left.replaceChildren(clip, window, clipped, scales(), grid);
     this.#strain(array, x, y, row_mm, scales(), wide);
     this.#words(array);
-    const { row, column } = this.chosen;
+    const { row, column } = this.#first ? { row: 0, column: array.columns >> 1 } : this.chosen;
+    this.#first = false;
     this.choose(Math.min(row, array.rows - 1), Math.min(column, array.columns - 1), false);
   }
 
