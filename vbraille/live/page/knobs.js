@@ -8,7 +8,7 @@ import { button, byId, html, short, write } from "./drawing.js";
 const COMMANDS = [
   ["LNUP", "Previous line"],
   ["LNDN", "Next line"],
-  ["PAUSE", "Pause"],
+  ["PAUSE", "Rest the array"],
   ["MAPPING", "Other mapping"],
   ["UNDO", "Undo the last turn"],
 ];
@@ -170,7 +170,7 @@ export class Knobs {
     }
     for (const each of this.buttons) each.disabled = !steers;
     const pause = this.buttons[2];
-    write(pause, state.paused ? "Go on" : "Pause");
+    write(pause, state.paused ? "Go on reading" : "Rest the array");
     write(byId("knobs-note"), why);
     byId("knobs-note").hidden = !why;
   }

@@ -83,13 +83,13 @@ export class Sheet {
     const px = 1 / this.#px_mm;
     this.span = { from, right, pad: pad * px };
     const top = Math.min(...state.lines.map((line) => line.top_mm), Infinity);
-    const bottom = Math.max(...state.lines.map((line) => line.top_mm + (d?.line ?? 0)), -Infinity);
+    const bottom = Math.max(...state.lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), -Infinity);
     const first = Number.isFinite(top) ? top : 0;
     const tall = Math.max(Number.isFinite(bottom) ? bottom - first : 0, this.#tallOf(state, d));
     this.#most = state.lines.length ? Math.max(this.#most, tall) : tall;
     if (this.#most > 3 * tall) this.#most = tall;
     this.#top = first - TOP_PX * px;
-    this.#high = this.#most + (TOP_PX + 10) * px;
+    this.#high = this.#most + (TOP_PX + 14) * px;
     if (fit >= LEAST_PX_MM) this.#left = from - pad * px;
     this.#draw(state, d, first);
     this.#contact(state);
@@ -124,6 +124,8 @@ export class Sheet {
     group.append(svg("text", { x: from - 8 * px, y: first - 18 * px, "text-anchor": "end", class: "unit" }, "mm"));
     const side = ruler(first, first + this.#most, 0, true, this.#px_mm);
     side.classList.add("side");
+    const wide = (this.span?.pad ?? 0) - 4 * px;
+    side.prepend(svg("rect", { class: "margin", x: 4 * px - wide, y: first - TOP_PX * px, width: wide, height: this.#high }));
     group.append(side);
     this.still.replaceChildren(group);
     this.side = side;
@@ -138,14 +140,16 @@ export class Sheet {
     const px = 1 / this.#px_mm;
     const group = svg("g", { class: line.under ? "line under" : "line", "data-line": line.number });
     const end = Math.max(endOf(d, line), line.start_mm + d.pitch);
+    const eight = line.cells.some((mask) => mask > 0x3f);
+    const size = Math.min(d.width / 2, d.rows * 0.48);
+    // The print has all the room to the dots of the next line, and the band goes around both.
+    const over = Math.max(dotY(d, line, 0) - size - line.top_mm - 0.6, 0);
     if (line.under) {
       group.append(svg("rect", {
-        class: "band", x: line.start_mm - d.pitch / 4, y: line.top_mm, width: end - line.start_mm + d.pitch / 2,
+        class: "band", x: line.start_mm - d.pitch / 4, y: line.top_mm + over, width: end - line.start_mm + d.pitch / 2,
         height: d.line, rx: 4 * px,
       }));
     }
-    const eight = line.cells.some((mask) => mask > 0x3f);
-    const size = Math.min(d.width / 2, d.rows * 0.48);
     let raised = "";
     let flat = "";
     line.cells.forEach((mask, cell) => {
@@ -157,9 +161,9 @@ export class Sheet {
     });
     group.append(svg("path", { class: "flat", d: flat }), svg("path", { class: "raised", d: raised }));
     const below = dotY(d, line, eight ? 3 : 2) + size;
-    const room = line.top_mm + d.line - below;
-    const height = Math.min(3.6, room * 0.86, 15 * px);
-    if (height * this.#px_mm >= 7) group.append(this.#print(d, line, below + room * 0.5 + height * 0.36, height));
+    const room = d.line - (below - dotY(d, line, 0) + size);
+    const height = Math.min(room * 0.74, 16 * px);
+    if (height * this.#px_mm >= 7) group.append(this.#print(d, line, below + room * 0.42 + height * 0.34, height));
     return group;
   }
 
@@ -204,19 +208,25 @@ export class Sheet {
     this.#contactors = [];
     this.#steps = [];
     const group = svg("g", { class: "contactors" });
+    const seats = svg("path", { class: "seats", "stroke-width": 0.5 * px });
+    group.append(seats);
+    let outline = "";
     if (!state.blind) {
       for (let row = 0; row < array.rows; row++) {
         for (let column = 0; column < array.columns; column++) {
           const mark = svg("rect", {
             x: (column - (array.columns - 1) / 2 - 0.3) * array.column_pitch_mm,
             y: (row - (array.rows - 1) / 2 - 0.32) * array.row_pitch_mm,
-            width: 0.6 * array.column_pitch_mm, height: 0.64 * array.row_pitch_mm,
+            width: 0.6 * array.column_pitch_mm, height: 0.64 * array.row_pitch_mm, visibility: "hidden",
           });
+          const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
+          outline += `M${mark.getAttribute("x")} ${mark.getAttribute("y")}h${w}v${h}h${-w}z`;
           this.#contactors.push(mark);
           group.append(mark);
         }
       }
     }
+    seats.setAttribute("d", outline);
     const frame = { x: -wide / 2, y: -high / 2, width: wide, height: high, rx: 3 * px };
     const grown = { x: frame.x - 3 * px, y: frame.y - 3 * px, width: wide + 6 * px, height: high + 6 * px, rx: 5 * px };
     this.array.replaceChildren(
@@ -299,11 +309,19 @@ export class Sheet {
       const thick = (mark === cell ? 2.6 : 1.2) / this.#px_mm;
       put(mark, "x", from.toFixed(2));
       put(mark, "width", (to - from).toFixed(2));
-      put(mark, "y", (here.line.top_mm + d.line - thick).toFixed(2));
+      put(mark, "y", (here.line.top_mm + d.line + this.#below(d) - thick).toFixed(2));
       put(mark, "height", thick.toFixed(3));
     };
     show(cell, here && here.cell >= 0 ? [here.cell, here.cell] : null);
     show(word, here && here.word[1] > here.word[0] ? cellsOf(here.line, here.word) : null);
+  }
+
+  /**
+   * How far below a line its band goes, to the dots of the next.
+   * @param {Distances} d
+   */
+  #below(d) {
+    return Math.max((d.line - d.width) / 2 - d.rows - 0.6, 0);
   }
 
   /**
@@ -319,6 +337,7 @@ export class Sheet {
       const step = fits ? stepOf(frame.deflections[n]) : 0;
       if (this.#steps[n] === step) return;
       this.#steps[n] = step;
+      mark.setAttribute("visibility", step ? "inherit" : "hidden"); // at rest, the dots below are seen
       mark.setAttribute("fill", palette[step]);
       mark.setAttribute("transform", `translate(${((frame.deflections[n] - 0.5) * way).toFixed(3)})`);
     });

@@ -59,8 +59,11 @@ export class Skin {
   #cells = [];
   /** @type {number[]} */
   #steps = [];
-  /** @type {SVGRectElement[]} */
+  /** @type {{path: SVGPathElement, x: number, y: number, high: number, kind: string}[]} */
   #bars = [];
+  /** What stands in the drawing, so that only what changes is touched: in 1/10000 and in pixels. */
+  #shown = new Int32Array(0);
+  #moved = new Int32Array(0);
   #made = "";
   #dots = "";
   chosen = { row: 0, column: 0 };
@@ -109,7 +112,6 @@ export class Skin {
       this.#made = made;
       this.#make(state, array, width);
     }
-    this.#pave(state);
   }
 
   /**
@@ -140,6 +142,7 @@ export class Skin {
       drawing.setAttribute("width", String(Math.round(box[2] * this.#px_mm)));
       drawing.setAttribute("height", String(Math.round(box[3] * this.#px_mm)));
       drawing.setAttribute("font-size", String(11.5 * px));
+      drawing.setAttribute("stroke-width", String(px));
     }
     const x = (/** @type {number} */ column) => (column - (array.columns - 1) / 2) * pitch;
     const y = (/** @type {number} */ row) => (row - (array.rows - 1) / 2) * row_mm;
@@ -162,6 +165,9 @@ export class Skin {
     this.#marks = [];
     this.#cells = [];
     this.#steps = [];
+    this.#dots = "";
+    this.#shown = new Int32Array(array.rows * array.columns).fill(-1);
+    this.#moved = new Int32Array(array.rows * array.columns).fill(1 << 30);
     const slot = (array.swing_mm * this.#times) / 2;
     const [w, h] = [0.36 * pitch, 0.62 * row_mm];
     for (let row = 0; row < array.rows; row++) {
@@ -169,7 +175,7 @@ export class Skin {
       for (let column = 0; column < array.columns; column++) {
         const rest = x(column) + (array.rest_right ? slot : -slot);
         const mark = svg("rect", {
-          class: "contactor", x: x(column) - w / 2, y: y(row) - h / 2, width: w, height: h, rx: 1.5 * px,
+          class: "contactor", x: x(column) - w / 2, y: y(row) - h / 2, width: w, height: h,
         });
         const cell = svg("g", {
           role: "gridcell", class: "actuator", tabindex: -1, "data-row": row, "data-column": column,
@@ -179,6 +185,10 @@ export class Skin {
         svg("rect", {
           class: "ring", x: x(column) - pitch / 2 + px, y: y(row) - row_mm / 2 + px, width: pitch - 2 * px,
           height: row_mm - 2 * px, rx: 3 * px,
+        }),
+        svg("rect", {
+          class: "chosen", x: x(column) - pitch / 2 + 2 * px, y: y(row) - row_mm / 2 + 2 * px, width: pitch - 4 * px,
+          height: row_mm - 4 * px, rx: 2 * px, "stroke-width": 2 * px,
         }),
         svg("path", { class: "slot", d: `M${x(column) - slot} ${y(row)}h${2 * slot}M${rest} ${y(row) - h / 2}v${h}` }),
         mark);
@@ -217,11 +227,9 @@ export class Skin {
         const seat = x(column) - 0.05 * array.column_pitch_mm;
         bars.append(svg("rect", { class: "seat", x: seat, y: y(row) - 1 / this.#px_mm, width: 0.1 * array.column_pitch_mm, height: 2 / this.#px_mm }));
         if (column + 1 === array.columns) continue;
-        const bar = svg("rect", { width: (0.62 * array.column_pitch_mm).toFixed(3), height: 0, y: y(row) });
-        bar.setAttribute("x", (x(column) + 0.19 * array.column_pitch_mm).toFixed(3));
-        bar.dataset.middle = String(y(row));
-        this.#bars.push(bar);
-        bars.append(bar);
+        const path = svg("path", { class: "bar" });
+        this.#bars.push({ path, x: x(column) + 0.19 * array.column_pitch_mm, y: y(row), high: NaN, kind: "" });
+        bars.append(path);
       }
     }
     this.right.replaceChildren(scales, bars);
@@ -241,7 +249,7 @@ export class Skin {
     );
     const most = (100 * array.swing_mm) / array.column_pitch_mm;
     const swatch = (/** @type {string} */ kind) => svg("svg", { class: "swatch", viewBox: "0 0 10 12", "aria-hidden": "true" },
-      svg("rect", { x: 1, y: 1, width: 8, height: 10, ...this.#look(kind === "stretch") }));
+      svg("rect", { x: 1, y: 1, width: 8, height: 10, "stroke-width": 1.4, ...this.#look(kind === "stretch") }));
     this.key.replaceChildren(
       html("span", { class: "keys" }, swatch("stretch"), "up: stretched", swatch("press"), "down: pressed"),
       html("span", {}, `strain of the skin between neighbours; the tallest bar there can be is ${fixed(most, 1)} %`),
@@ -254,33 +262,40 @@ export class Skin {
    */
   #look(stretched) {
     const { stretch, press } = colours();
-    return stretched
-      ? { fill: stretch, stroke: stretch, "stroke-width": 1.2, "vector-effect": "non-scaling-stroke" }
-      : { fill: "none", stroke: press, "stroke-width": 1.6, "vector-effect": "non-scaling-stroke" };
+    return stretched ? { fill: stretch, stroke: "none" } : { fill: "none", stroke: press };
   }
 
   /**
-   * Draws the dots that pass beneath the array.
+   * Draws the dots that pass beneath the array; only those near it, which are few.
    * @param {State} state
+   * @param {Frame} frame
    */
-  #pave(state) {
+  #near(state, frame) {
     const d = distances(state);
-    if (!d) return;
-    const lines = state.array && state.array.height_mm > 0 ? state.lines : state.lines.filter((line) => line.under);
+    const array = state.array;
+    if (!d || !array || !Number.isFinite(frame.x_mm)) return;
+    const reach = Math.hypot(array.columns * array.column_pitch_mm, array.rows * this.#rowOf(array)) / 2 + d.width;
+    const two = array.height_mm > 0;
+    const near = (/** @type {import("./messages.js").LineShown} */ line) =>
+      two ? Math.abs(line.top_mm + d.line / 2 - frame.y_mm) < reach + d.line : line.under;
+    const lines = state.lines.filter(near);
+    const first = (/** @type {number} */ start) => Math.floor((frame.x_mm - reach - start) / d.pitch);
+    const count = Math.ceil((2 * reach) / d.pitch) + 1;
+    const made = `${state.number} ${lines.map((line) => `${line.number}:${first(line.start_mm)}`).join()}`;
+    if (made === this.#dots) return;
+    this.#dots = made;
     let raised = "";
     let flat = "";
     for (const line of lines) {
-      line.cells.forEach((mask, cell) => {
+      const from = Math.max(first(line.start_mm), 0);
+      line.cells.slice(from, from + count).forEach((mask, n) => {
         DOTS.slice(0, mask > 0x3f ? 8 : 6).forEach(([column, row], dot) => {
-          const [x, y] = [dotX(d, line, cell, column), dotY(d, line, row)];
-          const drawn = circle(x, y, d.width / 2);
+          const drawn = circle(dotX(d, line, from + n, column), dotY(d, line, row), d.width / 2);
           if ((mask >> dot) & 1) raised += drawn;
           else flat += drawn;
         });
       });
     }
-    if (raised + flat === this.#dots && this.beneath.childElementCount) return;
-    this.#dots = raised + flat;
     this.beneath.replaceChildren(svg("path", { class: "flat", d: flat }), svg("path", { class: "raised", d: raised }));
   }
 
@@ -295,33 +310,50 @@ export class Skin {
     if (!array || frame.deflections.length !== this.#marks.length || state.blind) return;
     const palette = steps();
     const way = (array.rest_right ? -1 : 1) * array.swing_mm * this.#times;
-    this.#marks.forEach((mark, n) => {
+    const fine = 4 * this.#px_mm; // quarters of a pixel
+    for (let n = 0; n < this.#marks.length; n++) {
       const deflection = frame.deflections[n];
-      put(mark, "transform", `translate(${((deflection - 0.5) * way).toFixed(2)})`);
-      put(this.#cells[n], "data-deflection", deflection.toFixed(4));
+      const exact = Math.round(deflection * 10_000);
+      if (this.#shown[n] === exact) continue;
+      this.#shown[n] = exact;
+      this.#cells[n].setAttribute("data-deflection", deflection.toFixed(4));
+      const moved = Math.round((deflection - 0.5) * way * fine);
+      if (this.#moved[n] !== moved) {
+        this.#moved[n] = moved;
+        this.#marks[n].setAttribute("transform", `translate(${(moved / fine).toFixed(3)})`);
+      }
       const step = stepOf(deflection);
-      if (this.#steps[n] !== step) mark.setAttribute("fill", palette[(this.#steps[n] = step)]);
-    });
-    const unit = this.unit ?? 1;
-    strains(array, frame.deflections).forEach((strain, n) => {
-      const bar = this.#bars[n];
-      const height = Math.abs(strain) * unit;
-      const words = height.toFixed(2);
-      if (bar.dataset.strain === words + Math.sign(strain)) return;
-      bar.dataset.strain = words + Math.sign(strain);
-      bar.setAttribute("height", words);
-      bar.setAttribute("y", (Number(bar.dataset.middle) - (strain > 0 ? height : 0)).toFixed(3));
-      const kind = height < 0.02 ? "none" : strain > 0 ? "stretch" : "press";
-      if (bar.dataset.kind === kind) return;
-      bar.dataset.kind = kind;
-      bar.setAttribute("visibility", kind === "none" ? "hidden" : "visible");
-      for (const [name, value] of Object.entries(this.#look(kind === "stretch"))) bar.setAttribute(name, String(value));
-    });
+      if (this.#steps[n] !== step) this.#marks[n].setAttribute("fill", palette[(this.#steps[n] = step)]);
+    }
+    this.#stretch(array, frame);
+    this.#near(state, frame);
     if (!Number.isFinite(frame.x_mm)) return;
     const { x, y, theta } = placeOf(state, frame);
     const turn = theta ? `rotate(${((theta * 180) / Math.PI).toFixed(2)}) ` : "";
     put(this.beneath, "transform", `${turn}translate(${(-x).toFixed(2)} ${(-y).toFixed(2)})`);
     put(this.beneath, "visibility", lineUnder(state, frame) || array.height_mm > 0 ? "visible" : "hidden");
+  }
+
+  /**
+   * @param {ArrayShown} array
+   * @param {Frame} frame
+   */
+  #stretch(array, frame) {
+    const unit = (this.unit ?? 1) * this.#px_mm * 2;
+    const wide = (0.62 * array.column_pitch_mm).toFixed(3);
+    const found = strains(array, frame.deflections);
+    for (let n = 0; n < found.length; n++) {
+      const bar = this.#bars[n];
+      const high = Math.round(found[n] * unit); // in halves of a pixel
+      if (bar.high === high) continue;
+      bar.high = high;
+      const tall = (-high / (2 * this.#px_mm)).toFixed(3);
+      bar.path.setAttribute("d", high ? `M${bar.x.toFixed(3)} ${bar.y.toFixed(3)}h${wide}v${tall}h-${wide}z` : "");
+      const kind = high > 0 ? "stretch" : "press";
+      if (bar.kind === kind) continue;
+      bar.kind = kind;
+      for (const [name, value] of Object.entries(this.#look(high > 0))) bar.path.setAttribute(name, String(value));
+    }
   }
 
   /**

@@ -20,6 +20,7 @@ class Trace {
   #high = 1;
   #time = NaN; // of the pen, in seconds
   #value = NaN;
+  #up = NaN; // where the pen is on the paper within a stroke
   #paper = "";
 
   /**
@@ -103,42 +104,44 @@ class Trace {
     const across = (/** @type {number} */ time) => (((time % SPAN_S) + SPAN_S) % SPAN_S / SPAN_S) * width;
     const up = (/** @type {number} */ value) =>
       (height - 2 * sharp) * (1 - (value - this.#low) / (this.#high - this.#low)) + sharp;
-    let open = false;
+    const last = samples.length - 3;
+    if (last < 0 || !(newest - samples[last] > this.#time || Number.isNaN(this.#time))) return;
+    const begin = Number.isNaN(this.#time) ? newest - samples[0] : this.#time;
+    this.#clear(across(begin), across(newest - samples[last]), width, height);
+    pen.beginPath();
     for (let n = 0; n < samples.length; n += 3) {
       const time = newest - samples[n];
       const value = samples[n + column];
-      if (!(time > this.#time || Number.isNaN(this.#time))) continue;
+      if (time <= this.#time || !Number.isFinite(value)) continue;
       const [from, to] = [across(this.#time), across(time)];
-      const goes = time - this.#time < BREAK_S && to >= from && Number.isFinite(this.#value) && Number.isFinite(value);
-      this.#clear(pen, Number.isNaN(from) || to < from ? 0 : from, to, width, height);
-      if (goes) {
-        if (!open) {
-          pen.beginPath();
-          pen.moveTo(from, up(this.#value));
-          open = true;
-        }
+      if (time - this.#time < BREAK_S && to >= from) {
+        if (this.#up !== from) pen.moveTo(from, up(this.#value));
         pen.lineTo(to, up(value));
-      } else if (open) {
-        pen.stroke();
-        open = false;
-      }
+        this.#up = to;
+      } else this.#up = NaN;
       [this.#time, this.#value] = [time, value];
     }
-    if (open) pen.stroke();
+    pen.stroke();
+    this.#up = NaN;
   }
 
   /**
    * Wipes the paper under the pen and before it.
-   * @param {CanvasRenderingContext2D} pen
    * @param {number} from
    * @param {number} to
    * @param {number} width
    * @param {number} height
    */
-  #clear(pen, from, to, width, height) {
+  #clear(from, to, width, height) {
     const gap = (GAP_S / SPAN_S) * width;
-    pen.clearRect(from + devicePixelRatio, 0, to - from + gap, height);
-    if (to + gap > width) pen.clearRect(0, 0, to + gap - width, height);
+    const start = from + devicePixelRatio;
+    if (to < from) {
+      this.pen.clearRect(start, 0, width, height);
+      this.pen.clearRect(0, 0, to + gap, height);
+      return;
+    }
+    this.pen.clearRect(start, 0, to - start + gap, height);
+    if (to + gap > width) this.pen.clearRect(0, 0, to + gap - width, height);
   }
 }
 
