@@ -1,5 +1,7 @@
 """Going by what a text is made of, and what is said there."""
 
+import io
+
 import pytest
 
 from tests.reading.chapters import BOOK, Chapters
@@ -10,7 +12,10 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.seeking.answering import Answering
-from vbraille.translate import Book, BrailleTable
+from vbraille.translate import Book, BrailleTable, Cells
+from vbraille.translate.braillefiles.lines import open_brf
+from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.braillefiles.writing import Imprint, pef
 from vbraille.translate.documents.parted import Passage
 
 TABLE = BrailleTable("en-ueb-g1.ctb")
@@ -122,6 +127,55 @@ def test_where_am_i_says_line_page_percent_heading_and_words(bench):
     ]
     assert bench.press("H") == ["headers: Name; Age"]
     assert bench.press("nH")[-1] == "headers: this is no row of a table"
+
+
+def brf(pages):
+    return open_brf(io.BytesIO("\n\f".join(pages).encode()), "book.brf")
+
+
+def pef_book(pages):
+    rows = [[Cells.from_brf(line).masks for line in page.split("\n")] for page in pages]
+    return PefBook.open(io.BytesIO(b"".join(pef(rows, Imprint("", "en", "urn:x"), 9, 9))), "book")
+
+
+@pytest.mark.parametrize("made", [brf, pef_book])
+def test_pages_of_a_braille_file_are_counted_on(made):
+    pages = [f"PAGE\n{chr(ord('A') + n % 26)}{chr(ord('A') + n // 26)}" for n in range(70)]
+    bench = Bench(book=Book(made(pages)), width=9, echo=Echo.TEXT)
+    assert bench.press("ni")[-4:-1] == ["line: 2", "page: 1", "percent: 0"]
+    said = bench.press("g65\n")
+    assert said[1] == "page: 65"
+    bench.press("n")
+    assert bench.reader.line.cells.to_brf() == "MC"
+    assert "page: 65" in bench.press("i")
+    bench.press("F")
+    assert "page: 65" in bench.press("i")
+    bench.press("F")
+    assert "page: 64" in bench.press("i")
+    bench.press("ff")
+    assert "page: 66" in bench.press("i")
+    assert bench.press("g71\n")[-1] == "page 71: there is no such page"
+
+
+def test_a_page_of_a_braille_file_may_end_within_a_line():
+    bench = Bench(book=Book(open_brf(io.BytesIO(b"A\fB\fC"), "book.brf")), width=9)
+    for page, cells in (("3", "C"), ("2", "B"), ("1", "A")):
+        bench.press(["g", page, "\n"])
+        assert bench.reader.line.cells.to_brf() == cells
+        assert f"page: {page}" in bench.press("i")
+    for cells in "BC":
+        bench.press("f")
+        assert bench.reader.line.cells.to_brf() == cells
+    for cells in "BA":
+        bench.press("F")
+        assert bench.reader.line.cells.to_brf() == cells
+
+
+def test_the_page_before_is_found_beyond_pages_without_a_line():
+    bench = Bench(book=Book(open_brf(io.BytesIO(b"A\n\f\f\fD"), "book.brf")), width=9)
+    assert bench.press("fi")[2] == "page: 4"
+    assert bench.press("Fi")[-3] == "page: 1"
+    assert bench.press("F") == ["page: none before this"]
 
 
 def test_a_table_without_headers_says_so():

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
-    from vbraille.translate.source import Block, Mark
+    from vbraille.translate.source import Block, Mark, Source
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table"}
@@ -142,8 +142,17 @@ def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> N
         reader.say(f"{name}: none {'before' if backward else 'after'} this")
 
 
-def _begins_here(line: Line, block: Block) -> bool:
-    return first_character(line) <= first_place(block)
+def _begins_here(line: Line, block: Block | None) -> bool:
+    return block is not None and first_character(line) <= first_place(block)
+
+
+def _before_unnumbered(source: Source, number: int) -> int:
+    """Number of the first page without a line right before a block; of the block if none is."""
+    while (page := source.block(number - 1)) is not None and page.kind is BlockKind.PAGE:
+        if len(page.text):
+            break
+        number -= 1
+    return number
 
 
 def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
@@ -163,8 +172,13 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
     line = reader.line
     if line is None:
         return
-    if has_pages(reader.layout.book.source, line):
-        go_to(BlockKind.PAGE.value, backward=backward)(reader)
+    source = reader.layout.book.source
+    if has_pages(source, line):
+        number = block_of(source, line)
+        if backward and _begins_here(line, source.block(number)):
+            number = _before_unnumbered(source, number)
+        query = FindKind(BlockKind.PAGE.value, number, backward)
+        reader.find(query, lambda place: arrive(reader, place, "page", backward=backward))
         return
     page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
     wanted = (page if above else page - 1) if backward else page + 1

@@ -32,7 +32,7 @@ class KeptPlace(msgspec.Struct, frozen=True):
     width, table
         Width in cells and name of the table for which these numbers hold.
     page
-        Number of the printed page as the book writes it; empty if it has none.
+        Number of the page as the book writes or counts it; empty if it has none.
     """
 
     character: int
