@@ -17,6 +17,7 @@ from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.braillefiles.pef import PefBook
 from vbraille.translate.braillefiles.writing import Imprint, pef
 from vbraille.translate.documents.parted import Passage
+from vbraille.translate.source import Mark, MarkKind
 
 TABLE = BrailleTable("en-ueb-g1.ctb")
 
@@ -103,6 +104,31 @@ def test_a_page_of_print_or_a_share_is_typed(bench, typed, there):
     said = bench.press(["g", *typed, "\n"])
     assert said[1] == f"page: {typed}"
     assert texts(said[2:]) == [there] or said[2:] == [there]
+
+
+NEAR_LINKS = Passage(
+    "See one or two.",
+    marks=(Mark(MarkKind.LINK, 4, 7, "a:1"), Mark(MarkKind.LINK, 11, 14, "a:2")),
+)
+
+
+def test_a_link_of_the_same_line_is_said_and_comes_under_the_finger():
+    passages = [Passage("None here."), NEAR_LINKS]
+    bench = Bench(book=Book(Chapters(passages), TABLE), width=26, echo=Echo.TEXT)
+    bench.press("k")
+    finger_at(bench, 1)
+    assert bench.press("k") == ["link: two"]
+    assert bench.press("u")[-1] == "word: two."
+    assert bench.press("\n") == ["link: a:2"]
+    assert bench.press("K") == ["link: one"]
+    assert bench.press("u\n")[-2:] == ["word: one", "link: a:1"]
+    assert bench.press("kk") == ["link: two", "link: none after this"]
+
+
+def test_a_link_that_was_gone_to_is_followed_where_no_finger_is_known():
+    bench = Bench(book=Book(Chapters([Passage("None here."), NEAR_LINKS]), TABLE), width=26)
+    assert bench.reader.cell is None
+    assert bench.press("kk\n") == ["line: 2", "link: two", "link: a:2"]
 
 
 def test_a_note_is_followed_and_left_again(bench):

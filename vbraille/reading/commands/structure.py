@@ -72,14 +72,17 @@ def go_to_link(*, backward: bool = False) -> Callable[[Reader], None]:
         number = block_of(source, line)
         here = source.block(number)
         hit, first = reader.hit, first_character(line)
-        starts = [] if here is None else [mark.start for mark in links_of(here)]
+        links = [] if here is None else links_of(here)
         if backward:
-            near = [start for start in starts if start < (first if hit is None else hit)]
+            near = [mark for mark in links if mark.start < (first if hit is None else hit)]
         else:
-            near = [start for start in starts if start >= (first if hit is None else hit + 1)]
+            near = [mark for mark in links if mark.start >= (first if hit is None else hit + 1)]
         if near:
-            place = near[-1 if backward else 0]
-            arrive(reader, place, "link", backward=backward)
+            mark = near[-1 if backward else 0]
+            if reader.bring_under(mark.start):
+                reader.say(f"link: {_text_of(line.block, mark)}")
+            else:
+                arrive(reader, mark.start, "link", backward=backward)
             return
         query = FindKind(LINK, number, backward)
         reader.find(query, lambda place: arrive(reader, place, "link", backward=backward))
@@ -140,6 +143,11 @@ def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> N
     if not reader.arrive(place):
         reader.cue(Cue.NOT_FOUND)
         reader.say(f"{name}: none {'before' if backward else 'after'} this")
+
+
+def _text_of(block: Block, mark: Mark) -> str:
+    text = block.text
+    return " ".join(str(text)[text.index(mark.start) : text.index(mark.end)].split())
 
 
 def _begins_here(line: Line, block: Block | None) -> bool:
@@ -229,7 +237,7 @@ def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
 
 
 def _link_here(reader: Reader) -> Mark | None:
-    """Link under the finger; or the one of the line, if it has only one."""
+    """Link under the finger; or the one that was gone to, or that is alone on the line."""
     line, cell = reader.line, reader.cell
     if line is None:
         return None
@@ -241,4 +249,5 @@ def _link_here(reader: Reader) -> Mark | None:
             return under[-1]
     first, after = first_character(line), line.cells.end
     on_line = [mark for mark in links if mark.start < after and first < mark.end]
-    return on_line[0] if len(on_line) == 1 else None
+    gone_to = [mark for mark in on_line if mark.start == reader.hit]
+    return gone_to[-1] if gone_to else on_line[0] if len(on_line) == 1 else None
