@@ -20,10 +20,10 @@ from vbraille.reading.commands.table import press_button, turn_knob
 from vbraille.reading.echo import Echo
 from vbraille.reading.reader import Reader
 from vbraille.reading.underhand import MOST_CELLS
+from vbraille.simulation.hand import Still
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
-    STILL,
     device_spec,
     has_hand,
     is_simulated,
@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 
 HAND = "sweep:60"
 _POLL_S = 0.02
+_AFTER_HOLD_NS = 500_000_000  # as long as speeds are smoothed, and longer
 _HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
 
 
@@ -121,7 +122,8 @@ class OpenDevice:
         # A recorded hand reads no more than it has recorded.
         moved = parse_hand(hand, seed, pointed=pointer is not None)
         self._once = isinstance(moved, Recorded)
-        self._still = hand == STILL
+        self._still = isinstance(moved, Still)
+        self._held_ns: int | None = None  # when somebody held the hand last
         self._simulated = isinstance(device, str) and is_simulated(device)
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
@@ -132,6 +134,7 @@ class OpenDevice:
             simulated = isinstance(device, SimulatedDevice)
             self._steering = device.steering if simulated else None
             self.pointer = device.pointer if simulated else None
+            self._still = simulated and isinstance(device.hand, Still)
             self._engine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -309,7 +312,7 @@ class OpenDevice:
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
         shown = reader.under.shown
-        reader.under.patient = self._still or self.held
+        reader.under.patient = self._still or self._was_held(int(ticks["time_ns"][-1]))
         reader.step(ticks)
         if self._attended:
             return
@@ -328,6 +331,12 @@ class OpenDevice:
     def held(self) -> bool:
         """Whether somebody holds the simulated hand."""
         return self.pointer is not None and self.pointer.held
+
+    def _was_held(self, now_ns: int) -> bool:
+        """Whether what the hand does is still somebody's doing, who holds it or did so just now."""
+        if self.held:
+            self._held_ns = now_ns
+        return self._held_ns is not None and now_ns - self._held_ns < _AFTER_HOLD_NS
 
     @property
     def display(self) -> Display:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import mmap
 import os
+import select
 import struct
 import weakref
 from typing import Final
@@ -117,11 +118,14 @@ def _place(number: int) -> int:
 
 
 def _lives(process: int) -> bool:
-    """Whether a process has not ended."""
+    """Whether a process has not ended; one that nobody has waited for yet has."""
     try:
-        os.kill(process, 0)
-    except ProcessLookupError:
+        descriptor = os.pidfd_open(process)
+    except OSError:
         return False
-    except PermissionError:
-        return True
-    return True
+    try:
+        ending = select.poll()
+        ending.register(descriptor, select.POLLIN)
+        return not ending.poll(0)
+    finally:
+        os.close(descriptor)

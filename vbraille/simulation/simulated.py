@@ -143,7 +143,7 @@ class SimulatedDevice(Device):
         self._pressed.append(Knob(knob, value))
 
     def take_events(self) -> Sequence[Event]:
-        """Buttons pressed and let go, knobs turned, the hand taken or let go, since the last call."""
+        """Buttons and knobs that were moved since the last call, and who the hand was."""
         told, self._pressed = self._pressed, []
         if self._presses:
             now = held(self._presses, (self._now_ns() - self._opened_ns) / NS_PER_S)
@@ -381,9 +381,7 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     )
 
 
-def _inherited(
-    kind: type[_Channel], name: str, descriptor: str
-) -> _Channel:
+def _inherited(kind: type[_Channel], name: str, descriptor: str) -> _Channel:
     """What moves a hand, in memory that this process has made or inherited."""
     try:
         return kind(int(descriptor))
