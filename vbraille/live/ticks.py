@@ -130,7 +130,7 @@ class TickViews:
         rows, columns = self.shape
         is_there = 0 <= row < rows and 0 <= column < columns
         # Filled column by column, in memory of its own, since that is made for each frame.
-        np.multiply(times_ns[-1] - times_ns, 1e-9, out=self._ago_s[:count], casting="unsafe")
+        self._ago_s[:count] = (times_ns[-1] - times_ns) * 1e-9
         self._places[:count] = self._x_mm[slots]
         self._follows[:count] = self._frames[slots, row, column] if is_there else math.nan
         # The slot after the last published one may just be written.
