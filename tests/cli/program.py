@@ -11,7 +11,7 @@ import termios
 import time
 
 PROGRAM = [sys.executable, "-m", "vbraille"]
-PATIENCE_S = 15.0
+PATIENCE_S = 60.0
 
 
 def run(*arguments, **options):
