@@ -20,6 +20,7 @@ PARTS = (
     "coverage",
     "reader",
     "turning",
+    "live",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -40,7 +40,7 @@ class Admission:
     host
         Name or address that the server listens at.
     port
-        Its port.
+        Port that it listens at.
     steers
         Whether anybody may steer at all.
     watch_token, steer_token
@@ -50,8 +50,8 @@ class Admission:
     host: str
     port: int
     steers: bool = True
-    watch_token: str = field(default_factory=new_token)
-    steer_token: str = field(default_factory=new_token)
+    watch_token: str = field(default_factory=new_token, repr=False)
+    steer_token: str = field(default_factory=new_token, repr=False)
 
     @property
     def on_loopback(self) -> bool:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # `messages.FRAME` and `messages.MAP` again: packing so takes a tenth of the time that numpy needs.
 _FRAME: Final = struct.Struct("<BBHIIIIIdd8fHHI")
 _MAP: Final = struct.Struct("<BBHI")
+_U32: Final = 0xFFFFFFFF
+SAMPLE_BYTES: Final = 12
 
 
 class FrameHeader(NamedTuple):
@@ -72,13 +74,17 @@ def frame_bytes(
         Samples, float32[samples, 3], oldest first: seconds before this tick, place of the array's
         centre in mm, deflection of the actuator that the page follows.
     """
+    return joined(header, deflections.shape, deflections.tobytes(), samples.tobytes())
+
+
+def joined(
+    header: FrameHeader, shape: tuple[int, ...], deflections: bytes, samples: bytes
+) -> bytes:
+    """Bytes of a frame of which all but the header is bytes already, as `frame_bytes` takes it."""
     flags, state, line, part, late, *numbers = header
-    rows, columns = deflections.shape
-    packed = _FRAME.pack(
-        FRAME_KIND, VERSION, len(samples), flags, state & 0xFFFFFFFF, line & 0xFFFFFFFF,
-        part & 0xFFFFFFFF, late & 0xFFFFFFFF, *numbers, rows, columns, 0,
-    )  # fmt: skip
-    return b"".join((packed, deflections.tobytes(), samples.tobytes()))
+    count = len(samples) // SAMPLE_BYTES
+    sizes = FRAME_KIND, VERSION, count, flags, state & _U32, line & _U32, part & _U32, late & _U32
+    return b"".join((_FRAME.pack(*sizes, *numbers, *shape, 0), deflections, samples))
 
 
 def map_bytes(file: bytes, form: str) -> bytes:

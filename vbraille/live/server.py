@@ -1,7 +1,7 @@
 """The server of the live view: the files of its page, and a WebSocket by which pages pull frames.
 
-What it shows comes from a `Source`, and `Talk` is the talk with one page. Here stands who is let
-in, and how many. `docs/live-view.md` has the rules and limits.
+What it shows comes from a `LiveSource`, and `Talk` is the talk with one page. Here stands who is
+let in, and how many. `docs/live-view.md` has the rules and limits.
 """
 
 from __future__ import annotations
@@ -10,10 +10,12 @@ import asyncio
 import email.utils
 import errno
 import logging
+import socket
 from concurrent.futures import ThreadPoolExecutor
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Final
 
+from websockets.asyncio.server import Server as Serving
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.datastructures import Headers
 from websockets.http11 import Request as HttpRequest
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from vbraille.live.sources import Source
+    from vbraille.live.sources import LiveSource
 
 SOCKET_PATH: Final = "/live"
 # Pages at a time; more are told so.
@@ -83,7 +85,7 @@ class LiveServer:
 
     def __init__(
         self,
-        source: Source,
+        source: LiveSource,
         *,
         host: str | None = None,
         port: int | None = None,
@@ -93,13 +95,34 @@ class LiveServer:
         self.pages = 0
         self._drawer = ThreadPoolExecutor(1)
         self._held = Held()
-        self._host = LOOPBACK if host is None else host
+        self._host = LOOPBACK if host in (None, "localhost") else host
         self._port = port or 0
         self._steers = steers
         self._files = page_files()
-        self._serving = serve(
+
+    async def __aenter__(self) -> Self:
+        asyncio.get_running_loop().set_exception_handler(_say_nothing)
+        try:
+            self._serving = await self._serve(_address(self._host))
+        except (OSError, OverflowError, UnicodeError) as error:
+            raise InputError(_why_not(self._host, self._port, error)) from None
+        port = int(next(iter(self._serving.sockets)).getsockname()[1])
+        self.admission = Admission(self._host, port, self._steers)
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._drawer.shutdown(wait=False, cancel_futures=True)
+        await self._serving.__aexit__(kind, error, traceback)
+
+    def _serve(self, address: str) -> Serving:
+        return serve(
             self._talk,
-            self._host,
+            address,
             self._port,
             compression=None,
             process_request=self._answer,
@@ -114,25 +137,6 @@ class LiveServer:
             logger=_silent(),
             create_connection=_counted(),
         )
-
-    async def __aenter__(self) -> Self:
-        asyncio.get_running_loop().set_exception_handler(_say_nothing)
-        try:
-            server = await self._serving
-        except (OSError, OverflowError, UnicodeError) as error:
-            raise InputError(_why_not(self._host, self._port, error)) from None
-        port = int(next(iter(server.sockets)).getsockname()[1])
-        self.admission = Admission(self._host, port, self._steers)
-        return self
-
-    async def __aexit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._drawer.shutdown(wait=False, cancel_futures=True)
-        await self._serving.__aexit__(kind, error, traceback)
 
     def _answer(self, connection: ServerConnection, request: HttpRequest) -> Response | None:
         """Answer a request for a file, or refuse one; None lets a page's WebSocket begin."""
@@ -214,6 +218,19 @@ def _counted() -> type[ServerConnection]:
     return Counted
 
 
+def _address(host: str) -> str:
+    """Address of a name: one alone, for each would have a port of its own.
+
+    Raises
+    ------
+    OSError, UnicodeError
+        If nobody knows the name.
+    """
+    if not host:  # the system would listen everywhere
+        raise OSError("no name")
+    return str(socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)[0][4][0])
+
+
 def _silent() -> logging.Logger:
     """Make a logger that says nothing: a browser that goes away in mid-frame is no news."""
     logger = logging.Logger("vbraille.live.websockets")
@@ -238,4 +255,4 @@ def _why_not(host: str, port: int, error: Exception) -> str:
             return f"{host} is not an address of this machine; give {setting('host')} one that is"
     if isinstance(error, OverflowError):
         return f"there is no {where}; give {setting('port')} a number from 1 to 65535"
-    return f"{host} is no name or address of this machine; give {setting('host')} one that is"
+    return f"{host!r} is no name or address of this machine; give {setting('host')} one that is"

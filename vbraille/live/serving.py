@@ -32,9 +32,11 @@ from vbraille.live.channel import (
     to_server,
 )
 from vbraille.live.server import LiveServer
-from vbraille.live.watching import Watched, Watching
+from vbraille.live.ticks import TickViews
+from vbraille.live.watching import Watching
 from vbraille.logs import keep
 from vbraille.simulation.pointing import Pointer
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from vbraille.live.admission import Admission
@@ -47,7 +49,7 @@ _KEYS: Final = (signal.SIGINT, signal.SIGHUP, signal.SIGTSTP, signal.SIGTTIN, si
 _log = logging.getLogger("vbraille.live.serving")  # it runs as __main__
 
 
-class Line:
+class ServerLine:
     """The server's end of the line to the program.
 
     Parameters
@@ -114,7 +116,7 @@ def _take(said: bytes, descriptors: list[int], source: Watching) -> None:
     elif descriptors:
         try:
             extent = Extent(**msgspec.structs.asdict(message))
-            source.watch(Watched.of(descriptors[0], extent))
+            source.watch(TickViews(descriptors[0], extent))
         except (OSError, ValueError) as error:
             _log.warning("the host's memory cannot be watched: %s", error)
 
@@ -127,7 +129,7 @@ def addresses(admission: Admission) -> list[str]:
     return said
 
 
-async def serve(begin: Begin, line: Line) -> None:
+async def serve(begin: Begin, line: ServerLine) -> None:
     """Serve until the program is gone.
 
     Raises
@@ -164,11 +166,11 @@ def main() -> int:
 
 
 async def _main(begin: Begin) -> int:
-    line = Line(begin.line)
+    line = ServerLine(begin.line)
     try:
         await serve(begin, line)
     except VbrailleError as error:
-        line.say(f"live view: {error}", ends=True)
+        line.say(spelled(f"live view: {error}"), ends=True)
         return error.exit_code
     except Exception as error:
         _log.exception("the live view has ended")

@@ -43,7 +43,7 @@ class Viewer(Protocol):
         ...
 
 
-class Source(Protocol):
+class LiveSource(Protocol):
     """What a server shows."""
 
     @property

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from websockets.asyncio.server import ServerConnection
 
     from vbraille.live.admission import Admission
-    from vbraille.live.sources import Source, Steering, Viewer
+    from vbraille.live.sources import LiveSource, Steering, Viewer
 
 # Messages of a page that wait to be looked at, and frames that it may ask for ahead.
 MOST_QUEUED: Final = 8
@@ -79,7 +79,7 @@ class Talk:
     def __init__(
         self,
         connection: ServerConnection,
-        source: Source,
+        source: LiveSource,
         admission: Admission,
         drawer: Executor,
         held: Held,
@@ -109,7 +109,7 @@ class Talk:
         except Exception as error:
             _log.exception("a page could not be served")
             await self._end(
-                f"the live view has a fault, which its authors want to hear of: {error!r}"
+                f"a fault of vbraille's own, which its authors want to hear of: {error!r}"
             )
         finally:
             self._leave()

@@ -7,36 +7,23 @@ that happens here can reach the loop.
 
 from __future__ import annotations
 
-import math
-import mmap
-import os
-import struct
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Protocol
 
 import msgspec
-import numpy as np
 
-from vbraille.engine import shared
-from vbraille.engine.record import FLOATS, INTS
 from vbraille.errors import InputError
-from vbraille.live.framing import NO_DEFLECTIONS, FrameHeader, frame_bytes, thinned
-from vbraille.live.messages import MOST_SAMPLES, LetGo, Point, Press, State, Turn
+from vbraille.live.framing import FrameHeader, frame_bytes, joined
+from vbraille.live.messages import LetGo, Point, Press, State, Turn
 from vbraille.simulation.steering import BeAt
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
-    from vbraille.engine.mailbox import Mailbox
-    from vbraille.engine.ring import RingReader
     from vbraille.live.messages import Map, Moment, Next
     from vbraille.live.sources import Steering
+    from vbraille.live.ticks import TickViews
 
-# The numbers that a record begins with, taken at once: field by field takes twenty times as long.
-_NUMBERS: Final = struct.Struct(f"<{len(INTS)}q{len(FLOATS)}d")
 # A picture that is just being posted is looked at again; in between the poster needs some µs.
 _TAKES: Final = 20
 _TAKE_S: Final = 0.005
@@ -54,48 +41,8 @@ class HandHolder(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class Watched:
-    """The memory of one start of the host, mapped for reading only.
-
-    Parameters
-    ----------
-    memory
-        The memory.
-    extent
-        What decides its size.
-    """
-
-    memory: memoryview
-    extent: shared.Extent
-
-    @classmethod
-    def of(cls, descriptor: int, extent: shared.Extent) -> Watched:
-        """Map the memory of a descriptor, which may be closed then.
-
-        Raises
-        ------
-        ValueError
-            If there is less memory than the extent says.
-        """
-        there = os.fstat(descriptor).st_size
-        if there < extent.total_bytes:
-            raise ValueError(f"the memory has {there} of {extent.total_bytes} bytes")
-        mapped = mmap.mmap(descriptor, extent.total_bytes, prot=mmap.PROT_READ)
-        return cls(memoryview(mapped), extent)
-
-    def reader(self) -> RingReader:
-        """Make a reader of the ticks from the newest on."""
-        return shared.watch(self.memory, self.extent)[1]
-
-    @property
-    def mailbox(self) -> Mailbox:
-        """The pictures that were posted."""
-        return shared.watch(self.memory, self.extent)[0]
-
-
 class Watching:
-    """A `vbraille.live.sources.Source` of a device that is read now.
+    """A `vbraille.live.sources.LiveSource` of a device that is read now.
 
     Parameters
     ----------
@@ -111,7 +58,7 @@ class Watching:
     ----------
     told : tuple[int, bytes]
         Number of the newest state, and the state as JSON.
-    watched : Watched or None
+    watched : TickViews or None
         Memory of the host that runs; None before the first.
     blind : bool
         Whether stimuli are hidden.
@@ -128,7 +75,7 @@ class Watching:
         *,
         blind: bool = False,
     ) -> None:
-        self.watched: Watched | None = None
+        self.watched: TickViews | None = None
         self.blind = blind
         self._forward = forward
         self._hand = hand
@@ -143,7 +90,7 @@ class Watching:
         self._title = state.title
         self.told = state.number, msgspec.json.encode(state)
 
-    def watch(self, watched: Watched) -> None:
+    def watch(self, watched: TickViews) -> None:
         """Have pages watch a host that was started; each begins with its newest tick."""
         self.watched = watched
 
@@ -211,9 +158,8 @@ class WatchingViewer:
 
     def __init__(self, source: Watching) -> None:
         self._source = source
-        self._watched: Watched | None = None
-        self._reader: RingReader | None = None
-        self._newest: NDArray[np.void] | None = None
+        self._watched: TickViews | None = None
+        self._cursor = 0  # number of the record that comes next
 
     def state(self, request: Next) -> tuple[int, bytes]:  # noqa: ARG002 - it is the same for all
         """Number of the newest state, and the state as JSON."""
@@ -221,66 +167,35 @@ class WatchingViewer:
 
     def frame(self, request: Next, *, again: bool = False) -> bytes | None:
         """Give the newest tick, with those since the last call as samples."""
-        ticks = self._drain()
-        if ticks is not None and ticks.size:
-            self._newest = ticks[-1:].copy() if ticks.size > 1 else ticks
-        elif not again:
+        watched = self._source.watched
+        if watched is None:
+            return frame_bytes(FrameHeader(state=self._source.told[0])) if again else None
+        end = watched.published
+        if watched is not self._watched:
+            self._watched = watched
+            self._cursor = max(end - 1, 0)
+        if not end:
+            return frame_bytes(FrameHeader(state=self._source.told[0])) if again else None
+        if end == self._cursor and not again:
             return None
-        number = self._source.told[0]
-        if self._newest is None or ticks is None:
-            return frame_bytes(FrameHeader(state=number))
-        header = _header(self._newest, number)
-        deflections = self._newest["frame"][0]
-        samples = _samples(ticks, request)
+        numbers, deflections = watched.newest(end)
+        row = -1 if self._source.blind else request.row
+        samples = watched.samples(self._cursor, end, row, request.column)
+        self._cursor = end
+        shape = watched.shape
         if self._source.blind:
-            samples[:, 2] = math.nan
-            deflections = NO_DEFLECTIONS
-        return frame_bytes(header, deflections, samples)
-
-    def _drain(self) -> NDArray[np.void] | None:
-        """Copy the ticks since the last call; None before the first host is started."""
-        if self._watched is not self._source.watched:
-            self._watched = self._source.watched
-            assert self._watched is not None  # hosts come, and none is taken away
-            self._reader = self._watched.reader()
-        return None if self._reader is None else self._reader.drain()
+            shape, deflections = (0, 0), b""
+        return joined(_header(numbers, self._source.told[0]), shape, deflections, samples)
 
 
-def _header(newest: NDArray[np.void], state: int) -> FrameHeader:
-    """Header of a tick, `tick_dtype`[1]."""
+def _header(numbers: Sequence[float], state: int) -> FrameHeader:
+    """Header of a tick, by the numbers of its record."""
     (
         tick, time_ns, _, lateness_ns, work_ns, late, _, line, part, flags,
         x_mm, y_mm, theta_rad, vx_mm_s, _, _, _, _, share,
-    ) = _NUMBERS.unpack_from(newest.view(np.uint8).data)  # fmt: skip
+    ) = numbers  # fmt: skip
     return FrameHeader(
-        flags=flags,
-        state=state,
-        line=line,
-        part=part,
-        late=late,
-        tick=tick,
-        time_s=time_ns / 1e9,
-        x_mm=x_mm,
-        y_mm=y_mm,
-        theta_rad=theta_rad,
-        vx_mm_s=vx_mm_s,
-        lateness_us=lateness_ns / 1e3,
-        work_us=work_ns / 1e3,
-        share=share,
-        age_ms=(time.monotonic_ns() - time_ns) / 1e6,
-    )
-
-
-def _samples(ticks: NDArray[np.void], request: Next) -> NDArray[np.float32]:
-    """Samples of the ticks, as `frame_bytes` takes them; NaN for an actuator there is not."""
-    if len(ticks) > MOST_SAMPLES:
-        ticks = ticks[thinned(len(ticks))]
-    samples = np.empty((len(ticks), 3), np.float32)
-    if len(ticks):
-        times_ns, frames = ticks["time_ns"], ticks["frame"]
-        samples[:, 0] = (times_ns[-1] - times_ns) / 1e9
-        samples[:, 1] = ticks["x_mm"]
-        row, column = request.row, request.column
-        is_there = 0 <= row < frames.shape[1] and 0 <= column < frames.shape[2]
-        samples[:, 2] = frames[:, row, column] if is_there else math.nan
-    return samples
+        int(flags), state, int(line), int(part), int(late), tick, time_ns / 1e9,
+        x_mm, y_mm, theta_rad, vx_mm_s, lateness_ns / 1e3, work_ns / 1e3, share,
+        (time.monotonic_ns() - time_ns) / 1e6,
+    )  # fmt: skip

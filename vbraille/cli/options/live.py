@@ -39,6 +39,17 @@ def add_address_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def monitor(parser: argparse.ArgumentParser) -> None:
+    """Add the options of ``vbraille monitor``."""
+    parser.add_argument(
+        "--play",
+        metavar="FILE",
+        help="Play back what vbraille render wrote, the directory of a session, or one of its "
+        "traces (default: nothing is played).",
+    )
+    add_address_options(parser)
+
+
 def check_live_options(arguments: argparse.Namespace) -> None:
     """Refuse options of the live view that cannot be.
 
