@@ -5,6 +5,7 @@ import re
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import pytest
 
@@ -13,6 +14,16 @@ from tests.cli.test_read import SUMMARY
 from tests.cli.test_read_serial import host_of
 from tests.cli.watcher import ADDRESS, Watcher
 from tests.tiers import heavy
+
+
+@contextmanager
+def reading(*arguments):
+    """A reading, which does not outlast the test."""
+    with program.start("read", *arguments, "--no-places") as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 def until_address(process):
@@ -26,8 +37,8 @@ def until_address(process):
 
 
 def test_a_page_is_the_hand_of_a_reading_and_turns_its_knobs(text):
-    options = ("--monitor", "--hand", "still", "--echo", "text", "--no-places")
-    with program.start("read", text, *options) as process:
+    options = ("--monitor", "--hand", "still", "--echo", "text")
+    with reading(text, *options) as process:
         with Watcher(until_address(process)) as page:
             assert page.welcome["steers"]
             page.until(lambda header, state: state["number"] > 0 and header["line"] == 1)
@@ -72,7 +83,8 @@ def test_a_page_is_the_hand_of_a_reading_and_turns_its_knobs(text):
 def test_when_the_host_dies_pages_are_told_and_see_the_next_one(text):
     options = ("--monitor", "--hand", "still", "--no-places", "--cues", "none")
     with program.Terminal("read", text, *options) as terminal:
-        with Watcher(terminal.until(ADDRESS + r"\s")) as page:
+        printed = terminal.until(ADDRESS + r"\s")
+        with Watcher(printed) as page:
             page.hold(30.0)
             os.kill(host_of(terminal), signal.SIGKILL)
             terminal.until("fault: .*space begins again")
@@ -80,7 +92,7 @@ def test_when_the_host_dies_pages_are_told_and_see_the_next_one(text):
             page.ask(ask="next")
             terminal.type(" ")
             terminal.until("reading")
-            header = page.until(lambda header, state: state["device"] == "reading")
+            page.until(lambda _, state: state["device"] == "reading")
             header = page.until(lambda now, _: now["tick"] > 0 and now["x_mm"] > 29)
             assert header["line"] == 1  # what was asked for meanwhile was not done
             page.ask(ask="press", command="LNDN")
@@ -92,8 +104,8 @@ def test_when_the_host_dies_pages_are_told_and_see_the_next_one(text):
 
 @heavy  # a whole reading
 def test_let_go_a_hand_that_reads_goes_on_to_the_end(text):
-    options = ("--monitor", "--hand", "sweep:300", "--no-places", "--echo", "none")
-    with program.start("read", text, *options) as process:
+    options = ("--monitor", "--hand", "sweep:300", "--echo", "none")
+    with reading(text, *options) as process:
         with Watcher(until_address(process)) as page:
             page.hold(-2.0)
             page.hold(20.0)

@@ -19,21 +19,22 @@ class Watcher:
     def __init__(self, printed):
         address, token = re.search(ADDRESS, printed).groups()
         self.state = {}
-        self.tick = 0
-        self._socket = connect(
+        self._token = token
+        self._opening = connect(
             f"{address.replace('http', 'ws', 1)}live",
             origin=address.rstrip("/"),
             open_timeout=program.PATIENCE_S,
             compression=None,
         )
-        self.ask(ask="hello", token=token)
-        self.welcome = json.loads(self._socket.recv(program.PATIENCE_S))
 
     def __enter__(self):
+        self._socket = self._opening.__enter__()
+        self.ask(ask="hello", token=self._token)
+        self.welcome = json.loads(self._socket.recv(program.PATIENCE_S))
         return self
 
-    def __exit__(self, *_):
-        self._socket.close()
+    def __exit__(self, *exception):
+        self._opening.__exit__(*exception)
 
     def ask(self, **request):
         """Send a request."""
