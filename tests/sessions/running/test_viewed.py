@@ -151,7 +151,7 @@ def test_what_is_drawn_is_there(tmp_path):
     (first, *_), _ = watch(Session(tmp_path / "s"), ("ready", "stop"))
     assert (first.title, first.mapping) == (
         "Four characters between delimiters",
-        "mapping: dot-row-1",
+        "dot row: 1",
     )
     assert (first.array.rows, first.array.columns, first.array.rest_right) == (1, 12, False)
     assert first.geometry["dot_width_mm"] > 0
@@ -211,6 +211,7 @@ class TestBlind:
             folder = tmp_path_factory.mktemp("blind") / "s"
             told.append(without_times(watch(Session(folder, toml, participant, seed))[0]))
         assert told[0] == told[1]
+        assert len(told[0]) > 4
 
     @pytest.mark.parametrize("toml", [MINI + PRACTICE, STUDIED, COMPARED], ids=["a", "b", "c"])
     def test_unless_the_protocol_says_otherwise(self, tmp_path, toml):

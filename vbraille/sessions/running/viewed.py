@@ -17,20 +17,18 @@ from vbraille.braille.spelling import say_cells, to_braille
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.record import Flag
-from vbraille.live.messages import ArrayShown, LineShown, State
+from vbraille.live.messages import LineShown, State
+from vbraille.live.states import array_shown, geometry_shown, rows_shown
+from vbraille.render.braille.knobs import say_mapping
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from vbraille.braille.geometry import Geometry
-    from vbraille.engine.engine import Engine
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Stimulus, Trial
     from vbraille.sessions.running.course import Course
 
-# Way of a contactor from rest to full deflection, where a device does not say.
-SWING_MM: Final = 0.2
 # Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
 _SAFE: Final = frozenset(
     {
@@ -117,11 +115,11 @@ def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
     state = State(
         number=0,
         title=protocol.title,
-        array=_array(engine),
-        geometry=_lengths(protocol.geometry),
-        rows_shown=list(zip(protocol.mapping.left, protocol.mapping.right, strict=True)),
+        array=array_shown(engine.display),
+        geometry=geometry_shown(protocol.geometry),
+        rows_shown=rows_shown(protocol.style, engine.display),
         place=_place(course),
-        mapping=f"mapping: {protocol.mapping.name}",
+        mapping=say_mapping(protocol.mapping),
         paused=course.paused,
         simulated=simulated,
         held=course.progress.pointed,
@@ -153,7 +151,7 @@ def _unhidden(state: State, course: Course) -> State:
         ("texture", f"{tuning['texture']:g}"),
         ("asked for", _asked(course.protocol, trial, stimulus)),
     ]
-    geometry = _lengths(stimulus.geometry)
+    geometry = geometry_shown(stimulus.geometry)
     return structs.replace(state, facts=facts, geometry=geometry, lines=[_line(course, stimulus)])
 
 
@@ -250,25 +248,3 @@ def _device(newest: np.void | None) -> str:
     if placing is not Placing.DONE:
         return _PLACES[placing]
     return "device: at rest by itself" if flags & int(Flag.HELD) else "device: in use"
-
-
-def _array(engine: Engine) -> ArrayShown:
-    display = engine.display
-    return ArrayShown(
-        name=display.name,
-        rows=display.rows,
-        columns=display.columns,
-        column_pitch_mm=display.column_pitch_mm,
-        row_pitch_mm=display.row_pitch_mm,
-        swing_mm=SWING_MM,
-        rest_right=display.rest_side == "right",
-        travel_mm=display.travel_mm,
-        height_mm=display.height_mm,
-        turns=display.turns,
-        rate_hz=display.rate_hz,
-    )
-
-
-def _lengths(geometry: Geometry) -> dict[str, float]:
-    names = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm", "line_pitch_mm")
-    return {name: getattr(geometry, name) for name in names}
