@@ -32,10 +32,10 @@ def talk(port, *requests):
     origin = f"http://127.0.0.1:{port}"
     with connect(f"ws://127.0.0.1:{port}/live", origin=origin, compression=None) as page:
         page.send(json.dumps({"ask": "hello"}))
-        answers.append(json.loads(page.recv(10)))
+        answers.append(json.loads(page.recv(60)))
         for request in requests:
             page.send(json.dumps(request))
-            while isinstance(answer := page.recv(10), str):
+            while isinstance(answer := page.recv(60), str):
                 answers.append(json.loads(answer))
             answers.append(answer)
     return answers
@@ -53,7 +53,7 @@ def test_a_page_sees_the_recording_until_ctrl_c(path):
             {"ask": "map", "form": "png", "at_s": 0.2 if path is RECORDING else 1.3},
         )
         process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 0
+        assert process.wait(60) == 0
         assert process.stdout.read().decode() == "live view: ended\n"
         assert process.stderr.read().decode().startswith("" if path is RECORDING else "note: ")
     finally:

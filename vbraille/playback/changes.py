@@ -72,7 +72,7 @@ def _packed(dataset: h5py.Dataset) -> list[tuple[int, NDArray[np.int64] | int]] 
     chunks = _chunks(dataset)
     if chunks is None:
         return None
-    size = dataset.chunks[0]
+    size = (dataset.chunks or (0,))[0]
     known: dict[bytes, int] = {}
     made: list[tuple[int, NDArray[np.int64] | int]] = []
     only = None
