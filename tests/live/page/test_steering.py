@@ -77,7 +77,7 @@ def test_knobs_and_commands(opens):
     number.fill("0.7")
     number.press("Enter")
     comes(page, lambda: turned()[-1] == Turn("contrast", 0.7))
-    slider.evaluate("s => { s.value = 0.62; s.dispatchEvent(new Event('input')); }")
+    slider.evaluate("s => { s.value = 0.7; s.dispatchEvent(new Event('input')); }")
     comes(page, lambda: turned()[-1].knob == "dot_width_mm")
     steps = (turned()[-1].value - 2.6) / 0.2
     assert steps == pytest.approx(round(steps))

@@ -19,6 +19,7 @@ const WIDE = 100;
 class Knob {
   #value = 0;
   busy = false; // whether somebody turns it here
+  #typing = false; // whether a number is being typed: it stays until it is taken
 
   /**
    * @param {KnobShown} knob
@@ -43,15 +44,19 @@ class Knob {
       html("span", { class: "value" }, this.number, html("span", { "aria-hidden": "true" }, unit)), this.reason);
     this.slider.addEventListener("input", () => this.#set(this.#snap(this.#fromSlider())));
     this.slider.addEventListener("keydown", (event) => this.#key(event));
+    this.number.addEventListener("input", () => (this.#typing = true));
+    this.number.addEventListener("blur", () => {
+      this.#typing = false;
+      this.#write();
+    });
     this.number.addEventListener("change", () => {
+      this.#typing = false;
       const typed = Number(this.number.value);
       if (this.number.value !== "" && Number.isFinite(typed)) this.#set(this.#bound(typed));
       this.#write();
     });
-    for (const part of [this.slider, this.number]) {
-      part.addEventListener("pointerdown", () => (this.busy = true));
-      for (const end of ["pointerup", "pointercancel", "blur"]) part.addEventListener(end, () => (this.busy = false));
-    }
+    this.slider.addEventListener("pointerdown", () => (this.busy = true));
+    for (const end of ["pointerup", "pointercancel", "blur"]) this.slider.addEventListener(end, () => (this.busy = false));
   }
 
   get #steep() {
@@ -109,7 +114,7 @@ class Knob {
     const { label, unit } = this.knob;
     this.slider.value = String(this.#toSlider());
     this.slider.setAttribute("aria-valuetext", `${short(this.#value)} ${unit}`.trim());
-    if (document.activeElement !== this.number || !this.busy) this.number.value = String(this.#value);
+    if (!this.#typing) this.number.value = String(this.#value);
     this.slider.title = `${label}: ${short(this.#value)} ${unit}`.trim();
   }
 

@@ -6,7 +6,7 @@
 
 /** Colours of the page that the canvas needs, too; `style.css` has the rest. */
 export const LIGHT = {
-  ramp: ["#f0ead9", "#bfd2c6", "#7ba9b6", "#3f6f97", "#12244b"],
+  ramp: ["#f3eddc", "#acc4bb", "#6796ad", "#305e8a", "#0d1b3c"],
   stretch: "#a8480f",
   press: "#1d5f9e",
   trace: "#1d3f66",

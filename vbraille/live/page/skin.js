@@ -78,7 +78,9 @@ export class Skin {
    */
   constructor(leaning, strained, note) {
     this.left = svg("svg", { class: "skin" });
-    this.right = svg("svg", { class: "skin", role: "img" });
+    this.right = svg("svg", {
+      class: "skin", role: "img", "aria-label": "Strain of the skin between neighbours, a bar for each; the same stands in a table below",
+    });
     this.legend = html("div", { class: "legend" });
     this.key = html("div", { class: "legend" });
     this.note = note;
