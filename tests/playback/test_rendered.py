@@ -10,6 +10,7 @@ from PIL import Image
 
 from tests.playback.written import RECORDINGS, asked, each
 from vbraille.braille.geometry import Geometry
+from vbraille.errors import InputError
 from vbraille.live.messages import Map, Next
 from vbraille.playback import open_recording
 from vbraille.recording import Recorder, new_file, poses_of
@@ -139,6 +140,17 @@ def test_samples_are_the_ticks_since_the_frame_before(tmp_path):
         _, _, alone = asked(viewer, 1.040, since_s, row=-3, column=99)
         assert len(alone) == 1
         assert tuple(alone[0, :2]) == (0.0, header["x_mm"])
+
+
+def test_a_recording_without_a_whole_frame_is_refused(tmp_path):
+    path = record(tmp_path / "a.h5", LINES[:1], np.linspace(-6, 60, 500))
+    with h5py.File(path) as file:
+        at = file["frames"].id.get_chunk_info(0).byte_offset
+    content = bytearray(path.read_bytes())
+    content[at : at + 64] = bytes(64)
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="no frame of the recording is whole"):
+        open_recording(path)
 
 
 def test_a_damaged_chunk_is_passed_over(tmp_path):

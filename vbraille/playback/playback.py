@@ -42,6 +42,11 @@ class Playback:
     ----------
     reel
         What is played back.
+
+    Raises
+    ------
+    InputError
+        If no frame of it is whole.
     """
 
     def __init__(self, reel: Reel) -> None:
@@ -49,6 +54,7 @@ class Playback:
         self._pieces: OrderedDict[int, Piece] = OrderedDict()
         self._states: OrderedDict[int, bytes] = OrderedDict()
         self._lock = RLock()  # maps are drawn in a thread of their own
+        self.locate(0.0)  # there is a whole frame, which later calls find at the worst
 
     @property
     def playback(self) -> bool:
@@ -121,14 +127,20 @@ class Playback:
 
         Pieces that are damaged are passed over: the last whole frame before is shown on, or the
         first one after if there is none.
+
+        Raises
+        ------
+        InputError
+            If no frame is whole.
         """
         number = self._reel.find(at_s)
         for at in range(number, -1, -1):
             if len(self.piece(at)):
                 return at, self.piece(at).index(at_s)
-        while not len(self.piece(number)):
-            number += 1
-        return number, 0
+        for at in range(number + 1, self._reel.find(math.inf) + 1):
+            if len(self.piece(at)):
+                return at, 0
+        raise InputError("no frame of the recording is whole; there is nothing to play")
 
     def _make_state(self, scene: int) -> bytes:
         state = msgspec.structs.replace(self._reel.state(scene), number=scene + 1)
