@@ -173,7 +173,7 @@ export class Knobs {
       // What was asked for here and is not yet sent stays.
       if (!this.#turned.has(knob.name)) this.#knobs.get(knob.name)?.show(knob, steers);
     }
-    for (const each of this.buttons) each.disabled = !steers;
+    for (const each of this.buttons) each.disabled = !steers || state.knobs.length === 0;
     const pause = this.buttons[2];
     write(pause, state.paused ? "Go on reading" : "Rest the array");
     write(byId("knobs-note"), why);

@@ -183,7 +183,7 @@ function whyNot(now, open) {
   if (playback.on) return "A recording is shown: nothing can be turned in it.";
   if (now.done) return "Reading is over.";
   if (!welcome?.steers) return "This page watches. To steer, open the address with a token that vbraille says when it begins.";
-  return now.knobs.length ? "" : "No knob may be turned here.";
+  return now.knobs.length ? "" : "Nothing may be turned here.";
 }
 
 /** @param {State} now */

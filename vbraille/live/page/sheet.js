@@ -121,11 +121,11 @@ export class Sheet {
     const end = Math.max(right, state.array?.travel_mm && !state.lines.length ? state.array.travel_mm : 0);
     for (const line of d ? state.lines : []) group.append(this.#line(/** @type {Distances} */ (d), line));
     group.append(ruler(Math.floor(from / 10) * 10, end, first - 6 * px, false, this.#px_mm));
-    group.append(svg("text", { x: from - 8 * px, y: first - 18 * px, "text-anchor": "end", class: "unit" }, "mm"));
     const side = ruler(first, first + this.#most, 0, true, this.#px_mm);
     side.classList.add("side");
     const wide = (this.span?.pad ?? 0) - 4 * px;
     side.prepend(svg("rect", { class: "margin", x: 4 * px - wide, y: first - TOP_PX * px, width: wide, height: this.#high }));
+    side.append(svg("text", { x: -4 * px, y: first - 18 * px, "text-anchor": "end", class: "unit" }, "mm"));
     group.append(side);
     this.still.replaceChildren(group);
     this.side = side;

@@ -53,6 +53,7 @@ export class Telling {
     const device = [state.blind ? "blind session: what is shown stays hidden" : "", state.device,
       state.paused ? "paused" : "", state.done ? "reading is over" : "", state.held ? "the hand is held by a page" : ""];
     write(byId("device"), device.filter(Boolean).join(" · "));
+    byId("print").hidden = state.blind;
     write(byId("mapping"), state.mapping.replace(/^mapping: /, "mapping "));
     this.#log(state);
   }
@@ -133,7 +134,7 @@ export class Telling {
     const wanted = state.array ? ` of ${fixed(state.array.rate_hz, 0)}` : "";
     const remarks = sayFlags(frame.flags);
     this.#facts.show([
-      ["rate", `${fixed(this.#rate, 0)}${wanted} ticks/s`],
+      ["rate", `${fixed(this.#rate, 0)}${wanted} Hz`],
       ["late ticks", String(frame.late)],
       ["lateness", `${fixed(frame.lateness_us, 0)} µs`],
       ["work of a tick", `${fixed(frame.work_us, 0)} µs`],
