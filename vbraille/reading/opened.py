@@ -18,10 +18,9 @@ from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
 from vbraille.reading.commands.table import press_button, turn_knob
 from vbraille.reading.echo import Echo
+from vbraille.reading.openhand import OpenHand
 from vbraille.reading.reader import Reader
 from vbraille.reading.underhand import MOST_CELLS
-from vbraille.simulation.hand import Still
-from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
     device_spec,
@@ -53,7 +52,6 @@ if TYPE_CHECKING:
 
 HAND = "sweep:60"
 _POLL_S = 0.02
-_AFTER_HOLD_NS = 500_000_000  # as long as speeds are smoothed, and longer
 _HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
 
 
@@ -89,8 +87,6 @@ class OpenDevice:
 
     Attributes
     ----------
-    pointer : Pointer or None
-        The pointer; None also if a person moves the device.
     placing : Placing
         What the device waits for before it knows where its carriage is; see `set_zero`.
     """
@@ -119,22 +115,18 @@ class OpenDevice:
         self._device = device if isinstance(device, Device) else None
         self._engine: Host | LocalEngine
         self._closed = False
-        # A recorded hand reads no more than it has recorded.
-        moved = parse_hand(hand, seed, pointed=pointer is not None)
-        self._once = isinstance(moved, Recorded)
-        self._still = isinstance(moved, Still)
-        self._held_ns: int | None = None  # when somebody held the hand last
         self._simulated = isinstance(device, str) and is_simulated(device)
+        moved = parse_hand(hand, seed, pointed=pointer is not None)
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
             from vbraille.engine.local import LocalEngine
 
             rate_hz = min(wanted.rate_hz, device.display.rate_hz)
-            simulated = isinstance(device, SimulatedDevice)
-            self._steering = device.steering if simulated else None
-            self.pointer = device.pointer if simulated else None
-            self._still = simulated and isinstance(device.hand, Still)
+            if isinstance(device, SimulatedDevice):
+                self._hand = OpenHand(device.hand, device.steering, device.pointer)
+            else:
+                self._hand = OpenHand(None, None, None)
             self._engine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -142,15 +134,15 @@ class OpenDevice:
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
-            spawned, self._steering = begun or (None, steering_of(device))
-            self.pointer = pointer
-            if not has_hand(device):
-                self._steering = self.pointer = None  # a person moves the device
-            channels = (self._steering, self.pointer)
+            spawned, steering = begun or (None, steering_of(device))
+            if has_hand(device):
+                self._hand = OpenHand(moved, steering, pointer)
+            else:
+                self._hand = OpenHand(None, None, None)  # a person moves the device
             self._engine = Host(
-                device_spec(device, hand, seed, self._steering, self.pointer),
+                device_spec(device, hand, seed, self._hand.steering, self._hand.pointer),
                 wanted,
-                pass_fds=[channel.descriptor for channel in channels if channel is not None],
+                pass_fds=self._hand.descriptors,
                 spawned=spawned,
             )
             self._engine.on_share = on_share
@@ -253,7 +245,7 @@ class OpenDevice:
             advance=advance,
             stay=self._attended,
             echo=echo,
-            steering=self._steering,
+            steering=self._hand.steering,
             beside=beside,
         )
         self._reader.start()
@@ -312,7 +304,7 @@ class OpenDevice:
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
         shown = reader.under.shown
-        reader.under.patient = self._still or self._was_held(int(ticks["time_ns"][-1]))
+        reader.under.patient = self._hand.patient(int(ticks["time_ns"][-1]))
         reader.step(ticks)
         if self._attended:
             return
@@ -320,7 +312,7 @@ class OpenDevice:
         done = felt and reader.under.steered_till(ticks[-1])
         if done and reader.under.shown == shown and not reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
-            if self._once:
+            if self._hand.once:
                 reader.quit()
             elif ticks["line"][-1] == reader.line_number:
                 reader.go_on()
@@ -328,15 +320,14 @@ class OpenDevice:
             raise DeviceError(reader.under.hopeless)
 
     @property
+    def pointer(self) -> Pointer | None:
+        """Where somebody may hold the simulated hand; None also if a person moves the device."""
+        return self._hand.pointer
+
+    @property
     def held(self) -> bool:
         """Whether somebody holds the simulated hand."""
-        return self.pointer is not None and self.pointer.held
-
-    def _was_held(self, now_ns: int) -> bool:
-        """Whether what the hand does is still somebody's doing, who holds it or did so just now."""
-        if self.held:
-            self._held_ns = now_ns
-        return self._held_ns is not None and now_ns - self._held_ns < _AFTER_HOLD_NS
+        return self._hand.held
 
     @property
     def display(self) -> Display:
