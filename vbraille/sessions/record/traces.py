@@ -211,7 +211,7 @@ class Trace:
     later: tuple[NDArray[np.void], ...] = ()
 
 
-class Member(NamedTuple):
+class ChunkMember(NamedTuple):
     """A whole gzip member: kind of its records, length, deflated bytes, full size, and tie."""
 
     record: np.dtype
@@ -234,7 +234,7 @@ def read_trace(path: Path) -> Trace:
     except OSError as error:
         raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
     view = memoryview(trace)
-    stretches: list[list[Member]] = [[]]
+    stretches: list[list[ChunkMember]] = [[]]
     at, damage, torn_bytes = 0, None, 0
     record = None
     while at < len(trace):
@@ -334,7 +334,7 @@ def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
     return head + EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def check_member(trace: memoryview, record: np.dtype | None) -> Member | None:
+def check_member(trace: memoryview, record: np.dtype | None) -> ChunkMember | None:
     """Read the gzip member that a trace begins with; None if it is cut short.
 
     Raises
@@ -357,7 +357,7 @@ def check_member(trace: memoryview, record: np.dtype | None) -> Member | None:
     tie = None
     if start in _TIED:
         tie = Tie(*EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
-    return Member(HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
+    return ChunkMember(HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
 
 
 def next_start(trace: bytes, after: int) -> int:
@@ -371,7 +371,7 @@ def next_start(trace: bytes, after: int) -> int:
     return len(trace)
 
 
-def _inflate(members: list[Member], record: np.dtype) -> NDArray[np.void]:
+def _inflate(members: list[ChunkMember], record: np.dtype) -> NDArray[np.void]:
     """Ticks of members that were checked, as records of a kind."""
     stops = list(accumulate(member.size for member in members))
     ticks = np.empty((stops[-1] if stops else 0) // record.itemsize, record)
