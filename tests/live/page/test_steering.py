@@ -97,7 +97,10 @@ def test_knobs_and_commands(opens):
     until(page, "document.querySelector('.line.under').dataset.line === '3'")
     until(page, "[...document.querySelectorAll('#said p')].pop().textContent === 'line 3'")
     page.get_by_role("button", name="Rest the array").click()
-    until(page, "[...document.querySelectorAll('#commands button')][2].textContent === 'Go on reading'")
+    until(
+        page,
+        "[...document.querySelectorAll('#commands button')][2].textContent === 'Go on reading'",
+    )
 
 
 def test_who_watches_is_told_why_nothing_turns(opens):
