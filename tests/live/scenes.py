@@ -119,11 +119,9 @@ class Text:
 class Scene:
     """A source whose hand goes along a line, or is where a page holds it."""
 
-    def __init__(
-        self, kind: str = "live", *, model: Model | None = None, steers: bool = True
-    ) -> None:
+    def __init__(self, kind: str = "live") -> None:
         self.kind = kind
-        self.model = model or (VBD if kind == "vbd" else STRESS2)
+        self.model = VBD if kind == "vbd" else STRESS2
         self.playback = kind == "playback"
         self.length_s = LENGTH_S if self.playback else 0.0
         self.moments = MOMENTS if self.playback else []
@@ -300,13 +298,11 @@ class SceneViewer:
         x_mm = scene.x_mm(ticks / RATE_HZ)
         frames = scene.frames(x_mm)
         blind = scene.kind == "blind"
-        follow = frames[
-            :, min(request.row, frames.shape[1] - 1), min(request.column, frames.shape[2] - 1)
-        ]
-        samples = np.stack(
-            [(tick - ticks) / RATE_HZ, x_mm, np.full(ticks.size, np.nan) if blind else follow],
-            axis=1,
-        )
+        row = min(request.row, frames.shape[1] - 1)
+        follow = frames[:, row, min(request.column, frames.shape[2] - 1)]
+        if blind:
+            follow = np.full(ticks.size, np.nan)
+        samples = np.stack([(tick - ticks) / RATE_HZ, x_mm, follow], axis=1)
         y_mm, theta = scene.pose()
         before = scene.x_mm((tick - 1) / RATE_HZ)
         header = FrameHeader(
