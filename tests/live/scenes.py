@@ -119,9 +119,9 @@ class Text:
 class Scene:
     """A source whose hand goes along a line, or is where a page holds it."""
 
-    def __init__(self, kind: str = "live", *, model: Model | None = None, steers: bool = True) -> None:
+    def __init__(self, kind: str = "live") -> None:
         self.kind = kind
-        self.model = model or (VBD if kind == "vbd" else STRESS2)
+        self.model = VBD if kind == "vbd" else STRESS2
         self.playback = kind == "playback"
         self.length_s = LENGTH_S if self.playback else 0.0
         self.moments = MOMENTS if self.playback else []
@@ -163,24 +163,41 @@ class Scene:
             self.number,
             title="The story of an unknown reader" if not blind else "Legibility of letters",
             array=ArrayShown(
-                array.name, array.rows, array.columns, array.column_pitch_mm, array.row_pitch_mm,
-                SWING_MM, array.rest_side == "right", array.travel_mm,
-                geometry.line_pitch_mm * len(self.text.lines) if self.two else 0.0, self.two,
+                array.name,
+                array.rows,
+                array.columns,
+                array.column_pitch_mm,
+                array.row_pitch_mm,
+                SWING_MM,
+                array.rest_side == "right",
+                array.travel_mm,
+                geometry.line_pitch_mm * len(self.text.lines) if self.two else 0.0,
+                self.two,
                 float(RATE_HZ),
             ),
             geometry={
                 name: getattr(geometry, name)
                 for name in (
-                    "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
+                    "dot_width_mm",
+                    "dot_spacing_mm",
+                    "cell_gap_mm",
+                    "row_spacing_mm",
                     "line_pitch_mm",
                 )
             },
             rows_shown=rows,
             lines=[] if blind else self.text.shown(self.row),
             place="" if blind else f"line {self.row + 1}, page 1",
-            knobs=[] if blind else [
+            knobs=[]
+            if blind
+            else [
                 KnobShown(
-                    knob.name, knob.label, knob.unit, knob.value(style), knob.step, knob.low,
+                    knob.name,
+                    knob.label,
+                    knob.unit,
+                    knob.value(style),
+                    knob.step,
+                    knob.low,
                     knob.high,
                 )
                 for knob in KNOBS.values()
@@ -281,10 +298,11 @@ class SceneViewer:
         x_mm = scene.x_mm(ticks / RATE_HZ)
         frames = scene.frames(x_mm)
         blind = scene.kind == "blind"
-        follow = frames[:, min(request.row, frames.shape[1] - 1), min(request.column, frames.shape[2] - 1)]
-        samples = np.stack(
-            [(tick - ticks) / RATE_HZ, x_mm, np.full(ticks.size, np.nan) if blind else follow], axis=1
-        )
+        row = min(request.row, frames.shape[1] - 1)
+        follow = frames[:, row, min(request.column, frames.shape[2] - 1)]
+        if blind:
+            follow = np.full(ticks.size, np.nan)
+        samples = np.stack([(tick - ticks) / RATE_HZ, x_mm, follow], axis=1)
         y_mm, theta = scene.pose()
         before = scene.x_mm((tick - 1) / RATE_HZ)
         header = FrameHeader(

@@ -1,4 +1,4 @@
-"""One browser for each worker, a context for each test, and what went wrong in a page is a fault."""
+"""One browser for each worker; what goes wrong in a page fails its test."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack

@@ -1,6 +1,7 @@
 """Colours hold in the three common colour blindnesses and in grey."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +31,7 @@ EYES = {
     ],
     "grey": [LUMINANCE] * 3,
 }
-TO_XYZ = np.array(
-    [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
-)
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 
 
 def linear(hex_colour):
@@ -76,7 +75,7 @@ def ramp(stops):
 @pytest.mark.parametrize("eye", EYES)
 def test_steps_of_deflection_can_be_told_apart_and_keep_their_order(scheme, eye):
     seen = [lab(np.array(EYES[eye]) @ linear(colour)) for colour in ramp(palette(scheme)[0])]
-    apart = [np.linalg.norm(b - a) for a, b in zip(seen, seen[1:], strict=False)]
+    apart = [np.linalg.norm(b - a) for a, b in pairwise(seen)]
     assert min(apart) > 2.3  # a difference that is just noticed
     lightness = [colour[0] for colour in seen]
     assert sorted(lightness, reverse=scheme == "LIGHT") == lightness

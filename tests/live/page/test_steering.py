@@ -9,7 +9,8 @@ from tests.live.page.showing import comes, settled, until
 from tests.live.scenes import Scene
 from vbraille.live.messages import LetGo, Point, Press, Turn
 
-POINT = "[...document.querySelectorAll('#sheet svg')].map((s) => s.getBoundingClientRect().width / s.viewBox.baseVal.width)[1]"
+PX_MM = """(() => { const drawing = document.querySelector("#sheet .moving");
+return drawing.getBoundingClientRect().width / drawing.viewBox.baseVal.width; })()"""
 
 
 def points(scene):
@@ -20,7 +21,7 @@ def test_the_array_is_dragged_goes_by_keys_and_is_let_go(opens):
     scene = Scene("still")
     page, _ = opens(scene)
     settled(page)
-    px_mm = page.evaluate(POINT)
+    px_mm = page.evaluate(PX_MM)
     box = page.locator("#finger .frame").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
@@ -97,7 +98,7 @@ def test_knobs_and_commands(opens):
     until(page, "document.querySelector('.line.under').dataset.line === '3'")
     until(page, "[...document.querySelectorAll('#said p')].pop().textContent === 'line 3'")
     page.get_by_role("button", name="Rest the array").click()
-    until(page, "[...document.querySelectorAll('#commands button')][2].textContent === 'Go on reading'")
+    page.get_by_role("button", name="Go on reading").wait_for()
 
 
 def test_who_watches_is_told_why_nothing_turns(opens):

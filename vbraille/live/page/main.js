@@ -220,6 +220,7 @@ byId("say").addEventListener("click", () => {
 byId("freeze").addEventListener("click", () => {
   frozen = !frozen;
   byId("freeze").setAttribute("aria-pressed", String(frozen));
+  if (state && frame) telling.read(state, frame); // the numbers are those of the picture
   wake();
 });
 byId("again").addEventListener("click", () => {

@@ -151,6 +151,7 @@ export class Playback {
     this.playing = !this.playing;
     if (this.playing && this.at_s >= this.#length - 1e-9) this.go(0);
     this.#then = NaN;
+    this.wanted = true; // where it stops, the numbers are those of the picture
     write(this.play, this.playing ? "Pause" : "Play");
     this.wake();
   }
