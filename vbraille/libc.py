@@ -8,7 +8,6 @@ error (``-errno.EAGAIN``), as calls of the system do. An interrupted call is not
 """
 
 import errno
-import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -19,9 +18,7 @@ from numba.extending import intrinsic
 from vbraille.caching import keep_compiled
 
 # Numbers of Linux, where pointers, sizes and seconds have 64 bits.
-AVAILABLE = sys.platform == "linux" and sys.maxsize > 2**32
 CLOCK_MONOTONIC = 1
-CLOCK_THREAD_CPUTIME = 3
 POLLIN = 0x0001
 POLLERR = 0x0008
 POLLHUP = 0x0010

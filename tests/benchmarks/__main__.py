@@ -22,6 +22,7 @@ PARTS = (
     "trials_coverage",
     "reader",
     "turning",
+    "live",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

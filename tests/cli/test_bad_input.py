@@ -6,9 +6,18 @@ import zipfile
 
 import pytest
 
+from tests.tiers import TIER, Tier, heavy
 from vbraille.translate import list_tables
 
 PNG = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\6\0\0\0\x1f\x15\xc4\x89"
+
+
+COMMANDS = [
+    ("page",),
+    ("render", "--out", "never.h5"),
+    # It starts the process of a device each time, and opens files and tables as the others do.
+    pytest.param(("read",), marks=heavy),
+]
 
 
 def zipped():
@@ -42,7 +51,7 @@ def refused(said, *, code=2):
     ],
     ids=["empty", "mark", "blank", "image", "archive", "binary"],
 )
-@pytest.mark.parametrize("command", [("page",), ("render", "--out", "never.h5"), ("read",)])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_files_that_are_no_text(call, text, content, sentence, command):
     text.write_bytes(content)
     assert refused(call(*command, text)).startswith(sentence.format(text))
@@ -54,6 +63,8 @@ def test_files_that_cannot_be_read(call, tmp_path):
     for command in (("page",), ("render", "--out", "never.h5"), ("read",)):
         said = refused(call(*command, missing))
         assert said == f"there is no file {missing}; check the name"
+        if command == ("read",) and TIER is Tier.TEST:
+            return  # it starts the process of a device each time
         said = refused(call(*command, folder))
         assert said == f"{folder} is a directory; give a text file in it"
         said = refused(call(*command, "/proc/self/mem"))
@@ -127,7 +138,7 @@ def test_numbers_out_of_range_name_the_range(call, text, option):
         ("more.txt", r"unrecognized arguments: more.txt"),
     ],
 )
-@pytest.mark.parametrize("command", [("page",), ("render", "--out", "never.h5"), ("read",)])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_options_of_the_page(call, text, options, pattern, command):
     assert re.search(pattern, refused(call(*command, text, *options.split(" "))))
 
@@ -174,6 +185,7 @@ def test_options_of_a_showing(call, text, options, pattern, command):
             "--device serial:x --seed 1",
             r"^--seed is for .*; leave --seed out, or leave --device out",
         ),
+        ("--table nosuch.ctb", r"there is no braille table 'nosuch.ctb'; the nearest are "),
         ("--advance slowly", r"argument --advance: invalid choice: 'slowly'"),
         ("--advance key", r"--advance key needs a terminal to type at; leave it out without one"),
         ("--echo loud", r"argument --echo: invalid choice: 'loud'"),

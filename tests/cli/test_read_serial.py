@@ -9,7 +9,7 @@ from pathlib import Path
 from tests import drivers
 from tests.cli import program
 from tests.cli.program import Terminal
-from tests.tiers import by_tier, heavy
+from tests.tiers import TIER, Tier, by_tier, heavy
 from vbraille import __version__
 
 
@@ -133,9 +133,10 @@ def test_the_page_is_laid_out_for_the_travel_that_there_is(call, tmp_path, text)
         assert done.err == "line width: 4 cells, table en-ueb-g2.ctb\n"
         said = [line for line in done.out.splitlines() if line.startswith("text: ")]
         assert " ".join(line.removeprefix("text: ") for line in said) == "one two three"
-        narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
-        assert narrower.code == 0, narrower.err
-        assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
+        if TIER > Tier.TEST:  # a shorter travel is laid out for without a device, too
+            narrower = call("read", text, "--device", spec, "--travel", "50", "--lines", "1")
+            assert narrower.code == 0, narrower.err
+            assert narrower.err == "line width: 3 cells, table en-ueb-g2.ctb\n"
         for option, value, sentence in REFUSED:
             done = call("read", text, "--device", spec, option, value)
             assert done.code == 2
@@ -208,6 +209,7 @@ def test_a_line_that_the_carriage_cannot_finish_is_passed_by_a_key(tmp_path, tex
         assert terminal.end() == 0
 
 
+@heavy  # what is said of such a device is tested without a process
 def test_a_device_that_takes_nothing_is_not_read_on(tmp_path, text):
     driver = drivers.install(tmp_path, "short", "Short", SHORT)
     text.write_text("a\n\nb\n")
@@ -228,7 +230,7 @@ def test_a_device_that_takes_nothing_is_not_read_on(tmp_path, text):
     ]
 
 
-def test_device_info_and_check(call, tmp_path):
+def test_device_info(call, tmp_path):
     with simulated(tmp_path, "--model", "vbd") as (spec, _):
         told = call("device", "info", spec)
         assert told.code == 0
@@ -247,6 +249,11 @@ def test_device_info_and_check(call, tmp_path):
             "inverted actuators: none",
         ]
         assert call("device", "info", spec, "--model", "stress2").code == 2
+
+
+@heavy  # what is measured is tested on a clock of its own; here all of a check goes by in real time
+def test_device_check(tmp_path):
+    with simulated(tmp_path, "--model", "vbd") as (spec, _):
         checked = program.run("device", "check", spec)
     said = checked.stdout.splitlines()
     swung = [line for line in said if line.startswith("actuator: ")]

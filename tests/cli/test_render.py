@@ -268,7 +268,7 @@ def half_done(texts, out):
     "signals",
     [
         (signal.SIGINT, signal.SIGINT),
-        # One handler takes all signals; another test here has SIGTERM.
+        # One handler takes all signals; another test has SIGTERM.
         pytest.param((signal.SIGHUP,), marks=heavy),
     ],
 )
@@ -306,6 +306,7 @@ def test_a_killed_run_leaves_the_old_file_and_the_next_run_cleans_up(old, call, 
     assert out.read_bytes() == before  # the same run as before
 
 
+@heavy  # what a signal leaves beside an old file is tested; one handler takes all signals
 def test_a_first_run_that_is_stopped_leaves_nothing(texts, tmp_path):
     with half_done(texts, tmp_path / "out.h5") as process:
         process.terminate()

@@ -5,6 +5,7 @@ import tomllib
 import pytest
 
 from tests.cli import program
+from tests.tiers import TIER, Tier
 
 TEXT = """# mine
 [read]
@@ -66,7 +67,7 @@ def test_the_path_is_said_even_of_a_file_that_cannot_be_used(call, settings):
         )
 
 
-def test_reading_goes_by_the_file_unless_an_option_says_otherwise(text, settings):
+def test_reading_goes_by_the_file_unless_an_option_says_otherwise(call, text, settings):
     command = ("read", text, *FAST, "--lines", "1", "--settings", settings)
     said = program.run(*command)
     assert said.returncode == 0
@@ -74,6 +75,11 @@ def test_reading_goes_by_the_file_unless_an_option_says_otherwise(text, settings
     assert said.stderr == "line width: 28 cells, table en-ueb-g1.ctb\n"
     assert said.stdout.startswith("line: 1\ntext: one two three\n")
     options = ("--table", "fr-bfu-comp6.utb", "--dot-spacing", "3.7", "--echo", "none")
+    # An option goes before the file in every command; a page needs no process.
+    page = call("page", text, "--settings", settings, *options[:-2])
+    assert page.err == "line width: 26 cells, table fr-bfu-comp6.utb\n"
+    if TIER is Tier.TEST:
+        return
     said = program.run(*command, *options)
     assert said.stderr == "line width: 26 cells, table fr-bfu-comp6.utb\n"
     assert not said.stdout.startswith("line")

@@ -112,7 +112,7 @@ class Traffic:
 @pytest.mark.no_cover
 def test_nothing_else_happens_in_random_traffic():
     seen = set()
-    for seed in range(by_tier(25, 40, 4000)):
+    for seed in range(by_tier(15, 40, 4000)):
         traffic = Traffic(seed)
         for _ in range(150):
             before = traffic.device.conversation

@@ -1,5 +1,6 @@
 """The host in its own process, whose parent and whose device may fail."""
 
+import mmap
 import os
 import select
 import signal
@@ -13,12 +14,14 @@ import pytest
 
 from tests import drivers
 from tests.engine.test_loop import info, picture
-from vbraille.devices.events import Notice
+from vbraille.devices.events import HandHeld, Notice
+from vbraille.engine import shared
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import STRESS2, VBD
-from vbraille.simulation.steering import ReadLine, Steering
+from vbraille.simulation.pointing import Pointer
+from vbraille.simulation.steering import BeAt, ReadLine, Steering
 
 PATIENCE_S = 60.0
 ROOM = STRESS2.style.room(STRESS2.display, 26)  # lines of so many cells
@@ -128,23 +131,44 @@ def test_a_device_is_opened_before_anybody_knows_how_long_lines_are():
     assert descriptors() == before
 
 
-def test_a_simulated_hand_is_steered_past_the_engine():
-    steering = Steering()
-    spec = f"sim:?hand=sweep:1000&steering={steering.descriptor}"
-    with Host(spec, info(), 26, pass_fds=[steering.descriptor]) as host:
+def test_a_simulated_hand_is_steered_and_held_past_the_engine_and_watched_at_each_start():
+    steering, pointer, watching = Steering(), Pointer(), []
+
+    def watch(descriptor, extent):
+        memory = mmap.mmap(descriptor, extent.total_bytes, prot=mmap.PROT_READ)
+        watching.append(shared.watch(memoryview(memory), extent)[1])
+
+    def at(x_mm):
+        return lambda new: new.size and abs(new["x_mm"][-1] - x_mm) < 0.01
+
+    spec = f"sim:?hand=sweep:1000&steering={steering.descriptor}&pointer={pointer.descriptor}"
+    host = Host(spec, info(), 26, pass_fds=[steering.descriptor, pointer.descriptor])
+    host.on_share = watch
+    with host:
         (home_mm,) = set(until(host, lasting(100))["x_mm"])
         steering.give(ReadLine(50.0))
         ticks = until(host, lambda new: new.size and steering.done_at(int(new["device_ns"][-1])))
         assert 45 < ticks["x_mm"].max() - home_mm - info().span_mm <= 50
         assert ticks["x_mm"][-1] == home_mm
+        pointer.hold(BeAt(40.0))
+        until(host, at(40.0))
+        (seen,) = watching
+        assert seen.drain()[-1]["x_mm"] == pytest.approx(40.0, abs=0.01)
+        assert HandHeld(held=True) in host.take_events()
         os.kill(host.process_id, signal.SIGKILL)
         with pytest.raises(HostDiedError):
             until(host, lambda _new: False)
         steering.give(ReadLine(50.0))  # while there is nobody to take it
         host.start()
-        assert set(until(host, lasting(100))["x_mm"]) == {home_mm}
+        until(host, at(40.0))  # it is held where it was
+        _, seen = watching
+        assert seen.drain()[-1]["tick"] >= host.newest["tick"]
+        pointer.let_go()
+        until(host, lambda _new: HandHeld(held=False) in host.take_events())
+        assert {40.0} == set(until(host, lasting(host.tally.ticks + 100))["x_mm"])
         steering.give(ReadLine(50.0))
         until(host, lambda new: new.size and steering.done_at(int(new["device_ns"][-1])))
+        assert host.x_mm == home_mm
 
 
 _PARENT = """

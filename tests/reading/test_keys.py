@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.reading.keys import BURST, PASTE, Keys
+from vbraille.reading.keys import BURST, PASTE, PASTE_REST, Keys, pasted
 
 NAMES = {
     "\x1b[A": "up",
@@ -43,7 +43,8 @@ NAMES = {
     "\x1b[?1;2c": None,
     "\x1b[I": None,
     "\x1b[201~": None,
-    "\x1b[200~n\nq\x1b[31mé\x1b[201~": PASTE,
+    "\x1b[200~n\nq\x1b[31mé\x1b[201~": PASTE + "n",
+    "\x1b[200~an é\x1b[31m\x1b[201~": PASTE + "an é\x1b[31m",
 }
 
 
@@ -140,13 +141,14 @@ def test_no_bytes_are_a_fault_and_all_are_over_after_a_second(pieces):
 
 def test_a_paste_is_one_key_however_long_and_ends():
     keys = Keys()
-    assert keys.feed(b"t\x1b[200~nq", 0.0) == ["t", PASTE]
+    assert keys.feed(b"t\x1b[200~nq", 0.0) == ["t"]
     for n in range(100):
         assert keys.feed(b"nq\n\x1b[A" * 500, 0.1 * n) == []
     assert keys.feed(b"q\x1b[20", 10.0) == []
-    assert keys.feed(b"1~n", 10.1) == ["n"]
-    assert keys.feed(b"\x1b[200~nq", 11.0) == [PASTE]
-    assert keys.wait(12.1) == []  # its end never came
+    assert keys.feed(b"1~n", 10.1) == [PASTE + "nqnq", "n"]
+    assert keys.feed(b"\x1b[200~nq", 11.0) == []
+    assert keys.wait(12.1) == [PASTE + "nq"]  # its end never came
+    assert keys.wait(19.1) == []
     assert keys.feed(b"n", 12.2) == ["n"]
 
 
@@ -155,6 +157,16 @@ def test_a_burst_of_characters_is_a_paste_that_nobody_has_marked():
     assert keys.feed(b"n" * 100, 0.0) == ["n"] * 100  # a key held down
     assert keys.feed(b"\x1b[B" * 100, 0.2) == ["down"] * 100
     assert keys.feed(b"nnnppptttq", 0.4) == [*"nnnppptttq"]
-    assert keys.feed(b"a text that was pasted, and q", 0.6) == [PASTE]
-    assert keys.feed(b"uit", 0.65) == []  # its end
+    assert keys.feed(b"a text that was pasted, and q", 0.6) == [
+        PASTE + "a text that was pasted, and q"
+    ]
+    assert keys.feed(b"uit\nno", 0.65) == [PASTE_REST + "uit"]  # the rest of its first line
+    assert keys.feed(b"more", 0.7) == []
     assert keys.feed(b"n", 0.9) == ["n"]
+
+
+def test_no_more_of_a_paste_is_kept_than_anybody_types():
+    keys = Keys()
+    (key,) = keys.feed(b"\x1b[200~" + b"a" * 5_000 + b"\x1b[201~", 0.0)
+    assert pasted(key) == "a" * 1_000
+    assert [pasted(key) for key in ("n", "escape", "p", PASTE)] == [None, None, None, ""]

@@ -113,7 +113,7 @@ class Session:
         """A person who types these lines."""
         return Person(list(script))
 
-    def sit(self, *script, engine=BatchEngine, noise=0.0):
+    def sit(self, *script, engine=BatchEngine, noise=0.0, onlookers=None):
         """Run it: by a person, or one who types these lines, else by a simulated reader."""
         person = script[0] if script and isinstance(script[0], Person) else self.person(*script)
         said, played = person.said, Played()
@@ -122,7 +122,8 @@ class Session:
             fast=True,
             engine=lambda spec, wanted: engine(open_device(spec, wanted), poll_ticks=100),
         )
-        session.run(person if script else f"simulated:{noise:g}", say=said.append, sound=played)
+        answers = person if script else f"simulated:{noise:g}"
+        session.run(answers, say=said.append, sound=played, onlookers=onlookers)
         record = session.record
         progress = Progress(self.plan, record.told.events, record.procedure)
         return Sat(said, record.told.events, played.tones, record, progress, session.progress)

@@ -182,7 +182,17 @@ def build_book(arguments: argparse.Namespace, *, six_dots: bool = False) -> Book
     """
     if arguments.file == "-" and arguments.form is None:
         build_table(arguments)  # nobody types a text for a table that is not there
-    source = _open(arguments)
+    return book_of(_open(arguments), arguments, six_dots=six_dots)
+
+
+def book_of(source: Source, arguments: argparse.Namespace, *, six_dots: bool = False) -> Book:
+    """Put a text that is open and its table together, as `build_book` does.
+
+    Raises
+    ------
+    InputError
+        If an option cannot be used for this text.
+    """
     if source.in_cells:
         for option in ("table", "language", "grade"):
             if getattr(arguments, option) is not None and option not in arguments.settled:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.engine.spawning import Spawned
+    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
 
@@ -121,7 +122,8 @@ def _call(argv: Sequence[str] | None) -> int:
         keep(arguments.log)
     with ExitStack() as begun:
         if arguments.command == "read":
-            arguments.begun = _begin_host(arguments.file)
+            arguments.pointer = _pointer() if arguments.monitor else None
+            arguments.begun = _begin_host(arguments.file, arguments.pointer)
             if arguments.begun is not None:
                 begun.callback(arguments.begun[0].end)
         with EAR.at_once():
@@ -129,7 +131,14 @@ def _call(argv: Sequence[str] | None) -> int:
         return command.run(arguments)
 
 
-def _begin_host(file: str | None) -> tuple[Spawned, Steering] | None:
+def _pointer() -> Pointer:
+    """Make what a page of the live view may hold a simulated hand by."""
+    from vbraille.simulation.pointing import Pointer
+
+    return Pointer()
+
+
+def _begin_host(file: str | None, pointer: Pointer | None) -> tuple[Spawned, Steering] | None:
     """Begin the process that drives the device, which loads while the text is opened.
 
     Nothing is begun for a file that is not there.
@@ -140,4 +149,5 @@ def _begin_host(file: str | None) -> tuple[Spawned, Steering] | None:
     from vbraille.simulation.steering import Steering
 
     steering = Steering()
-    return spawn((steering.descriptor,)), steering
+    pointed = () if pointer is None else (pointer.descriptor,)
+    return spawn((steering.descriptor, *pointed)), steering

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import lab, reading
+from vbraille.cli.options import lab, live, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -57,6 +57,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Write every frame of a reading to an HDF5 file.",
         reading.render,
         "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
+    ),
+    "monitor": (
+        "Play back a recording or a session in a browser, until Ctrl-C.",
+        live.monitor,
+        "vbraille monitor --play reading.h5",
     ),
     "plot": (
         "Draw a picture of what the display does, or print its numbers.",

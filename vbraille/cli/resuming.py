@@ -6,7 +6,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.cli.build import build_book
+import msgspec
+
+from vbraille.cli.build import book_of, build_book
+from vbraille.cli.settled import TRANSLATION
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.reading.places import BookOptions, last_book, resume
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle, Model
     from vbraille.translate import Book
+
+# What a book that is opened again without a name is opened with, beside its translation.
+_TAKEN = ("undefined", "encoding", "form", "brf_table", "keep_lines")
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +100,17 @@ class BookToRead:
             tuning = dict(self.kept.tuning or {})
             tuning[display_name(model)] = kept_values(reader.style)
             self.kept.keep_tuning(tuning)
+        self._keep_translation(reader.layout.book)
         self.kept.keep_index(self.book.source.index())
         self.kept.close()
+
+    def _keep_translation(self, book: Book) -> None:
+        """Keep the language and grade to which the reader turned, if this is another table."""
+        assert self.kept is not None
+        if self.book.table is None or book.table is None or book.table.name == self.book.table.name:
+            return
+        turned = {"language": book.language, "grade": book.grade, "table": None, "turned": True}
+        self.kept.keep_options(msgspec.structs.replace(self.kept.options, **turned))
 
 
 def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToRead:
@@ -113,11 +128,18 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
     InputError
         If there is no last book, or the book cannot be read.
     """
+    said = _said(arguments)
     if arguments.file is None:
-        _take_last(arguments, places)
+        _take_last(arguments, places, said)
     book = build_book(arguments)
     if arguments.no_places or arguments.file == "-" or arguments.lines != (1, None):
         return BookToRead(book)
+    source = book.source
+    kept = places.book(arguments.file, title=source.title)
+    turned = kept.options.turned and book.table is not None
+    if turned := turned and _take_translation(arguments, kept.options, said):
+        with suppress(InputError):  # the language has no table any more
+            book = book_of(source, arguments)
     if (note := places.note()) is not None:
         say_line(note, aside=True)
     given = {
@@ -125,22 +147,51 @@ def open_to_resume(arguments: argparse.Namespace, places: KeptPlaces) -> BookToR
         for name in ("language", "grade", "table", "encoding", "form", "brf_table")
     }
     options = BookOptions(
-        **given, undefined=arguments.undefined, keep_lines=bool(arguments.keep_lines)
+        **given,
+        undefined=arguments.undefined,
+        keep_lines=bool(arguments.keep_lines),
+        turned=turned,
     )
-    source = book.source
-    resumed = resume(source, places.book(arguments.file, title=source.title), options)
+    resumed = resume(source, kept, options)
     if resumed.note is not None:
         say_line(resumed.note, aside=True)
     return BookToRead(book, resumed.kept, resumed.place)
 
 
-def _take_last(arguments: argparse.Namespace, places: KeptPlaces) -> None:
+def _said(arguments: argparse.Namespace) -> frozenset[str]:
+    """Which of the options on translation were given, and are not from the settings file."""
+    given = {name for name in TRANSLATION if getattr(arguments, name) is not None}
+    return frozenset(given - arguments.settled)
+
+
+def _take_last(arguments: argparse.Namespace, places: KeptPlaces, said: frozenset[str]) -> None:
     """Read the last book, by the options of its last reading where no others are given."""
     kept = last_book(places)
     arguments.file = str(kept.path)
-    for name in BookOptions.__struct_fields__:
-        value = getattr(kept.options, name)
+    options = kept.options
+    if any(getattr(options, name) is not None for name in TRANSLATION):
+        _take_translation(arguments, options, said)
+    for name in _TAKEN:
+        value = getattr(options, name)
         unsaid = getattr(arguments, name) in (None, False, "mark") or name in arguments.settled
         if value is not None and unsaid:
             setattr(arguments, name, value)
             arguments.settled -= {name}
+
+
+def _take_translation(
+    arguments: argparse.Namespace, options: BookOptions, said: frozenset[str]
+) -> bool:
+    """Translate as a book was translated before, unless options say a language or a table.
+
+    Returns
+    -------
+    bool
+        Whether the book's language or table is taken; a grade that is given holds in any case.
+    """
+    if said & {"language", "table"} or (said and options.table is not None):
+        return False
+    for name in set(TRANSLATION) - said:
+        setattr(arguments, name, getattr(options, name))
+    arguments.settled -= set(TRANSLATION)
+    return True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.cli.options.reading import SETTLED
+from vbraille.cli.options.groups import SETTLED
 from vbraille.cli.terminal import say_line
 from vbraille.reading.bindings import Bindings, Bound
 from vbraille.reading.commands.table import bound_by

@@ -254,6 +254,24 @@ class Placed(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class HandHeld(Event):
+    """Somebody has taken the hand of a simulated device in the live view, or has let it go.
+
+    Parameters
+    ----------
+    held
+        Whether somebody holds the hand now.
+    """
+
+    held: bool
+
+    @property
+    def kind(self) -> Hashable:
+        """No event stands for another: each change is told."""
+        return None
+
+
+@dataclass(frozen=True, slots=True)
 class NotInTime(Event):
     """The system refuses to give the engine what it needs to do ticks in time.
 
@@ -293,6 +311,7 @@ _KINDS: Final = {
         Button,
         Knob,
         Placed,
+        HandHeld,
         NotInTime,
         Exposed,
     )

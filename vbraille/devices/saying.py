@@ -13,6 +13,7 @@ from vbraille.devices.events import (
     Event,
     Exposed,
     Fault,
+    HandHeld,
     Knob,
     Notice,
     NotInTime,
@@ -189,6 +190,11 @@ def _(event: Placed) -> str:
         Placing.MARK: "device: it waits for the carriage to pass its mark",
         Placing.STOP: "device: it waits to be shown the left stop",
     }[event.placing]
+
+
+@_say.register
+def _(event: HandHeld) -> str:
+    return "hand: moved in the live view" if event.held else "hand: simulated again"
 
 
 @_say.register

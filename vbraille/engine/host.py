@@ -22,7 +22,7 @@ from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.logs import kept
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -72,6 +72,9 @@ class Host:
         Counts of what went wrong with the device, by name; known after `close`.
     lost : int
         Number of ticks that were never polled, because the parent was away for too long.
+    on_share : callable or None
+        Function that is called, at each start, with a descriptor of the memory that is shared,
+        which is closed after the call, and what decides its size; for others who watch.
     """
 
     def __init__(
@@ -86,6 +89,7 @@ class Host:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
+        self.on_share: Callable[[int, shared.Extent], None] | None = None
         self._device = device
         self._wanted = wanted
         self._room = room
@@ -181,6 +185,8 @@ class Host:
         ticks = round(shared.RING_S * wanted.rate_hz)
         extent = shared.Extent(wanted.rows, wanted.columns, self._room, ticks)
         memory = shared.attach(self._descriptor, extent)
+        if self.on_share is not None:
+            self.on_share(self._descriptor, extent)
         self._forget_memory()
         self._mailbox, self._ring = shared.watch(memory, extent)
         self._tell(**asdict(extent))

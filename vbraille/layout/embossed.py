@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.layout.embossed_flow import BlockFlow, blank
 from vbraille.layout.embossed_rules import BEFORE_NUMBER, CENTRED_MARGIN, PlacingRule, placing
 from vbraille.layout.wrapping import breaks_of, wrap
 from vbraille.translate.source import BlockKind
@@ -73,7 +74,7 @@ def kept_pages(book: Book, width: int | None = None) -> Iterator[list[Row]]:
         else:
             breaks = breaks_of(block.text, cells)
             for start, stop, indent in wrap(breaks, width, 0, min(2, width // 2)):
-                page.append(np.concatenate((_blank(indent), cells.masks[start:stop])))
+                page.append(np.concatenate((blank(indent), cells.masks[start:stop])))
     if page is not None:
         yield page
 
@@ -176,7 +177,7 @@ class BanaPages:
         self._deepest: tuple[int, int] = (0, 0)  # group of a list, and its deepest level
 
     def __iter__(self) -> Iterator[list[Row]]:
-        flow: _Flow | None = None
+        flow: BlockFlow | None = None
         number = 0
         while (found := self._book.block(number)) is not None:
             block, cells = found
@@ -191,7 +192,7 @@ class BanaPages:
                 self._fill(flow, final=not goes_on)
             else:
                 place = self._placing(block, number)
-                flow = _Flow(place)
+                flow = BlockFlow(place)
                 flow.add(block, cells)
                 if flow.breaks.strip(b"\0"):
                     self._begin(block, place, number, flow)
@@ -228,7 +229,7 @@ class BanaPages:
                 deepest = max(deepest, block.level)
         return deepest
 
-    def _begin(self, block: Block, place: PlacingRule, number: int, flow: _Flow) -> None:
+    def _begin(self, block: Block, place: PlacingRule, number: int, flow: BlockFlow) -> None:
         """Put the blank line before a block, on a page that has room for what must keep with it."""
         same = self._before == (block.kind, block.group) and place.apart
         after_heading = self._before is not None and self._before[0] is BlockKind.HEADING
@@ -243,12 +244,12 @@ class BanaPages:
                 self._finish()
         if self._wants_blank and self._sheet is not None:
             if self._sheet.rows and self._room > 1:
-                self._sheet.rows.append(_blank(0))
+                self._sheet.rows.append(blank(0))
             elif self._sheet.rows:
                 self._finish()
         self._wants_blank = False
 
-    def _needed(self, place: PlacingRule, flow: _Flow, number: int) -> int:
+    def _needed(self, place: PlacingRule, flow: BlockFlow, number: int) -> int:
         """Lines that a heading needs with one line of what follows it, itself without blanks."""
         needed = flow.count(self._within(place)) + place.after
         following = self._book.block(number + 1)
@@ -262,7 +263,7 @@ class BanaPages:
         block, cells = following
         if block.kind is BlockKind.HEADING and skip < 16:
             under = placing(block)
-            inner = _Flow(under)
+            inner = BlockFlow(under)
             inner.add(block, cells)
             more = self._needed(under, inner, number + skip)
             return min(needed + (not place.after) + more, self._lines)
@@ -280,14 +281,14 @@ class BanaPages:
     def _open(self) -> _Sheet:
         """Page that is being filled."""
         if self._sheet is None:
-            top = _blank(0) if self._print is None else self._print.label()
+            top = blank(0) if self._print is None else self._print.label()
             self._made += 1
             self._sheet = _Sheet(self._fit(top), self._fit(self._number(self._made)))
         return self._sheet
 
     def _fit(self, number: Row) -> Row:
         """Number of a page, or nothing if there is no room for it beside a few words."""
-        return number if number.size <= self._width // 3 else _blank(0)
+        return number if number.size <= self._width // 3 else blank(0)
 
     def _finish(self) -> None:
         """End the page, with its numbers."""
@@ -308,7 +309,7 @@ class BanaPages:
             if self._sheet is not None:
                 self._finish()
             return
-        number = number[np.flatnonzero(number)[0] :] if number.any() else _blank(0)
+        number = number[np.flatnonzero(number)[0] :] if number.any() else blank(0)
         self._print = _PrintPage(self._fit(number))
         if self._sheet is None or not self._sheet.rows:
             if self._sheet is not None:
@@ -322,90 +323,13 @@ class BanaPages:
         self._sheet.rows.append(dashes)
         self._print.shown = 1  # the top of the next braille page has a letter
 
-    def _fill(self, flow: _Flow, *, final: bool) -> None:
+    def _fill(self, flow: BlockFlow, *, final: bool) -> None:
         """Put the lines of a block on the page, and on as many as it needs."""
         while flow.has_line(self._width, final=final):
             sheet = self._open()
             at = len(sheet.rows)
-            number = sheet.top if at == 0 else sheet.bottom if at == self._lines - 1 else _blank(0)
+            number = sheet.top if at == 0 else sheet.bottom if at == self._lines - 1 else blank(0)
             taken = number.size + BEFORE_NUMBER if number.size else 0
             sheet.rows.append(flow.take(self._width - taken, self._width))
             if len(sheet.rows) == self._lines:
                 self._finish()
-
-
-class _Flow:
-    """Cells of a block from which one line after the other is taken."""
-
-    def __init__(self, place: PlacingRule) -> None:
-        self._place = place
-        self._indent = place.first
-        self._begun = False
-        self._masks = np.empty(0, np.uint8)
-        self._starts = np.empty(0, np.int64)
-        self.breaks = b""
-        self._at = 0
-
-    def add(self, block: Block, cells: Cells) -> None:
-        """Add the cells of a piece of the block; what is taken is forgotten."""
-        at = self._at
-        self._masks = np.concatenate((self._masks[at:], cells.masks))
-        self._starts = np.concatenate((self._starts[at:], cells.starts))
-        self.breaks = self.breaks[at:] + breaks_of(block.text, cells)
-        self._at = 0
-
-    def count(self, width: int) -> int:
-        """Number of lines that all cells take in a width."""
-        return len(wrap(self.breaks, width, self._place.first, self._place.others))
-
-    def has_line(self, whole: int, *, final: bool) -> bool:
-        """Whether there is a line to take; the blanks before it are left out, but no indent.
-
-        Parameters
-        ----------
-        whole
-            Number of cells of a page's line.
-        final
-            Whether no further piece of the block follows.
-        """
-        while not (rest := self.breaks[self._at : self._at + 3 * whole]).strip(b"\0"):
-            if not rest:
-                return False
-            self._at += len(rest)
-        if self._begun or self._place.centred:  # a blank at which the line before ended
-            self._at += len(rest) - len(rest.lstrip(b"\0"))
-        return final or len(self.breaks) - self._at > 2 * whole
-
-    def take(self, width: int, whole: int) -> Row:
-        """Take a line.
-
-        Parameters
-        ----------
-        width
-            Largest number of cells that the line may have.
-        whole
-            Number of cells of a page's line, in whose middle a centred line stands.
-        """
-        at = self._at
-        room = width
-        if self._place.centred:
-            room = min(width, whole - 2 * CENTRED_MARGIN)
-        window = slice(at, at + 3 * whole)
-        starts = self._starts[window]
-        bounds = wrap(
-            self.breaks[window], room, min(self._indent, room // 2), self._place.others,
-            starts.tolist(),
-        )  # fmt: skip
-        start, stop, indent = bounds[0]
-        following = bounds[1][0] if len(bounds) > 1 else len(self.breaks[window])
-        line = self._masks[at + start : at + stop]
-        self._at = at + following
-        self._indent = self._place.others
-        self._begun = True
-        if self._place.centred:
-            indent = min((whole - line.size) // 2, width - line.size)
-        return np.concatenate((_blank(indent), line))
-
-
-def _blank(cells: int) -> Row:
-    return np.zeros(cells, np.uint8)

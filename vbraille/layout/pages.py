@@ -104,6 +104,24 @@ class Layout:
         run, number = found
         return self._use(run).line(number)
 
+    def laid_near(self, line: Line, step: int) -> Line | None:
+        """Line that is some steps after a line of this layout, if it costs nothing to give it.
+
+        Parameters
+        ----------
+        line
+            The line.
+        step
+            Number of lines by which the other one is after it; negative for before.
+
+        Returns
+        -------
+        Line or None
+            The other line; None if there is none, or its block would have to be laid out.
+        """
+        found = self._of_number(line.number)
+        return None if found is None else found[0].laid_line(found[1] + step)
+
     def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
         """Lines of a range of numbers, both ends included."""
         number = max(first, 1)

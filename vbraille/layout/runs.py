@@ -120,6 +120,16 @@ class LaidRun:
         block = self.block_of(number)
         return self.line_of(block, number - 1 - self.before(block))
 
+    def laid_line(self, number: int) -> Line | None:
+        """Line of a number, if its block was broken into lines lately; None otherwise."""
+        lowest, highest = self.numbers
+        if not lowest < number <= highest:
+            return None
+        block = self.block_of(number)
+        if block not in self._recent:
+            return None
+        return self.line_of(block, number - 1 - self.before(block))
+
     def lines_to(self, number: int) -> int:
         """Number of lines that would have to be laid out to reach a line."""
         lowest, highest = self.numbers

@@ -9,7 +9,8 @@ from __future__ import annotations
 import codecs
 import re
 
-PASTE = "paste"
+PASTE = "paste:"  # before the first line of a pasted text, the two of which stand for one key
+PASTE_REST = "paste, rest:"  # before more of that line, which comes when it was taken for all
 ESCAPE = "escape"
 PASTE_ON, PASTE_OFF = b"\x1b[?2004h", b"\x1b[?2004l"  # switch marks around pasted text on and off
 ESCAPE_S = 0.05  # an Escape that nothing follows for so long is the key Escape
@@ -18,6 +19,8 @@ BROKEN_S = 1.0  # the rest of a sequence or of a paste does not come so long aft
 BURST = 20
 _BURST_S = 0.1  # what comes so soon after such a paste belongs to it
 _LONGEST = 64  # characters of a sequence; a longer one is none
+_LONGEST_PASTE = 1_000  # characters that are kept of one
+_LINE_END = re.compile(r"[\n\r]")
 
 # The one table of sequences (ECMA-48 5.4, xterm, the Linux console, tmux, PuTTY, rxvt). The end of
 # a sequence names the key, or the number before a ~ does; a number after a semicolon says what was
@@ -63,18 +66,46 @@ _KEY = re.compile(
 _BEGUN = re.compile(r"\x1b(?:\[(?:\[|[0-?]*[ -/]*)|O)?")
 
 
+def pasted(key: str) -> str | None:
+    """First line of a pasted text, or the rest of that; None for a key that was typed."""
+    for prefix in (PASTE, PASTE_REST):
+        if key.startswith(prefix):
+            return key.removeprefix(prefix)
+    return None
+
+
+class _FirstLine:
+    """First line of a text that comes in pieces; no more than anybody types is kept of it."""
+
+    def __init__(self) -> None:
+        self.text = ""
+        self._ended = False
+
+    def add(self, piece: str) -> str:
+        """Take a piece of the text, and give what of it belongs to the line."""
+        if self._ended:
+            return ""
+        line = _LINE_END.split(piece, maxsplit=1)
+        self._ended = len(line) > 1
+        more = line[0][: _LONGEST_PASTE - len(self.text)]
+        self.text += more
+        return more
+
+
 class Keys:
     """Names of keys out of a terminal's bytes.
 
     A character is its own name. Arrows, function keys and the like have words, what was held
-    with them before: "up", "ctrl-right", "f5", "alt-x". "escape" is the key alone. "paste"
-    stands for a whole pasted text. Sequences that are not in the table give nothing.
+    with them before: "up", "ctrl-right", "f5", "alt-x". "escape" is the key alone. A whole pasted
+    text is one key that begins with `PASTE`; see `pasted`. Sequences that are not in the table
+    give nothing.
     """
 
     def __init__(self) -> None:
         self._decoder = codecs.getincrementaldecoder("utf-8")("ignore")
         self._tail = ""
         self._pasting = False
+        self._pasted = _FirstLine()
         self._plain_arrows = False  # whether an arrow came as ESC [, as it does by itself
         self._fed_s = 0.0
         self._burst_end_s = float("-inf")
@@ -89,7 +120,12 @@ class Keys:
         if not within and (len(plain) < BURST or len(set(plain)) == 1):
             return keys
         self._burst_end_s = now_s + _BURST_S
-        return [] if within else [PASTE]
+        if not within:
+            self._pasted = _FirstLine()
+        more = self._pasted.add("".join(plain))
+        if not within:
+            return [PASTE + more]
+        return [PASTE_REST + more] if more else []
 
     def wait(self, now_s: float) -> list[str]:
         """Keys that are complete because nothing has come until now."""
@@ -98,8 +134,11 @@ class Keys:
             self._tail = ""
             return [ESCAPE]
         if since_s >= BROKEN_S:
-            self._tail = ""
-            self._pasting = False
+            ended, self._pasting = self._pasting, False
+            tail, self._tail = self._tail, ""
+            if ended:  # the mark of its end was lost
+                self._pasted.add(tail)
+                return [PASTE + self._pasted.text]
         return []
 
     def _take(self) -> list[str]:
@@ -107,11 +146,15 @@ class Keys:
         keys: list[str] = []
         while self._tail:
             if self._pasting:
-                _, ends, after = self._tail.partition(_PASTE_ENDS)
-                self._pasting = not ends
-                self._tail = after if ends else self._tail[1 - len(_PASTE_ENDS) :]
-                if self._pasting:
+                text, ends, after = self._tail.partition(_PASTE_ENDS)
+                if not ends:  # the end's mark may have come in part
+                    cut = max(len(text) + 1 - len(_PASTE_ENDS), 0)
+                    self._pasted.add(text[:cut])
+                    self._tail = text[cut:]
                     break
+                self._pasted.add(text)
+                self._pasting, self._tail = False, after
+                keys.append(PASTE + self._pasted.text)
                 continue
             found = _KEY.match(self._tail)
             begun = _BEGUN.match(self._tail)
@@ -140,8 +183,8 @@ class Keys:
         if found["end"] == "~":
             number = int(found["first"] or 0)
             if number == _PASTE_BEGINS:
-                self._pasting = True
-                return PASTE
+                self._pasting, self._pasted = True, _FirstLine()
+                return ""
             name = _NUMBERS.get(number, "")
             held = int(found["held"] or 1) - 1
         else:

@@ -18,12 +18,13 @@ from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
 from vbraille.reading.commands.table import press_button, turn_knob
 from vbraille.reading.echo import Echo
+from vbraille.reading.openhand import OpenHand
 from vbraille.reading.reader import Reader
 from vbraille.reading.underhand import MOST_CELLS
-from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
     device_spec,
+    has_hand,
     is_simulated,
     parse_hand,
     steering_of,
@@ -39,12 +40,14 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
     from vbraille.engine.local import LocalEngine
+    from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
     from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle
+    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
 HAND = "sweep:60"
@@ -76,7 +79,11 @@ class OpenDevice:
         Whether somebody is at a keyboard, who can end a line that no hand ends.
     begun
         Host process that was begun for the device, and the steering of a simulated hand that it
-        inherited; None to begin it now.
+        inherited, with the pointer if there is one; None to begin it now.
+    pointer
+        Where somebody may hold the hand of a simulated device; None if nobody can.
+    on_share
+        Function that is called with the memory that a host process shares; see `Host`.
 
     Attributes
     ----------
@@ -95,6 +102,8 @@ class OpenDevice:
         say: Callable[[str], None] = lambda _: None,
         attended: bool = False,
         begun: tuple[Spawned, Steering] | None = None,
+        pointer: Pointer | None = None,
+        on_share: Callable[[int, Extent], None] | None = None,
     ) -> None:
         self.placing = Placing.DONE
         self._wanted = wanted
@@ -106,16 +115,18 @@ class OpenDevice:
         self._device = device if isinstance(device, Device) else None
         self._engine: Host | LocalEngine
         self._closed = False
-        # A recorded hand reads no more than it has recorded.
-        self._once = isinstance(parse_hand(hand, seed), Recorded)
         self._simulated = isinstance(device, str) and is_simulated(device)
+        moved = parse_hand(hand, seed, pointed=pointer is not None)
         if isinstance(device, Device):
             # Imported here, since it loads compiled code, which a host process loads by itself.
             from vbraille.engine.clock import RealClock
             from vbraille.engine.local import LocalEngine
 
             rate_hz = min(wanted.rate_hz, device.display.rate_hz)
-            self._steering = device.steering if isinstance(device, SimulatedDevice) else None
+            if isinstance(device, SimulatedDevice):
+                self._hand = OpenHand(device.hand, device.steering, device.pointer)
+            else:
+                self._hand = OpenHand(None, None, None)
             self._engine = LocalEngine(
                 device,
                 RealClock() if clock is None else clock,
@@ -123,15 +134,18 @@ class OpenDevice:
                 poll_ticks=max(1, round(_POLL_S * rate_hz)),
             )
         else:
-            spawned, self._steering = begun or (None, steering_of(device))
-            if not self._simulated and not device.startswith("sim:?"):
-                self._steering = None  # a person moves the device
+            spawned, steering = begun or (None, steering_of(device))
+            if has_hand(device):
+                self._hand = OpenHand(moved, steering, pointer)
+            else:
+                self._hand = OpenHand(None, None, None)  # a person moves the device
             self._engine = Host(
-                device_spec(device, hand, seed, self._steering),
+                device_spec(device, hand, seed, self._hand.steering, self._hand.pointer),
                 wanted,
-                pass_fds=() if self._steering is None else (self._steering.descriptor,),
+                pass_fds=self._hand.descriptors,
                 spawned=spawned,
             )
+            self._engine.on_share = on_share
             if self._simulated:
                 self._engine.launch()  # it loads while the text is laid out
 
@@ -231,7 +245,7 @@ class OpenDevice:
             advance=advance,
             stay=self._attended,
             echo=echo,
-            steering=self._steering,
+            steering=self._hand.steering,
             beside=beside,
         )
         self._reader.start()
@@ -290,6 +304,7 @@ class OpenDevice:
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""
         shown = reader.under.shown
+        reader.under.patient = self._hand.patient(int(ticks["time_ns"][-1]))
         reader.step(ticks)
         if self._attended:
             return
@@ -297,12 +312,22 @@ class OpenDevice:
         done = felt and reader.under.steered_till(ticks[-1])
         if done and reader.under.shown == shown and not reader.done:
             # The hand was at the end of the line between two ticks, or its recording is over.
-            if self._once:
+            if self._hand.once:
                 reader.quit()
             elif ticks["line"][-1] == reader.line_number:
                 reader.go_on()
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
+
+    @property
+    def pointer(self) -> Pointer | None:
+        """Where somebody may hold the simulated hand; None also if a person moves the device."""
+        return self._hand.pointer
+
+    @property
+    def held(self) -> bool:
+        """Whether somebody holds the simulated hand."""
+        return self._hand.held
 
     @property
     def display(self) -> Display:

@@ -37,6 +37,11 @@ class Prompt:
         if len(key) == 1 and key.isprintable() and len(self.typed) < LONGEST:
             self.typed += key
 
+    def paste(self, text: str) -> None:
+        """Take those characters of a pasted line that could have been typed."""
+        for character in text:
+            self.press(character)
+
     def erase(self) -> None:
         """Take the last character away."""
         self.typed = self.typed[:-1]

@@ -64,7 +64,7 @@ class FindShare(msgspec.Struct, frozen=True, tag="share"):
 
 
 class FindPage(msgspec.Struct, frozen=True, tag="page"):
-    """Where a page of the printed book begins, by its number as the book writes it."""
+    """Where a page begins, by its number as the book writes it, or counts it in a braille file."""
 
     label: str
 

@@ -283,6 +283,28 @@ class Reader(LineReader):
         self.announce()
         return True
 
+    def bring_under(self, place: int) -> bool:
+        """Move the line so that a place of it is under the finger, and keep that place as `hit`.
+
+        Returns
+        -------
+        bool
+            False if the place is not on the line under the hand, which then stays as it is.
+        """
+        before, found = self.window, self.range.place(place)
+        if before is None or found is None or found[0].number != before.line.number:
+            return False
+        (line, new_cell), cell, x_mm = found, self.cell, self.engine.x_mm
+        self.keep_way_back()
+        self._hit = place
+        window, geometry = Window(line, self.under.width), self.style.geometry
+        if cell is None or x_mm is None:
+            self.put(window.showing(new_cell))
+        else:
+            share = before.share_at(x_mm, geometry)
+            self.put(window.under(new_cell, share, x_mm, geometry))
+        return True
+
     def leave(self) -> None:
         """Keep the place at which reading goes on another time; nothing is read after this."""
         self.looking.cancel(self.seeker)

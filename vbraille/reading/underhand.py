@@ -56,6 +56,8 @@ class UnderHand:
         Largest number of cells that are shown.
     shown : int
         Number of times that something else was put under the hand.
+    patient : bool
+        Whether the hand may do as it likes, since somebody moves it in the live view.
     """
 
     def __init__(
@@ -71,6 +73,7 @@ class UnderHand:
         self.window: Window | None = None
         self.style = model.style
         self.shown = 0
+        self.patient = False
         self._engine = engine
         self._display = model.display
         self.width = self.width_in(model.style)
@@ -164,9 +167,10 @@ class UnderHand:
     def watch(self, ticks: NDArray[np.void], *, finished: bool) -> None:
         """Say what keeps the hand from the end of the line, and whether it is too fast."""
         if not finished:
-            for sentence in self._waiting.watch(ticks, reached=self._end.reached):
+            watched = self._waiting.watch(ticks, reached=self._end.reached, patient=self.patient)
+            for sentence in watched:
                 self._say(sentence)
-        if self._too_fast_said or self._end.reached:
+        if self._too_fast_said or self._end.reached or self.patient:
             return
         note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
         if note is not None:

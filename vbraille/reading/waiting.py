@@ -75,16 +75,22 @@ class Waiting:
         """Note that somebody wants the array to rest, so that what went before does not count."""
         self._since_ns = self._refused_ns = None
 
-    def watch(self, ticks: NDArray[np.void], *, reached: bool) -> Iterator[str]:
+    def watch(
+        self, ticks: NDArray[np.void], *, reached: bool, patient: bool = False
+    ) -> Iterator[str]:
         """Sentences to be said after these ticks, which are all of the line, oldest first.
 
         Parameters
         ----------
         reached
             Whether the hand has been at the end of the line.
+        patient
+            Whether the hand may do as it likes, so that only the device is watched.
         """
         yield from self._watch_device(ticks)
-        if self._by_hand and self._refused_ns is None:
+        if patient:
+            self._since_ns = None
+        elif self._by_hand and self._refused_ns is None:
             yield from self._watch_hand(ticks, reached)
 
     def _watch_hand(self, ticks: NDArray[np.void], reached: bool) -> Iterator[str]:

@@ -47,7 +47,7 @@ def before(source: Source, line: Line, kind: BlockKind) -> Block | None:
 
 
 def has_pages(source: Source, line: Line) -> bool:
-    """Whether the book has pages of print around a line."""
+    """Whether the book says around a line where its pages begin."""
     if before(source, line, BlockKind.PAGE) is not None:
         return True
     reach = Reach(seconds=_SEARCH_S)
@@ -56,9 +56,9 @@ def has_pages(source: Source, line: Line) -> bool:
 
 
 def page_label(source: Source, line: Line) -> str:
-    """Number of the page of print that a line is on, as the book writes it; empty if none."""
+    """Number of the page that a line is on, as the book writes or counts it; empty if none."""
     page = before(source, line, BlockKind.PAGE)
-    return "" if page is None else str(page.text).strip()
+    return "" if page is None else page.page_number
 
 
 def percent(layout: Layout, line: Line) -> int:

@@ -15,6 +15,22 @@ SOUNDS = ("auto", "tones", "bell", "none")
 
 
 @dataclass(frozen=True, slots=True)
+class LiveAddress:
+    """Where the page of a live view is served.
+
+    Parameters
+    ----------
+    host
+        Name or address of this machine; None for its loopback, which no other machine reaches.
+    port
+        Number of the port; None for one that is free.
+    """
+
+    host: str | None = None
+    port: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Conditions:
     """What a session is run with, beside its protocol and its plan.
 
@@ -33,6 +49,8 @@ class Conditions:
         Whether a simulated session runs as fast as the machine can instead of in real time.
     sound
         How the participant hears signals: "auto", "tones", "bell" or "none".
+    live
+        Where a live view of the session is served; None for no live view.
 
     Raises
     ------
@@ -46,6 +64,7 @@ class Conditions:
     rate_hz: float = 1000.0
     fast: bool = False
     sound: str = "auto"
+    live: LiveAddress | None = None
 
     def __post_init__(self) -> None:
         check_rate(self.rate_hz)

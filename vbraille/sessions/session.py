@@ -15,7 +15,7 @@ from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import create, load
+from vbraille.sessions.record.folder import WATCHED_FROM, create, load
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.running.answers import (
     Answers,
@@ -25,7 +25,8 @@ from vbraille.sessions.running.answers import (
     seed_of,
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
-from vbraille.simulation.specs import device_spec, refuse_hand, steering_of
+from vbraille.simulation.pointing import Pointer
+from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.sounds import Sound
 
@@ -113,7 +115,13 @@ class Session:
         # The simulated hand differs between participants, and each time that a session is resumed.
         drawn = f"{plan.protocol} {plan.participant} {plan.seed} hand {len(progress.runs)}"
         self._steering = steering_of(conditions.device)
-        spec = device_spec(conditions.device, conditions.hand, seed_of(drawn), self._steering)
+        self._pointer: Pointer | None = None
+        if conditions.live is not None:
+            _check_live(protocol, conditions, engine)
+            self._pointer = Pointer() if has_hand(conditions.device) else None
+        spec = device_spec(
+            conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
+        )
         if conditions.fast and not spec.startswith("sim:"):
             raise InputError(
                 f"{setting('fast')} is for the simulated device; leave out {setting('device')}"
@@ -191,7 +199,7 @@ class Session:
             Function that makes the engine, as for `create`.
         changed
             Fields of the `Conditions` that differ from when the session began: device, hand,
-            answers, fast or sound. If the answers come from elsewhere now, the session is not
+            answers, fast, sound or live. If the answers come from elsewhere now, the session is not
             fast unless that is asked for again.
 
         Raises
@@ -216,6 +224,11 @@ class Session:
         if changed.get("answers", began.answers) != began.answers:
             changed = {"fast": False, **changed}
         conditions = replace(began, **changed)
+        if conditions.live is not None and record.told.format < WATCHED_FROM:
+            raise InputError(
+                f"{record.folder} is a session of format {record.told.format}, whose journal "
+                f"cannot say that it was watched; leave out {setting('monitor')}"
+            )
         session = cls(record.folder, record.protocol, record.plan, conditions, progress, engine)
         session._begun = True
         return session
@@ -280,6 +293,7 @@ class Session:
         warn: Say = _nobody,
         sound: Sound | None = None,
         before_rest: Callable[[], None] = _nothing,
+        onlookers: Onlookers | None = None,
     ) -> Self:
         """Conduct the session until its end, or until it is stopped.
 
@@ -298,6 +312,8 @@ class Session:
         before_rest
             Function that is called just before the array is brought to rest, which nothing may
             interrupt.
+        onlookers
+            Pages that watch; None for those that the conditions ask for.
 
         Returns
         -------
@@ -313,6 +329,10 @@ class Session:
         """
         given = self.answers(answers)
         begins = not self._begun
+        onlookers = self._usual_onlookers() if onlookers is None else onlookers
+        if onlookers is not None:
+            say = onlookers.beside(say)
+            onlookers.begin(self._engine)
         try:
             if isinstance(self._engine, Host):
                 self._engine.launch()
@@ -328,6 +348,7 @@ class Session:
                 say=say,
                 warn=warn,
                 before_rest=before_rest,
+                onlookers=onlookers,
             )
             if begins:
                 sitting.open(self.protocol, self.plan)
@@ -348,7 +369,29 @@ class Session:
             if self._engine is not None:
                 before_rest()
                 self._engine.close()
+            if onlookers is not None:
+                onlookers.close()
         return self
+
+    def _usual_onlookers(self) -> Onlookers | None:
+        """Make the pages of the live view that is wanted; None if none is."""
+        live = self.conditions.live
+        if live is None:
+            return None
+        # Imported here, since a session that nobody watches needs none of it.
+        from vbraille.live.monitor import Monitor
+        from vbraille.sessions.running.onlookers import LOOPBACK, Onlookers
+
+        blind, pointer = self.protocol.session.blind, self._pointer
+        monitor = Monitor(
+            host=live.host,
+            port=live.port,
+            pointer=pointer,
+            blind=blind,
+            steers=pointer is not None,
+        )
+        host = live.host or LOOPBACK
+        return Onlookers(monitor, blind=blind, host=host, simulated=pointer is not None)
 
     def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
         """Make the usual engine: a process of its own, or a loop in this one if it runs fast."""
@@ -357,5 +400,21 @@ class Session:
 
             return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
         most = max(len(self.protocol.line(stimulus.masks)) for stimulus in self.plan.stimuli())
-        inherited = () if self._steering is None else (self._steering.descriptor,)
+        channels = (self._steering, self._pointer)
+        inherited = [channel.descriptor for channel in channels if channel is not None]
         return Host(spec, wanted, self.protocol.model.style.room(wanted, most), pass_fds=inherited)
+
+
+def _check_live(protocol: Protocol, conditions: Conditions, engine: MakeEngine | None) -> None:
+    """Raise InputError if there is no host process whose memory a live view could show."""
+    name = setting("monitor")
+    if protocol.medium == "paper":
+        raise InputError(
+            f"{protocol.name} is read on paper, and {name} shows a device; leave it out"
+        )
+    if conditions.fast:
+        raise InputError(
+            f"{name} is for sessions that run by the clock; leave it out, or {setting('fast')}"
+        )
+    if engine is not None:
+        raise InputError(f"{name} is for the usual engine; leave it out with one of your own")

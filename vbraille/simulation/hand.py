@@ -19,6 +19,7 @@ from vbraille.simulation.paging import Area, Drift, read_lines
 from vbraille.simulation.recorded import MOST_MM
 
 EMPTY_LINE_S = 0.25
+STILL_S = 1e9  # which no reading lasts
 # Unless it is done, a hand comes no nearer to the start once it has left it, and turns no nearer to
 # the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
 # start" for the end of a line: this is what tells reading again from being done.
@@ -98,6 +99,20 @@ class Sweep:
     def read_page(self, area: Area) -> Motion:
         """Motion over all lines of a page, each along its middle; see `Hand`."""
         return read_lines(self.read_line, area)
+
+
+class Still:
+    """A hand that stays where it is, until somebody moves it in the live view."""
+
+    def read_line(self, start_mm: float, end_mm: float) -> Motion:
+        """Motion that stays at the start of a line; see `Hand`."""
+        way = along(start_mm, end_mm)
+        way.wait(STILL_S)
+        return way.motion()
+
+    def read_page(self, area: Area) -> Motion:
+        """Motion that stays at the start of a page; see `Hand`."""
+        return self.read_line(area.start_mm, area.start_mm)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import parse_qsl
 
 import numpy as np
 
 from vbraille.devices.base import Device
-from vbraille.devices.events import Button, Knob
+from vbraille.devices.events import Button, HandHeld, Knob
 from vbraille.errors import InputError, check_range
 from vbraille.pose import Pose
+from vbraille.simulation.hand import STILL_S, Still
+from vbraille.simulation.motion import Motion
 from vbraille.simulation.paging import Area
+from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
@@ -28,15 +31,19 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.motion import Motion
     from vbraille.simulation.pressing import Press
     from vbraille.simulation.steering import HandOrder
+
+_Channel = TypeVar("_Channel", Steering, Pointer)
 
 NS_PER_S = 1_000_000_000
 # Speeds at which a hand goes, and turns, to where its next motion begins or where it is put.
 APPROACH_MM_S = 250.0
 HELD_MM_S = 1000.0
 TURN_RAD_S = 2 * math.pi
+# Somebody who holds the hand tells its place some 60 times a second: the hand glides from one place
+# to the next for so long, rather than jump there and stand still.
+GLIDE_S = 0.012
 
 
 class SimulatedDevice(Device):
@@ -57,6 +64,9 @@ class SimulatedDevice(Device):
     steering
         Orders to the hand, one after the other. Without it the hand sets out with the first frame,
         and reads lines as wide as the travel, one after the other.
+    pointer
+        Where somebody holds the hand meanwhile, ahead of all orders: these wait until it is let
+        go, and what was not done yet is then done again.
     presses
         When its buttons are held, in seconds since the device was opened; `press`, `let_go` and
         `turn` do more of the same at once.
@@ -76,6 +86,7 @@ class SimulatedDevice(Device):
         hand: Hand | Recorded | None = None,
         steering: Steering | None = None,
         presses: Sequence[Press] = (),
+        pointer: Pointer | None = None,
     ) -> None:
         self._info = info
         self._presses = presses
@@ -84,6 +95,11 @@ class SimulatedDevice(Device):
         self._pressed: list[Event] = []
         self._hand = hand
         self._steering = steering
+        self._pointer = pointer
+        self._at: BeAt | None = None  # where somebody holds the hand
+        self._held_ns = 0  # when that was last told
+        self._left: Motion | None = None  # what the hand had not done yet when it was taken
+        self._order: HandOrder | None = None
         self._has_set_out = False  # whether a recorded hand has set out
         self._ordered = False  # whether an order is not known to be done yet
         self._now_ns = now_ns
@@ -127,7 +143,7 @@ class SimulatedDevice(Device):
         self._pressed.append(Knob(knob, value))
 
     def take_events(self) -> Sequence[Event]:
-        """Buttons pressed and let go, and knobs turned, since the last call."""
+        """Buttons and knobs that were moved since the last call, and who the hand was."""
         told, self._pressed = self._pressed, []
         if self._presses:
             now = held(self._presses, (self._now_ns() - self._opened_ns) / NS_PER_S)
@@ -149,20 +165,67 @@ class SimulatedDevice(Device):
         """Source of the hand's orders."""
         return self._steering
 
+    @property
+    def pointer(self) -> Pointer | None:
+        """Where somebody may hold the hand."""
+        return self._pointer
+
     def obey(self) -> None:
         """Have the hand follow the newest order from now on; `read` does this too."""
+        was_held = self._at is not None
+        if self._pointer is not None and self._is_held(self._pointer.at()):
+            return
+        if was_held and isinstance(self._hand, Recorded) and self._left is not None:
+            self.move(self._left)
         steering = self._steering
         if steering is None:
             if self.frames and not self.moving:
                 self._do(ReadLine(self._info.travel_mm - self._info.span_mm))
             return
         order = steering.take()
+        if order is None and was_held and self._ordered:
+            order = self._order
         if order is not None:
-            self._ordered = True
+            self._ordered, self._order = True, order
             self._do(order)
         if self._ordered and not self.moving:
             self._ordered = False
             steering.answer(self._now_ns())
+
+    def _is_held(self, at: BeAt | None) -> bool:
+        """Have the hand go where somebody holds it; False if nobody does."""
+        if at is self._at:
+            return at is not None
+        if (at is None) is not (self._at is None):
+            self._pressed.append(HandHeld(at is not None))
+        now_ns = self._now_ns()
+        if self._at is None:
+            self._left = self._rest(now_ns)
+        self._at = at
+        if at is None:
+            return False
+        info = self._info
+        left_mm, right_mm = -info.span_mm, info.travel_mm - info.span_mm
+        to = (
+            min(max(at.x_mm - info.span_mm / 2, left_mm), right_mm),
+            min(max(at.y_mm, 0.0), info.height_mm),
+            at.theta_rad if info.turns else 0.0,
+        )
+        since_s, self._held_ns = (now_ns - self._held_ns) / NS_PER_S, now_ns
+        self._set_out(to, HELD_MM_S, least_s=min(since_s, GLIDE_S))
+        return True
+
+    def _rest(self, now_ns: int) -> Motion | None:
+        """Motion that is left of the present one; None if it is over."""
+        t_s = (now_ns - self._begun_ns) / NS_PER_S
+        later = self._t_s > t_s
+        if not later.any():
+            return None
+        here = self._hand_at(now_ns)
+        ways = (
+            np.concatenate(([now], way[later])) for now, way in zip(here, self._way, strict=True)
+        )
+        return Motion(np.concatenate(([0.0], self._t_s[later] - t_s)), *ways)
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
         """Number of given times that come until the hand has done its order.
@@ -183,6 +246,8 @@ class SimulatedDevice(Device):
         if isinstance(order, BeAt):
             x_mm = order.x_mm - self._info.span_mm / 2
             self._set_out([x_mm, order.y_mm, order.theta_rad], HELD_MM_S)
+        elif isinstance(hand, Still):
+            self._set_out(self._hand_at(self._now_ns()), HELD_MM_S, least_s=STILL_S)
         elif isinstance(hand, Recorded):
             if not self._has_set_out:
                 self.move(hand.motion())
@@ -211,15 +276,15 @@ class SimulatedDevice(Device):
         else:
             self._t_s, self._way = motion.t_s, way
 
-    def _set_out(self, to: Sequence[float], speed_mm_s: float) -> None:
-        """Move the hand straight to a place; it takes no time if the hand is there."""
+    def _set_out(self, to: Sequence[float], speed_mm_s: float, least_s: float = 0.0) -> None:
+        """Move the hand straight to a place; that takes no time if it is there, unless it must."""
         here = self._hand_at(self._now_ns())
         x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
         if not self._info.height_mm:
             y_mm = 0.0
         if not self._info.turns:
             theta_rad = 0.0
-        needed_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S)
+        needed_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S, least_s)
         self._begun_ns = self._now_ns()
         self._t_s = np.array([0.0, needed_s])
         self._way = tuple(np.array(ends) for ends in zip(here, to, strict=True))
@@ -283,7 +348,9 @@ class SimulatedDevice(Device):
 
 
 def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
-    """Open ``sim:?hand=HAND&seed=N&press=1@2.5s,2@4s&steering=DESCRIPTOR``, as the page wants it.
+    """Open ``sim:?hand=HAND&seed=N&press=1@2.5s,2@4s``, as the page wants it.
+
+    A program adds ``&steering=DESCRIPTOR&pointer=DESCRIPTOR``, by which the hand is moved.
 
     Raises
     ------
@@ -300,22 +367,26 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     seed = given.pop("seed", "1")
     hand = given.pop("hand", None)
     descriptor = given.pop("steering", None)
+    held_by = given.pop("pointer", None)
     presses = parse_presses(given.pop("press", ""))
     if given or not address.startswith("?") or hand is None or not seed.isdecimal():
         said = address.partition("&steering=")[0]  # a program adds this part, never a person
         raise InputError(f"there is no device sim:{said}; give sim:?hand=HAND&seed=N, or sim")
-    steering = None if descriptor is None else _steering(descriptor)
     return SimulatedDevice(
-        wanted, hand=parse_hand(hand, int(seed)), steering=steering, presses=presses
+        wanted,
+        hand=parse_hand(hand, int(seed), pointed=held_by is not None),
+        steering=None if descriptor is None else _inherited(Steering, "steering", descriptor),
+        presses=presses,
+        pointer=None if held_by is None else _inherited(Pointer, "pointer", held_by),
     )
 
 
-def _steering(descriptor: str) -> Steering:
-    """Steering in memory that this process has made or inherited."""
+def _inherited(kind: type[_Channel], name: str, descriptor: str) -> _Channel:
+    """What moves a hand, in memory that this process has made or inherited."""
     try:
-        return Steering(int(descriptor))
+        return kind(int(descriptor))
     except (ValueError, OverflowError):
         raise InputError(
-            f"nothing can steer a hand by steering={descriptor}; leave it out, for it is what a "
+            f"nothing can steer a hand by {name}={descriptor}; leave it out, for it is what a "
             f"program tells the process that it starts"
         ) from None

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from vbraille.errors import InputError
-from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Sweep
+from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
 from vbraille.simulation.recorded import load_recorded
 from vbraille.simulation.steering import Steering
@@ -15,21 +15,25 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
+    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.recorded import Recorded
 
 SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is its older name
+STILL = "still"  # name of the hand that only moves in the live view
 
 
-def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
+def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Recorded:
     """Hand that a spec describes.
 
     Parameters
     ----------
     spec
-        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s or
-        ``recorded:FILE``.
+        ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s,
+        ``recorded:FILE`` or ``still``.
     seed
         Seed of a hand that is drawn at random.
+    pointed
+        Whether somebody can move the hand in the live view, without which none may be still.
 
     Raises
     ------
@@ -50,10 +54,22 @@ def parse_hand(spec: str, seed: int = 1) -> Hand | Recorded:
             return Wander(_speed(rest, kind), seed)
     except ValueError as error:
         raise InputError(str(error)) from None
+    if spec == STILL and pointed:
+        return Still()
+    if spec == STILL:
+        raise InputError(
+            f"a still hand moves only in the live view; add {setting('monitor')} where there is "
+            f"that option, or give another hand"
+        )
     raise InputError(
         f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
         f"or wander:SPEED to go about without reading"
     )
+
+
+def has_hand(device: str) -> bool:
+    """Whether the spec of a device is that of a simulated one, whose hand can be steered."""
+    return is_simulated(device) or device.startswith("sim:?")
 
 
 def is_simulated(device: str) -> bool:
@@ -81,16 +97,23 @@ def refuse_hand(device: str, **given: object) -> None:
 
 def steering_of(device: str) -> Steering | None:
     """Steering for the hand of a simulated device; None for a device that a person moves."""
-    return Steering() if is_simulated(device) or device.startswith("sim:?") else None
+    return Steering() if has_hand(device) else None
 
 
-def device_spec(device: str, hand: str, seed: int, steering: Steering | None) -> str:
-    """Spec of a device; that of the simulated one has its hand and its steering added."""
+def device_spec(
+    device: str,
+    hand: str,
+    seed: int,
+    steering: Steering | None,
+    pointer: Pointer | None = None,
+) -> str:
+    """Spec of a device; that of the simulated one has its hand and what moves it added."""
     if steering is None:
         return device
     if is_simulated(device):
         device = f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
-    return f"{device}&steering={steering.descriptor}"
+    pointed = "" if pointer is None else f"&pointer={pointer.descriptor}"
+    return f"{device}&steering={steering.descriptor}{pointed}"
 
 
 def _speed(text: str, kind: str) -> float:

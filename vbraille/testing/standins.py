@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
+    from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.simulator import Faults
 
 
@@ -31,6 +32,7 @@ def simulated_device(
     hand: str = "sweep:60",
     seed: int = 1,
     clock: Clock | None = None,
+    pointer: Pointer | None = None,
 ) -> SimulatedDevice:
     """Make a device in memory, whose hand reads what is shown on it.
 
@@ -44,6 +46,8 @@ def simulated_device(
         Hand that moves the carriage, and its seed, as in `parse_hand`.
     clock
         Clock of the device; None for the machine's.
+    pointer
+        Where somebody may hold the hand; None if nobody can.
 
     Raises
     ------
@@ -59,7 +63,8 @@ def simulated_device(
     """
     info = display.display if isinstance(display, Model) else display
     now_ns = (RealClock() if clock is None else clock).now_ns
-    return SimulatedDevice(info, now_ns, parse_hand(hand, seed), Steering())
+    moved = parse_hand(hand, seed, pointed=pointer is not None)
+    return SimulatedDevice(info, now_ns, moved, Steering(), pointer=pointer)
 
 
 @contextmanager

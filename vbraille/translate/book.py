@@ -31,6 +31,11 @@ class Book:
         Grade that the reader chose, which holds for passages in other languages too.
     switch
         Whether passages in other languages are translated by the tables of those languages.
+
+    Attributes
+    ----------
+    language, grade
+        As given.
     """
 
     _REMEMBERED = 16
@@ -46,6 +51,8 @@ class Book:
     ) -> None:
         self.source = source
         self.table = table
+        self.language = language
+        self.grade = grade
         self.translator = None
         if table is not None:
             own = (language, source.language)

@@ -30,7 +30,7 @@ class BlockKind(Enum):
     NOTE = "note"
     """A footnote or an endnote, at the place where its format has it."""
     PAGE = "page"
-    """The place where a page of the printed book begins; its text is the page's number, if any."""
+    """The place where a page begins, of print or of a braille file; `page_number` is its number."""
 
 
 _LEVELLED = (BlockKind.HEADING, BlockKind.ITEM, BlockKind.QUOTE)
@@ -101,8 +101,9 @@ class Block:
     anchors : tuple of str
         Names by which links and references to notes find the block.
     group : int
-        Number of the list or table that the block is part of, from 1 in the order of the source;
-        0 for others.
+        Number of the list or table that the block is part of, from 1 in the order of the source.
+        Where a page begins that the source counts without writing its number, as braille files do
+        with pages between form feeds, that number. 0 for others.
     headers : tuple of str
         For a row of a table: the header of each of its cells, if the source has headers.
 
@@ -130,6 +131,13 @@ class Block:
             raise ValueError(
                 f"level of kind {self.kind.value} is {self.level}; it must be {wanted}"
             )
+
+    @property
+    def page_number(self) -> str:
+        """Number of the page that begins here, as the source writes or counts it; empty if none."""
+        if self.kind is not BlockKind.PAGE:
+            return ""
+        return str(self.text).strip() or (str(self.group) if self.group else "")
 
 
 class Index(msgspec.Struct, frozen=True):

@@ -1,5 +1,7 @@
 """Going by what a text is made of, and what is said there."""
 
+import io
+
 import pytest
 
 from tests.reading.chapters import BOOK, Chapters
@@ -10,8 +12,12 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.seeking.answering import Answering
-from vbraille.translate import Book, BrailleTable
+from vbraille.translate import Book, BrailleTable, Cells
+from vbraille.translate.braillefiles.lines import open_brf
+from vbraille.translate.braillefiles.pef import PefBook
+from vbraille.translate.braillefiles.writing import Imprint, pef
 from vbraille.translate.documents.parted import Passage
+from vbraille.translate.source import Mark, MarkKind
 
 TABLE = BrailleTable("en-ueb-g1.ctb")
 
@@ -100,6 +106,31 @@ def test_a_page_of_print_or_a_share_is_typed(bench, typed, there):
     assert texts(said[2:]) == [there] or said[2:] == [there]
 
 
+NEAR_LINKS = Passage(
+    "See one or two.",
+    marks=(Mark(MarkKind.LINK, 4, 7, "a:1"), Mark(MarkKind.LINK, 11, 14, "a:2")),
+)
+
+
+def test_a_link_of_the_same_line_is_said_and_comes_under_the_finger():
+    passages = [Passage("None here."), NEAR_LINKS]
+    bench = Bench(book=Book(Chapters(passages), TABLE), width=26, echo=Echo.TEXT)
+    bench.press("k")
+    finger_at(bench, 1)
+    assert bench.press("k") == ["link: two"]
+    assert bench.press("u")[-1] == "word: two."
+    assert bench.press("\n") == ["link: a:2"]
+    assert bench.press("K") == ["link: one"]
+    assert bench.press("u\n")[-2:] == ["word: one", "link: a:1"]
+    assert bench.press("kk") == ["link: two", "link: none after this"]
+
+
+def test_a_link_that_was_gone_to_is_followed_where_no_finger_is_known():
+    bench = Bench(book=Book(Chapters([Passage("None here."), NEAR_LINKS]), TABLE), width=26)
+    assert bench.reader.cell is None
+    assert bench.press("kk\n") == ["line: 2", "link: two", "link: a:2"]
+
+
 def test_a_note_is_followed_and_left_again(bench):
     bench.press("kk")
     line = bench.reader.line
@@ -122,6 +153,55 @@ def test_where_am_i_says_line_page_percent_heading_and_words(bench):
     ]
     assert bench.press("H") == ["headers: Name; Age"]
     assert bench.press("nH")[-1] == "headers: this is no row of a table"
+
+
+def brf(pages):
+    return open_brf(io.BytesIO("\n\f".join(pages).encode()), "book.brf")
+
+
+def pef_book(pages):
+    rows = [[Cells.from_brf(line).masks for line in page.split("\n")] for page in pages]
+    return PefBook.open(io.BytesIO(b"".join(pef(rows, Imprint("", "en", "urn:x"), 9, 9))), "book")
+
+
+@pytest.mark.parametrize("made", [brf, pef_book])
+def test_pages_of_a_braille_file_are_counted_on(made):
+    pages = [f"PAGE\n{chr(ord('A') + n % 26)}{chr(ord('A') + n // 26)}" for n in range(70)]
+    bench = Bench(book=Book(made(pages)), width=9, echo=Echo.TEXT)
+    assert bench.press("ni")[-4:-1] == ["line: 2", "page: 1", "percent: 0"]
+    said = bench.press("g65\n")
+    assert said[1] == "page: 65"
+    bench.press("n")
+    assert bench.reader.line.cells.to_brf() == "MC"
+    assert "page: 65" in bench.press("i")
+    bench.press("F")
+    assert "page: 65" in bench.press("i")
+    bench.press("F")
+    assert "page: 64" in bench.press("i")
+    bench.press("ff")
+    assert "page: 66" in bench.press("i")
+    assert bench.press("g71\n")[-1] == "page 71: there is no such page"
+
+
+def test_a_page_of_a_braille_file_may_end_within_a_line():
+    bench = Bench(book=Book(open_brf(io.BytesIO(b"A\fB\fC"), "book.brf")), width=9)
+    for page, cells in (("3", "C"), ("2", "B"), ("1", "A")):
+        bench.press(["g", page, "\n"])
+        assert bench.reader.line.cells.to_brf() == cells
+        assert f"page: {page}" in bench.press("i")
+    for cells in "BC":
+        bench.press("f")
+        assert bench.reader.line.cells.to_brf() == cells
+    for cells in "BA":
+        bench.press("F")
+        assert bench.reader.line.cells.to_brf() == cells
+
+
+def test_the_page_before_is_found_beyond_pages_without_a_line():
+    bench = Bench(book=Book(open_brf(io.BytesIO(b"A\n\f\f\fD"), "book.brf")), width=9)
+    assert bench.press("fi")[2] == "page: 4"
+    assert bench.press("Fi")[-3] == "page: 1"
+    assert bench.press("F") == ["page: none before this"]
 
 
 def test_a_table_without_headers_says_so():

@@ -8,7 +8,7 @@ from tests.reading.test_reader import Bench
 from vbraille.reading import COMMANDS, Context
 from vbraille.reading.bindings import ANY
 from vbraille.reading.commands.table import commands_of, find, press
-from vbraille.reading.keys import PASTE
+from vbraille.reading.keys import PASTE, PASTE_REST
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "keys.md"
 
@@ -52,6 +52,15 @@ def test_a_key_that_calls_nothing_says_how_to_learn_the_keys():
     assert bench.press([PASTE]) == ["paste: text that is pasted is passed over; type the keys"]
     bench.press("q")
     assert bench.reader.done
+
+
+def test_a_pasted_line_is_typed_where_a_text_is_asked_for():
+    bench = Bench("one two\n\nthree four")
+    pastes = [PASTE + "ee\tfo\x1b", PASTE_REST + "u"]
+    assert bench.press(["/", "e", *pastes, "r", "\x7f", "\n"])[1] == "text: eeefou"
+    said = bench.press(["m", PASTE + "here, " * 100, "\n"])
+    assert said[1:] == [f"name: {('here, ' * 100)[:200].strip()}", f"bookmark {said[1][6:]}: set"]
+    assert bench.press([PASTE_REST + "u"]) == []
 
 
 def test_while_the_left_stop_is_asked_for_any_key_is_the_answer():

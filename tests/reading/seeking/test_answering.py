@@ -19,6 +19,7 @@ from vbraille.reading.queries import (
 )
 from vbraille.reading.seeking.answering import Answering, answer
 from vbraille.translate import Book, BrailleTable, Document
+from vbraille.translate.braillefiles.lines import open_brf
 from vbraille.translate.documents.parted import PartedSource, Passage
 from vbraille.translate.source import BlockKind, Mark, MarkKind
 
@@ -89,6 +90,21 @@ def test_what_is_found(query, found):
 )
 def test_what_is_not_there(query):
     assert isinstance(final(Structured(), query), NotFound)
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_pages_of_a_braille_file_are_counted_in_all_its_parts(known):
+    content = b"".join(b"PAGE %d\n\f" % (n % 10) for n in range(20_000))
+    source = open_brf(io.BytesIO(content), "book.brf")
+    if known:  # where its blocks are, from another time
+        other = open_brf(io.BytesIO(content), "book.brf")
+        assert other.block(50_000) is None
+        source.adopt(other.index())
+    found = final(source, FindPage("15678"))
+    number = source.block_at(found.character)
+    assert source.block(number).page_number == "15678"
+    assert str(source.block(number + 1).text) == "PAGE 7"
+    assert isinstance(final(source, FindPage("20001")), NotFound)
 
 
 def test_a_long_row_of_rows_behind_is_entered_at_its_beginning():

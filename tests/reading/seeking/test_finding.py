@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.tiers import by_tier, examples
 from vbraille.reading.queries import FindText, Found, NotFound, Searched
 from vbraille.reading.seeking.answering import answer
-from vbraille.reading.seeking.folding import needle_of
+from vbraille.reading.seeking.folding import fold, needle_of, unfolded
 from vbraille.reading.seeking.sieve import Sieve, ahead
 from vbraille.translate import Document
 from vbraille.translate.documents.encodings import Encoding
@@ -193,6 +193,22 @@ class TestLong:
         *_, last = answer(document, FindText("needle", 0))
         assert isinstance(last, NotFound)
         assert len(document.index().rows) == 1
+
+
+PARTS = st.sampled_from(["word ", "Ab", "ß", "İ", "e\u0301", "\u0301", "  \n", "ﬃ", "é", "x"])
+
+
+@examples(40)
+@given(st.lists(PARTS, min_size=1, max_size=30), st.integers(200, 600), st.booleans(), st.data())
+def test_a_place_in_a_folded_text_is_that_of_its_character(parts, times, accents, data):
+    text = "".join(parts) * times
+    folded = fold(text, accents=accents)
+    if not folded:
+        return
+    at = data.draw(st.integers(0, len(folded) - 1))
+    index = unfolded(text, at, accents=accents)
+    assert len(fold(text[:index], accents=accents)) <= at
+    assert len(fold(text[: index + 1], accents=accents)) > at
 
 
 def test_nothing_is_found_for_nothing():

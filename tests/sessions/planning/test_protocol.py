@@ -160,6 +160,7 @@ class TestParsing:
         ]
         assert (protocol.trial.gap_s, protocol.trial.warning_s) == (0.5, None)
         assert (protocol.session.limit_s, protocol.session.break_every) == (None, None)
+        assert protocol.session.blind
         assert (protocol.sound.cue, protocol.sound.warning) == (Tone(880, 150), Tone(440, 400))
         assert (protocol.keys, protocol.fields) == ({}, ())
 

@@ -271,9 +271,12 @@ def _listed(versions: Mapping[str, str]) -> str:
 
 
 def _sources(sheets: Sequence[Sheet]) -> list[str]:
-    """Sentences about answers that no person gave."""
-    simulated, scripted = [], []
+    """Sentences about answers that no person gave, and about trials that no finger read."""
+    simulated, scripted, pointed = [], [], {}
     for sheet in sheets:
+        moved = [source == "simulated:pointer" for source in sheet.frame.get("moved_by", ())]
+        if any(moved):
+            pointed[sheet.name] = sum(moved)
         kinds = {source.partition(":")[0] for source in sheet.frame.get("answers_from", ())}
         if "simulated" in kinds:
             simulated.append(sheet.name)
@@ -283,6 +286,11 @@ def _sources(sheets: Sequence[Sheet]) -> list[str]:
     if simulated:
         told.append(
             f"A simulated reader answered in {', '.join(simulated)}: that is no data about people."
+        )
+    for name, trials in pointed.items():
+        told.append(
+            f"The pointer of a live view was the hand in {count(trials, 'trial')} of {name}: that "
+            f"is no data about people."
         )
     if scripted:
         told.append(f"Answers came from a file in {', '.join(scripted)}.")

@@ -91,16 +91,6 @@ class Effect:
             if epsilon is not None and not 0 < epsilon <= 1:
                 raise ValueError(f"epsilon {epsilon} of {self.name} is not in 0…1")
 
-    @property
-    def df1_corrected(self) -> float | None:
-        """`df1` times epsilon."""
-        return None if self.epsilon is None else self.epsilon * self.df1
-
-    @property
-    def df2_corrected(self) -> float | None:
-        """`df2` times epsilon."""
-        return None if self.epsilon is None else self.epsilon * self.df2
-
 
 @dataclass(frozen=True, slots=True)
 class Anova:

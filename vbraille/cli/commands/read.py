@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
 from vbraille.cli.build import build_lengths, build_show, lay_out, note_unseen_dots
+from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
@@ -36,9 +37,12 @@ from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterable
     from pathlib import Path
 
     from vbraille.cli.build import Page
+    from vbraille.cli.live import LiveView
+    from vbraille.devices.events import Event
     from vbraille.engine.tally import Tally
     from vbraille.render import Model
 
@@ -51,6 +55,7 @@ _PLACES = {
 
 def run(arguments: argparse.Namespace) -> int:
     """Read until the text ends, a key says so, or something goes wrong."""
+    check_live_options(arguments)
     settings = settle(arguments)
     profile = chosen_profile(arguments, settings)
     rate_hz = check_rate(arguments.rate)
@@ -60,7 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     bound = bind_settings(settings)
     hand = HAND if arguments.hand is None else arguments.hand
     seed = 1 if arguments.seed is None else arguments.seed
-    parse_hand(hand, seed)  # an unknown hand is refused before anything is opened
+    # An unknown hand is refused before anything is opened.
+    parse_hand(hand, seed, pointed=arguments.monitor)
     # Display that the options ask for: a simulated device is like it, a real device is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
     wanted = asked.on(asked.style.geometry, rate_hz)
@@ -73,7 +79,11 @@ def run(arguments: argparse.Namespace) -> int:
             raise InputError("--advance key needs a terminal to type at; leave it out without one")
         cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
         echo = _echo(arguments.echo)
-        hearing = listening.enter_context(Hearing(say_line, cues, echo=echo))
+        live = _live(arguments)
+        if live is not None:
+            listening.enter_context(live)
+        say = say_line if live is None else live.say
+        hearing = listening.enter_context(Hearing(say, cues, echo=echo))
         device = OpenDevice(
             arguments.device,
             wanted,
@@ -82,6 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
             say=hearing.say,
             attended=keyboard.attached,
             begun=arguments.begun,
+            pointer=None if live is None else live.pointer,
+            on_share=None if live is None else live.share,
         )
         try:
             places = listening.enter_context(KeptPlaces.open())
@@ -128,8 +140,10 @@ def run(arguments: argparse.Namespace) -> int:
             if opened.place is not None:
                 hearing.say(f"book: {opened.book.source.title or opened.book.source.name}")
                 device.reader.announce()
+            if live is not None:
+                live.show(device, hand)
             try:
-                _Reading(page, device, keyboard, suspension, hearing).run()
+                _Reading(page, device, keyboard, suspension, hearing, live).run()
             finally:
                 opened.leave(device.reader, model, page.model.style)
         finally:
@@ -153,18 +167,21 @@ class _Reading:
         keyboard: Keyboard,
         suspension: Suspension,
         hearing: Hearing,
+        live: LiveView | None,
     ) -> None:
         self._page = page
         self._device = device
         self._keyboard = keyboard
         self._suspension = suspension
         self._hearing = hearing
+        self._live = live
 
     def run(self) -> None:
         """Read to the end."""
         try:
             self._read()
         finally:
+            self._tell()
             self._device.reader.leave()
 
     def _read(self) -> None:
@@ -175,9 +192,10 @@ class _Reading:
         while not device.done:
             for key in self._pressed():
                 self._press(key)
+            self._obey()
             placing = device.placing
             try:
-                device.poll(0.0)
+                events = device.poll(0.0)
             except HostDiedError as fault:
                 self._start_again(fault)
                 continue
@@ -187,6 +205,18 @@ class _Reading:
             if device.reader.layout is self._page.layout:
                 self._page.see(device.reader.line_number)
             self._say_notes()
+            self._tell(events)
+
+    def _obey(self) -> None:
+        """Do what pages of the live view have asked for."""
+        for asked in () if self._live is None else self._live.take():
+            self._set_context()
+            self._live.obey(asked)
+
+    def _tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
+        """Tell the live view what has changed; see `LiveView.tell`."""
+        if self._live is not None:
+            self._live.tell(events, standing)
 
     def _say_notes(self) -> None:
         """Say what is to be said of the text and of its table, which may have changed."""
@@ -212,20 +242,26 @@ class _Reading:
         device = self._device
         paused, device.paused = device.paused, True
         self._hearing.say("stopped: the array rests; fg goes on")
+        self._tell(standing="stopped: the array rests")
         self._keyboard.release()
         self._suspension.stop()
         self._keyboard.take()
         device.paused = paused
         self._hearing.say("paused" if paused else "reading")
+        self._tell(standing="")
 
     def _press(self, key: str) -> None:
+        self._set_context()
+        press(self._device.reader, key)
+
+    def _set_context(self) -> None:
+        """Have keys mean that the carriage is at the stop as long as the device waits for that."""
         placing = self._device.placing is Placing.STOP
         reader = self._device.reader
         if placing:
             reader.context = Context.PLACING
         elif reader.context is Context.PLACING:
             reader.context = Context.READING
-        press(reader, key)
 
     def _start_again(self, fault: HostDiedError) -> None:
         """Say that the host is gone, and begin another when asked to.
@@ -235,11 +271,15 @@ class _Reading:
         HostDiedError
             If there is nobody to ask.
         """
+        self._tell(standing=f"fault: {fault}")
         if not self._keyboard.attached:
             raise fault
         self._hearing.say(f"fault: {fault}; space begins again, q stops")
         while True:
             keys = self._pressed()
+            if self._live is not None:
+                self._live.take()  # which nobody can do now
+                self._live.tell()
             if "q" in keys:
                 self._device.reader.quit()
                 return
@@ -249,6 +289,17 @@ class _Reading:
                 self._hearing.say("fault: nothing drives the device; space begins again, q stops")
         self._device.start_again()
         self._hearing.say("reading")
+        self._tell(standing="")
+
+
+def _live(arguments: argparse.Namespace) -> LiveView | None:
+    """Live view that was asked for; None if none was."""
+    if not arguments.monitor:
+        return None
+    # Only a reading that has a live view waits for what it needs.
+    from vbraille.cli.live import LiveView
+
+    return LiveView(arguments)
 
 
 def _save(path: Path, profile: str, model: Model) -> str:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
@@ -110,8 +111,12 @@ def _conduct(session: Session, answers: Answers) -> int:
 
 def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
+    from vbraille.sessions.conditions import LiveAddress
+
     names = ("device", "hand", "answers", "sound")
     given = {name: getattr(arguments, name) for name in names}
+    check_live_options(arguments)
+    given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None
     return {name: value for name, value in given.items() if value is not None}
 
 
@@ -174,8 +179,7 @@ def _check(arguments: argparse.Namespace) -> int:
     good = True
     for finding in check_folder(Path(arguments.folder), arguments.expect):
         good &= finding.good
-        text = spelled(finding.text)
-        _say(text if finding.good else f"fault: {text}")
+        _say(finding.text if finding.good else f"fault: {finding.text}")
     return 0 if good else 1
 
 
@@ -255,7 +259,7 @@ def _ask(field: Question, typed: Typed) -> str:
 
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because nobody listens
-        print(printable(sentence), flush=True)
+        print(printable(spelled(sentence)), flush=True)
 
 
 def _warn(sentence: str) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options.reading import HANDS, SPEC
+from vbraille.cli.options.groups import HANDS, SPEC
+from vbraille.cli.options.live import add_live_options
 from vbraille.cli.options.values import Pairs, checksum, marks, names, number, seed, whole
 
 TYPE_CHECKING = False  # as in vbraille.cli
@@ -219,3 +220,4 @@ def _conduct(parser: ArgumentParser) -> None:
         help="Choose how the participant hears signals; auto is tones if there is an audio "
         "output, otherwise the terminal's bell (default: auto).",
     )
+    add_live_options(parser)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout.pages import Line
     from vbraille.reading.reader import Reader
-    from vbraille.translate.source import Block, Mark
+    from vbraille.translate.source import Block, Mark, Source
 
 HEADING, LIST, TABLE = (kind.value for kind in (BlockKind.HEADING, BlockKind.ITEM, BlockKind.ROW))
 _NAMES = {LIST: "list", TABLE: "table"}
@@ -72,14 +72,17 @@ def go_to_link(*, backward: bool = False) -> Callable[[Reader], None]:
         number = block_of(source, line)
         here = source.block(number)
         hit, first = reader.hit, first_character(line)
-        starts = [] if here is None else [mark.start for mark in links_of(here)]
+        links = [] if here is None else links_of(here)
         if backward:
-            near = [start for start in starts if start < (first if hit is None else hit)]
+            near = [mark for mark in links if mark.start < (first if hit is None else hit)]
         else:
-            near = [start for start in starts if start >= (first if hit is None else hit + 1)]
+            near = [mark for mark in links if mark.start >= (first if hit is None else hit + 1)]
         if near:
-            place = near[-1 if backward else 0]
-            arrive(reader, place, "link", backward=backward)
+            mark = near[-1 if backward else 0]
+            if reader.bring_under(mark.start):
+                reader.say(f"link: {_text_of(line.block, mark)}")
+            else:
+                arrive(reader, mark.start, "link", backward=backward)
             return
         query = FindKind(LINK, number, backward)
         reader.find(query, lambda place: arrive(reader, place, "link", backward=backward))
@@ -142,8 +145,22 @@ def arrive(reader: Reader, place: int | None, name: str, *, backward: bool) -> N
         reader.say(f"{name}: none {'before' if backward else 'after'} this")
 
 
-def _begins_here(line: Line, block: Block) -> bool:
-    return first_character(line) <= first_place(block)
+def _text_of(block: Block, mark: Mark) -> str:
+    text = block.text
+    return " ".join(str(text)[text.index(mark.start) : text.index(mark.end)].split())
+
+
+def _begins_here(line: Line, block: Block | None) -> bool:
+    return block is not None and first_character(line) <= first_place(block)
+
+
+def _before_unnumbered(source: Source, number: int) -> int:
+    """Number of the first page without a line right before a block; of the block if none is."""
+    while (page := source.block(number - 1)) is not None and page.kind is BlockKind.PAGE:
+        if len(page.text):
+            break
+        number -= 1
+    return number
 
 
 def _go_to_paragraph(reader: Reader, *, backward: bool) -> None:
@@ -163,8 +180,13 @@ def _go_to_page(reader: Reader, *, backward: bool) -> None:
     line = reader.line
     if line is None:
         return
-    if has_pages(reader.layout.book.source, line):
-        go_to(BlockKind.PAGE.value, backward=backward)(reader)
+    source = reader.layout.book.source
+    if has_pages(source, line):
+        number = block_of(source, line)
+        if backward and _begins_here(line, source.block(number)):
+            number = _before_unnumbered(source, number)
+        query = FindKind(BlockKind.PAGE.value, number, backward)
+        reader.find(query, lambda place: arrive(reader, place, "page", backward=backward))
         return
     page, above = divmod(reader.layout.number_of(line) - 1, LINES_PER_PAGE)  # both from 0
     wanted = (page if above else page - 1) if backward else page + 1
@@ -215,7 +237,7 @@ def _arrive_at_page(reader: Reader, place: int | None, typed: str) -> None:
 
 
 def _link_here(reader: Reader) -> Mark | None:
-    """Link under the finger; or the one of the line, if it has only one."""
+    """Link under the finger; or the one that was gone to, or that is alone on the line."""
     line, cell = reader.line, reader.cell
     if line is None:
         return None
@@ -227,4 +249,5 @@ def _link_here(reader: Reader) -> Mark | None:
             return under[-1]
     first, after = first_character(line), line.cells.end
     on_line = [mark for mark in links if mark.start < after and first < mark.end]
-    return on_line[0] if len(on_line) == 1 else None
+    gone_to = [mark for mark in on_line if mark.start == reader.hit]
+    return gone_to[-1] if gone_to else on_line[0] if len(on_line) == 1 else None

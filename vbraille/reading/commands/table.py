@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from vbraille.reading.bindings import ANY, Bindings, Bound, Command, bind, spoken
 from vbraille.reading.commands.deferred import Deferred, made
 from vbraille.reading.context import Context
-from vbraille.reading.keys import PASTE
+from vbraille.reading.keys import PASTE, pasted
 
 if TYPE_CHECKING:
     from vbraille.reading.commands import (
@@ -61,8 +61,9 @@ def find(key: str, context: Context) -> Command | None:
 def press(reader: Reader, key: str) -> None:
     """Call the command that a key stands for in the reader's context."""
     bound = reader.bound or BOUND
-    if key == PASTE:
-        reader.say("paste: text that is pasted is passed over; type the keys")
+    text = pasted(key)
+    if text is not None:
+        _paste(reader, key, text)
     elif reader.context is Context.LEARNING:
         _learn(reader, spoken(key), bound.find(key, Context.READING))
     else:
@@ -73,6 +74,14 @@ def press(reader: Reader, key: str) -> None:
             reader.prompt.press(key)
         else:
             reader.say(f"no command: {key!r}; {reader.key('HELP', 'h')} says the keys")
+
+
+def _paste(reader: Reader, key: str, text: str) -> None:
+    """Put pasted text into what is being typed; elsewhere it is no command."""
+    if reader.prompt is not None and reader.context is Context.PROMPT:
+        reader.prompt.paste(text)
+    elif key.startswith(PASTE):
+        reader.say("paste: text that is pasted is passed over; type the keys")
 
 
 def press_button(reader: Reader, number: int) -> None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.reading.reader import Reader
+    from vbraille.render.braille.knobs import StyleKnob
     from vbraille.render.braille.style import BrailleStyle
 
 
@@ -35,17 +36,28 @@ def turn(name: str, steps: int) -> Callable[[Reader], None]:
     knob = KNOBS[name]
 
     def handler(reader: Reader) -> None:
-        style = reader.style
-        value = knob.value(style)
-        after = knob.turned(value, steps)
-        end = "most" if steps > 0 else "least"
-        why = fixed(knob, style) or obstacle(knob, style.geometry, reader.engine.display, after)
-        if why or after == value:
-            _stop(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
-        else:
-            _turn(reader, knob.field, after, knob.said(after))
+        after = knob.turned(knob.value(reader.style), steps)
+        _turn_knob(reader, knob, after, "most" if steps > 0 else "least")
 
     return handler
+
+
+def turn_to(reader: Reader, name: str, value: float) -> None:
+    """Turn a knob to a value, as far as it goes; what it has already is not told again.
+
+    Parameters
+    ----------
+    reader
+        Reader whose style it is.
+    name
+        Name of the knob, as for `turn`.
+    value
+        Value that is wanted, a finite number.
+    """
+    knob = KNOBS[name]
+    before = knob.value(reader.style)
+    if value != before:
+        _turn_knob(reader, knob, knob.nearest(value), "most" if value > before else "least")
 
 
 def change_mapping(reader: Reader) -> None:
@@ -78,6 +90,17 @@ def save_settings(reader: Reader) -> None:
             reader.say(reader.save_style(reader.style))
         except VbrailleError as error:  # reading goes on
             reader.say(f"not saved: {spelled(str(error))}")
+
+
+def _turn_knob(reader: Reader, knob: StyleKnob, after: float, end: str) -> None:
+    """Give a knob a value, or say that it is at its end in that direction, and why."""
+    style = reader.style
+    value = knob.value(style)
+    why = fixed(knob, style) or obstacle(knob, style.geometry, reader.engine.display, after)
+    if why or after == value:
+        _stop(reader, f"{knob.said(value)}, the {end}{why and f': {why}'}")
+    else:
+        _turn(reader, knob.field, after, knob.said(after))
 
 
 def _turn(reader: Reader, field: str, value: object, said: str) -> None:

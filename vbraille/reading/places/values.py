@@ -32,7 +32,7 @@ class KeptPlace(msgspec.Struct, frozen=True):
     width, table
         Width in cells and name of the table for which these numbers hold.
     page
-        Number of the printed page as the book writes it; empty if it has none.
+        Number of the page as the book writes or counts it; empty if it has none.
     """
 
     character: int
@@ -77,7 +77,11 @@ class Bookmark(msgspec.Struct, frozen=True):
 
 
 class BookOptions(msgspec.Struct, frozen=True):
-    """Options with which a book was opened; None for what is usual."""
+    """Options with which a book was opened; None for what is usual.
+
+    `turned` says that language and grade were chosen by keys while the book was read: they hold
+    the next time, too, unless options say otherwise then.
+    """
 
     language: str | None = None
     grade: int | None = None
@@ -87,6 +91,7 @@ class BookOptions(msgspec.Struct, frozen=True):
     form: str | None = None
     brf_table: str | None = None
     keep_lines: bool = False
+    turned: bool = False
 
 
 class ListedBook(msgspec.Struct, frozen=True):

@@ -28,6 +28,9 @@ _COMBINED = re.compile(f"[{COMBINING}]")
 _BLANKS = re.compile(r"\s+")
 _TABLED = 0x3100  # all letters with accents, and none of the many signs of East Asia
 _NOTHING, _SEVERAL = 0xFFFF_FFFF, 0xFFFF_FFFE
+# What is folded before an ASCII letter that follows another has nothing to do with what is after.
+_WITHIN_WORD = re.compile("[A-Za-z](?=[A-Za-z])")
+_PIECE = 4_096  # characters that are folded together on the way to a place
 _NOT_READ = re.compile("[\u00ad\ufeff]+")
 
 
@@ -81,10 +84,17 @@ def needle_of(text: str, *, accents: bool) -> str:
 
 def unfolded(text: str, at: int, *, accents: bool) -> int:
     """Index of the character of a text of which `fold` made the one at an index."""
-    low, high = 0, len(text) - 1
+    start, end = 0, len(text)
+    while (cut := _WITHIN_WORD.search(text, start + _PIECE)) is not None:
+        folded = len(fold(text[start : cut.end()], accents=accents))
+        if folded > at:
+            end = cut.end()
+            break
+        start, at = cut.end(), at - folded
+    low, high = start, end - 1
     while low < high:
         middle = (low + high) // 2
-        if len(fold(text[: middle + 1], accents=accents)) > at:
+        if len(fold(text[start : middle + 1], accents=accents)) > at:
             high = middle
         else:
             low = middle + 1

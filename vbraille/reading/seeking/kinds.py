@@ -72,12 +72,12 @@ def find_kind(source: Source, query: FindKind) -> Iterator[int | float]:
 
 
 def find_page(source: Source, label: str) -> Iterator[int | float]:
-    """Look for a page of print from the beginning on, by its number; yields as `find_kind` does."""
+    """Look for a page from the beginning on, by its number; yields as `find_kind` does."""
     if isinstance(source, Document):
         return
     wanted = label.strip().casefold()
     for number, block in blocks_from(source, 0):
-        if block.kind is BlockKind.PAGE and str(block.text).strip().casefold() == wanted:
+        if block.kind is BlockKind.PAGE and block.page_number.casefold() == wanted:
             yield first_place(block)
             return
         yield source.progress(number)

@@ -104,8 +104,11 @@ class Sieve:
 
     def enough(self, tail: str) -> bool:
         """Whether a text has as many characters as a hit can have after its first."""
-        tail = tail[: 64 * self.characters + _TAIL_BYTES]
-        return len(_NO_TEXT.sub("", tail)) > 2 * self.characters
+        most = 64 * self.characters + _TAIL_BYTES
+        return any(  # what comes first is nearly always enough
+            len(_NO_TEXT.sub("", tail[:cut])) > 2 * self.characters
+            for cut in (8 * self.characters, most)
+        )
 
 
 def _any_case(letter: str) -> str:

@@ -66,8 +66,14 @@ class StyleKnob:
 
     def turned(self, value: float, steps: int) -> float:
         """Value after so many steps up, or down if negative; it stops at the bounds."""
-        after = round(min(max(value + steps * self.step, self.low), self.high), _PLACES)
-        return round(after) if isinstance(self.low, int) else after
+        return self.nearest(value + steps * self.step)
+
+    def nearest(self, value: float) -> float:
+        """Value that the knob can have, within its bounds, that is nearest to another."""
+        within = min(max(value, self.low), self.high)
+        if isinstance(self.low, int):  # only whole steps make sense
+            return round(self.low + self.step * round((within - self.low) / self.step))
+        return round(within, _PLACES)
 
 
 def _length(name: str, step: float) -> StyleKnob:

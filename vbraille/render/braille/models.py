@@ -21,6 +21,10 @@ PITCH_TOLERANCE = 0.01
 _LEVELS, _COUNTS_PER_MM, _RATE_HZ = 1024, 200.0, 1000.0
 # Number of rows in a mapping that shows all dot rows of a cell one actuator row apart.
 _LEAST_ROWS = 3
+# Way of a contactor from rest to full deflection. The source says that the actuators of its later
+# arrays deflect "about ± 0.1 mm"; that it is so of both models, and of other displays, is assumed,
+# and only pictures depend on it: a skin that loads the contactors moves them less.
+SWING_MM = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +41,15 @@ class Model:
         Display that it is.
     style
         Style in which braille is shown on the display.
+    swing_mm
+        Way of a contactor from rest to full deflection, in mm.
     """
 
     name: str
     title: str
     display: Display
     style: BrailleStyle
+    swing_mm: float = SWING_MM
 
     def on(self, geometry: Geometry, rate_hz: float = _RATE_HZ) -> Display:
         """Make the display with the travel of a geometry, at a rate in Hz."""
@@ -120,3 +127,8 @@ def model_of(display: Display) -> Model:
     else:
         style = VBD.style
     return Model("", display.name, display, style)
+
+
+def swing_of(display: Display) -> float:
+    """Way of a contactor of a display from rest to full deflection, in mm, as far as is known."""
+    return model_of(display).swing_mm

@@ -66,7 +66,7 @@ class TrialPace(Table, frozen=True):
 
 
 class SessionPace(Table, frozen=True):
-    """Length of a session, and its breaks.
+    """Length of a session, its breaks, and what those see who watch it.
 
     Parameters
     ----------
@@ -75,6 +75,8 @@ class SessionPace(Table, frozen=True):
     break_every
         Number of trials in a block from one break to the next; None for breaks between blocks
         only.
+    blind
+        Whether the live view keeps back all from which a stimulus or an answer could be read.
 
     Raises
     ------
@@ -84,6 +86,7 @@ class SessionPace(Table, frozen=True):
 
     limit_s: float | None = None
     break_every: int | None = None
+    blind: bool = True
 
     def __post_init__(self) -> None:
         check_range("limit_s", self.limit_s, 1, 86_400, " s")

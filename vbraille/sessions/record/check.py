@@ -100,6 +100,7 @@ def check(record: Record) -> Iterator[Finding]:
         yield Finding(f"plan: {error}", good=False)
     yield from _check_journal(told)
     yield from _check_torn(record.folder, told)
+    yield from _check_watched(record)
     progress = Progress(record.plan, told.events, record.procedure)
     yield from _check_traces(record, progress)
     yield from _check_choices(record, progress)
@@ -188,6 +189,22 @@ def _check_torn(folder: Path, told: JournalContents) -> Iterator[Finding]:
         yield Finding(f"{journal.TORN}: {len(torn)} bytes, and not those set aside", good=False)
     elif torn:  # if a crash came at once, the journal may not tell of the last bytes
         yield Finding(f"{journal.TORN}: {len(torn)} bytes set aside by session resume")
+
+
+def _check_watched(record: Record) -> Iterator[Finding]:
+    """Check that the live view has hidden stimuli in every run if the protocol says so."""
+    runs = [event for event in record.told.events if isinstance(event, Run)]
+    blind = record.protocol.session.blind
+    for number, run in enumerate(runs, 1):
+        if run.monitor is None:
+            continue
+        shown = not run.monitor.blind
+        said = f"live view: run {number} was shown at {run.monitor.host}"
+        if shown and blind:
+            text = f"{said} with its stimuli, and the protocol says blind"
+            yield Finding(text, good=False)
+        else:
+            yield Finding(f"{said}, {'with its stimuli' if shown else 'blind'}")
 
 
 def _check_traces(record: Record, progress: Progress) -> Iterator[Finding]:

@@ -97,6 +97,24 @@ class WithStimulus(InTrial, frozen=True, kw_only=True):
     stimulus: int
 
 
+class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
+    """How the live view shows a run to those who watch it.
+
+    Parameters
+    ----------
+    blind
+        Whether it keeps back all from which a stimulus or an answer could be read.
+    host
+        Address that the page is served at.
+    pointer
+        Whether a page may be the hand of the simulated device.
+    """
+
+    blind: bool
+    host: str
+    pointer: bool = False
+
+
 class Session(JournalEvent, frozen=True, forbid_unknown_fields=False, kw_only=True):
     """The session was put on the disk; this is the first event of every journal.
 
@@ -150,6 +168,9 @@ class Run(JournalEvent, frozen=True, kw_only=True):
         Length of the torn line that was moved from the journal's end to `journal.torn`.
     torn_file
         Length (`bytes`) and checksum (`crc`) of `journal.torn` when the run began.
+    monitor
+        What the live view shows: whether it is `blind`, the `host` at which it is served, and
+        whether its `pointer` may be the hand; left out without a live view. From format 5 on.
     """
 
     durable: ClassVar[bool] = True
@@ -170,6 +191,7 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     clock_moved_s: float | None = None
     torn_bytes: int = 0
     torn_file: dict[str, Any] = {}
+    monitor: LiveView | None = None
 
 
 class Presented(WithStimulus, frozen=True, kw_only=True):
@@ -311,6 +333,14 @@ class Device(JournalEvent, frozen=True, kw_only=True):
     what: str
 
 
+class HandTaken(AnyTime, frozen=True):
+    """Somebody at the live view became the hand of the simulated device; from format 5 on."""
+
+
+class HandGivenBack(AnyTime, frozen=True):
+    """The simulated hand was let go at the live view, and moves by itself; from format 5 on."""
+
+
 class Pause(AnyTime, frozen=True):
     """The session was paused, and the array brought to rest."""
 
@@ -421,8 +451,8 @@ class Lost(JournalEvent, frozen=True):
 
 AnyEvent = (
     Session | Run | Presented | Cue | Contact | Read | Warning | Answer | Undo | Repeat
-    | Fault | Well | Device | Pause | Go | BreakWanted | Break | Begin | Tuning | Note
-    | Stop | End | Closed
+    | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
+    | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)
 _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")

@@ -65,6 +65,9 @@ COLUMNS = {
     "correct": "1 if all places are right, 0 if not; empty for comparisons and without an answer",
     "first_answer": "what had been answered before an undo; else empty",
     "answers_from": "typed, simulated:NOISE for a simulated reader, program, or a file",
+    "moved_by": "what moved the carriage: person, simulated for a simulated hand, or "
+    "simulated:pointer if somebody at the live view was that hand in a part of the trial, so that "
+    "it is no data about people; empty on paper",
     "attempt": "how often the trial was begun",
     "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
     "(Levesque 2009, 3.4); on paper, by key",
@@ -220,6 +223,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "mapping": protocol.mapping.name,
         **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
+        "moved_by": told.moved_by,
         "attempt": told.attempts,
         "paused_s": round(told.paused_s, 6),
         "early": int(told.early),

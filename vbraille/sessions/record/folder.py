@@ -36,9 +36,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.journal import JournalContents, Tie
 
-FORMAT = 4
+FORMAT = 5
 _CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
 SHOWN_FROM = 4  # the first format whose journal has what was shown
+WATCHED_FROM = 5  # the first format whose journal has who may have watched
 HEAD, PLAN, PROTOCOL = "session.json", "plan.json", "protocol.toml"
 FILES = (HEAD, PLAN, PROTOCOL)
 _TOLD_VERSIONS = ("numpy", "numba", "pyserial", "cobs", "h5py")

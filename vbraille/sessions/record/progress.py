@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Stimulus, Trial
     from vbraille.sessions.record.events import JournalEvent
 
+# What moved the carriage if somebody at the live view was the hand.
+POINTED = "simulated:pointer"
+
 
 @dataclass(slots=True)
 class Showing:
@@ -98,6 +101,9 @@ class TrialRecord:
         Whether the answer came before the hand had been at the end of the string.
     source
         Source of the answer: typed, simulated:0.2, or a file's name.
+    moved_by
+        What moved the carriage: "person", "simulated", or "simulated:pointer" if somebody at the
+        live view was the hand for a part of the trial, in any attempt; empty on paper.
     lost
         Numbers of the lost events of a salvaged journal that may belong to the trial.
     """
@@ -113,6 +119,7 @@ class TrialRecord:
     paused_s: float = 0.0
     early: bool = False
     source: str = ""
+    moved_by: str = ""
     lost: list[int] = field(default_factory=list)
 
     @property
@@ -173,6 +180,8 @@ class Progress:
         Seconds that the session has run for.
     ended : bool
         Whether the session has ended for good.
+    pointed : bool
+        Whether somebody at the live view is the hand.
     torn_bytes : int
         Length of all torn lines that were moved out of the journal.
     """
@@ -194,7 +203,9 @@ class Progress:
         self.script_lines: dict[str, int] = {}
         self.t_s = 0.0
         self.ended = False
+        self.pointed = False
         self.torn_bytes = 0
+        self._moved_by = ""
         self._answers = ""
         self._trial = 0
         self._lost: list[int] = []
@@ -304,9 +315,15 @@ class Progress:
                 self.runs.append(event)
                 self._answers = event.answers or self._answers
                 self.torn_bytes += event.torn_bytes
+                self._moved_by = _mover_of(event) or self._moved_by
+                self.pointed = False  # the device of the new run tells it again
                 self._paused_s = None
             case events.Tuning():
                 self.tuning = event.tuning
+            case events.HandTaken():
+                self.pointed = True
+            case events.HandGivenBack():
+                self.pointed = False
             case events.Pause():
                 self._paused_s = event.t_s
             case events.Go():
@@ -335,6 +352,11 @@ class Progress:
                 record.answer = None
             case events.Fault():
                 record.faults.append(event.what)
+            case events.HandTaken():
+                self.pointed = True
+                record.moved_by = POINTED
+            case events.HandGivenBack():
+                self.pointed = False
             case events.Pause():
                 self._paused_s = event.t_s
             case events.Go():
@@ -353,6 +375,8 @@ class Progress:
             record.wall.clear()
             record.paused_s = 0.0
         trace = self.runs[-1].trace or None if self.runs else None
+        if record.moved_by != POINTED:
+            record.moved_by = POINTED if self.pointed else self._moved_by
         record.showings.append(
             Showing(event.attempt, event.stimulus, event.line, trace, event.tuning, event.shown)
         )
@@ -381,3 +405,10 @@ class Progress:
         if self._paused_s is not None:
             record.paused_s += event.t_s - self._paused_s
         self._paused_s = None
+
+
+def _mover_of(run: events.Run) -> str:
+    """What moves the carriage in a run; empty on paper, and where the run before tells it."""
+    if not run.trace or not run.spec:
+        return ""
+    return "simulated" if run.spec.partition(":")[0] == "sim" else "person"

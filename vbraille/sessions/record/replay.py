@@ -116,7 +116,7 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
         If a trace cannot be read.
     """
     progress = Progress(record.plan, record.told.events, record.procedure)
-    pictures = _Pictures(record, progress)
+    pictures = Pictures(record, progress)
     for run in progress.runs:
         if not run.trace:
             continue
@@ -128,13 +128,26 @@ def frames(record: Record) -> Iterator[tuple[int, NDArray[np.void], NDArray[np.f
                 yield int(part["line"][0]), part, replay.frames(part)
 
 
-class _Pictures:
-    """The pictures that a session has shown, by their line numbers."""
+class Pictures:
+    """The pictures that a session has shown, by their line numbers.
+
+    Parameters
+    ----------
+    record
+        What the session's directory holds.
+    progress
+        State of the session after all its events.
+
+    Attributes
+    ----------
+    shown : dict[int, tuple[Trial, Showing]]
+        For each line number, the trial and the showing that it belongs to.
+    """
 
     def __init__(self, record: Record, progress: Progress) -> None:
         self._protocol = record.protocol
         self._anchor_mm = None if record.centred else 0.0
-        self._shown = {
+        self.shown = {
             showing.line: (told.trial, showing)
             for told in (*progress.practice.values(), *progress.trials.values())
             for showing in told.showings
@@ -142,7 +155,7 @@ class _Pictures:
 
     def of(self, line: int) -> Program:
         """Picture of a line number."""
-        trial, showing = self._shown[line]
+        trial, showing = self.shown[line]
         stimulus = showing.stimulus_of(trial)
         tuning = replace(stimulus.tuning, **showing.tuning)
         return render(self._protocol, stimulus, tuning, anchor_mm=self._anchor_mm)

@@ -70,15 +70,15 @@ _TIE_FIELD = b"vj\x08\x00"
 _RECORDS = {b"vp\x08\x00": TRACE, b"vb\x08\x00": LEFT_TRACE}
 _LOOSE = {_START + b"\x0c\x00" + name: record for name, record in _RECORDS.items()}
 _TIED = {_START + b"\x18\x00" + name: record for name, record in _RECORDS.items()}
-_HEADS = _LOOSE | _TIED
-_HEAD_BYTES = len(_START) + 6
-_EXTRA = struct.Struct("<II")
+HEADS = _LOOSE | _TIED
+HEAD_BYTES = len(_START) + 6
+EXTRA = struct.Struct("<II")
 _TRAILER = struct.Struct("<II")
 _SIZE = struct.Struct("<I")  # last field of a member: size of its content before it was deflated
 _MOST_THREADS = 4
 _WORTH_A_THREAD = 16  # number of members that are worth one more thread
-_AFTER_LENGTH = _HEAD_BYTES + _EXTRA.size
-_AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + _EXTRA.size
+_AFTER_LENGTH = HEAD_BYTES + EXTRA.size
+_AFTER_TIE = _AFTER_LENGTH + len(_TIE_FIELD) + EXTRA.size
 
 
 class TraceWriter:
@@ -211,7 +211,7 @@ class Trace:
     later: tuple[NDArray[np.void], ...] = ()
 
 
-class _Member(NamedTuple):
+class ChunkMember(NamedTuple):
     """A whole gzip member: kind of its records, length, deflated bytes, full size, and tie."""
 
     record: np.dtype
@@ -234,19 +234,19 @@ def read_trace(path: Path) -> Trace:
     except OSError as error:
         raise VbrailleError(f"{path} cannot be read: {error.strerror}") from None
     view = memoryview(trace)
-    stretches: list[list[_Member]] = [[]]
+    stretches: list[list[ChunkMember]] = [[]]
     at, damage, torn_bytes = 0, None, 0
     record = None
     while at < len(trace):
         try:
-            member = _check_member(view[at:], record)
+            member = check_member(view[at:], record)
             after = at if member is None else at + member.length
         except ValueError:
-            member, after = None, _next_start(trace, at + 1)
+            member, after = None, next_start(trace, at + 1)
         if member is not None:
             stretches[-1].append(member)
             record = member.record
-        elif after == at and (after := _next_start(trace, at + 1)) == len(trace):
+        elif after == at and (after := next_start(trace, at + 1)) == len(trace):
             torn_bytes = len(trace) - at if damage is None else 0
         elif damage is None:
             damage = f"chunk {len(stretches[0]) + 1} of {path.name} does not match its checksum"
@@ -279,10 +279,10 @@ def read_last_tie(path: Path) -> Tie | None:
             while at + _AFTER_TIE <= size:
                 file.seek(at)
                 head = file.read(_AFTER_TIE)
-                length, _ = _EXTRA.unpack_from(head, _HEAD_BYTES)
-                if head[:_HEAD_BYTES] not in _TIED or not _AFTER_TIE <= length <= size - at:
+                length, _ = EXTRA.unpack_from(head, HEAD_BYTES)
+                if head[:HEAD_BYTES] not in _TIED or not _AFTER_TIE <= length <= size - at:
                     break
-                last = Tie(*_EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD)))
+                last = Tie(*EXTRA.unpack_from(head, _AFTER_LENGTH + len(_TIE_FIELD)))
                 at += length
     except OSError:
         return None
@@ -328,13 +328,13 @@ def _squeeze(chunk: bytes, tie: Tie | None, record: np.dtype) -> bytes:
     squeeze = zlib.compressobj(_LEVEL, zlib.DEFLATED, -zlib.MAX_WBITS)
     body = squeeze.compress(chunk) + squeeze.flush() + _TRAILER.pack(zlib.crc32(chunk), len(chunk))
     if tie is not None:
-        body = _TIE_FIELD + _EXTRA.pack(*tie) + body
+        body = _TIE_FIELD + EXTRA.pack(*tie) + body
     heads = _LOOSE if tie is None else _TIED
     head = next(head for head, kind in heads.items() if kind == record)
-    return head + _EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
+    return head + EXTRA.pack(_AFTER_LENGTH + len(body), zlib.crc32(body)) + body
 
 
-def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
+def check_member(trace: memoryview, record: np.dtype | None) -> ChunkMember | None:
     """Read the gzip member that a trace begins with; None if it is cut short.
 
     Raises
@@ -342,12 +342,12 @@ def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
     ValueError
         If the member is damaged, or its records are not of the given kind.
     """
-    start = bytes(trace[:_HEAD_BYTES])
-    if not any(head.startswith(start) for head, kind in _HEADS.items() if record in (None, kind)):
+    start = bytes(trace[:HEAD_BYTES])
+    if not any(head.startswith(start) for head, kind in HEADS.items() if record in (None, kind)):
         raise ValueError
     if len(trace) < _AFTER_LENGTH:
         return None
-    length, crc = _EXTRA.unpack_from(trace, _HEAD_BYTES)
+    length, crc = EXTRA.unpack_from(trace, HEAD_BYTES)
     if len(trace) < length:
         return None
     deflated = _AFTER_LENGTH if start in _LOOSE else _AFTER_TIE
@@ -356,22 +356,22 @@ def _check_member(trace: memoryview, record: np.dtype | None) -> _Member | None:
     (size,) = _SIZE.unpack_from(trace, length - _SIZE.size)
     tie = None
     if start in _TIED:
-        tie = Tie(*_EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
-    return _Member(_HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
+        tie = Tie(*EXTRA.unpack_from(trace, _AFTER_LENGTH + len(_TIE_FIELD)))
+    return ChunkMember(HEADS[start], length, trace[deflated : length - _TRAILER.size], size, tie)
 
 
-def _next_start(trace: bytes, after: int) -> int:
+def next_start(trace: bytes, after: int) -> int:
     """Offset at which the next whole member begins; the trace's length if there is none."""
     at = trace.find(_START, after)
     while at >= 0:
         with suppress(ValueError):
-            if _check_member(memoryview(trace)[at:], None) is not None:
+            if check_member(memoryview(trace)[at:], None) is not None:
                 return at
         at = trace.find(_START, at + 1)
     return len(trace)
 
 
-def _inflate(members: list[_Member], record: np.dtype) -> NDArray[np.void]:
+def _inflate(members: list[ChunkMember], record: np.dtype) -> NDArray[np.void]:
     """Ticks of members that were checked, as records of a kind."""
     stops = list(accumulate(member.size for member in members))
     ticks = np.empty((stops[-1] if stops else 0) // record.itemsize, record)

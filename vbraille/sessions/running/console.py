@@ -13,8 +13,9 @@ from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.sessions.record import events
-from vbraille.sessions.running.course import POLL_S, Phase
+from vbraille.sessions.running.course import POLL_S
 from vbraille.sessions.running.orders import Order
+from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +39,8 @@ class Console:
         Function that is called with each sentence for the experimenter.
     real
         Whether the session runs in real time, so that it has to wait.
+    look
+        Function that is called each time that the session has gone on a little.
 
     Raises
     ------
@@ -46,13 +49,20 @@ class Console:
     """
 
     def __init__(
-        self, course: Course, answers: Answers, *, say: Callable[[str], None], real: bool = True
+        self,
+        course: Course,
+        answers: Answers,
+        *,
+        say: Callable[[str], None],
+        real: bool = True,
+        look: Callable[[], None] = lambda: None,
     ) -> None:
         self._course = course
         self._progress = course.progress
         self._answers = answers
         self._say = say
         self._wait_s = POLL_S if real else 0.0
+        self._look = look
         self._early = ()  # the trial, attempt and answer that were asked about
 
     def run(self) -> None:
@@ -63,6 +73,7 @@ class Console:
         course.next()
         with Suspension() as suspension:
             self._go_through(suspension)
+        self._look()
 
     def _go_through(self, suspension: Suspension) -> None:
         course = self._course
@@ -81,6 +92,7 @@ class Console:
             course.poll()
             if not self._answers.typed:
                 self._ask()
+            self._look()
 
     def _suspend(self, suspension: Suspension) -> None:
         """Pause and stop the process. Afterwards Enter ends the pause, if somebody types."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import asdict, replace
-from enum import Enum, auto
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
@@ -17,6 +16,7 @@ from vbraille.sessions.planning.planfile import stimulus_to_json
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import SHOWN_FROM, versions
 from vbraille.sessions.running.logbook import Logbook
+from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,20 +28,11 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
-    from vbraille.sessions.running.showing import Happened, OnDevice
+    from vbraille.sessions.running.happened import Happened
+    from vbraille.sessions.running.showing import OnDevice
 
 POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
-
-
-class Phase(Enum):
-    """Phase of a session, by what the session waits for."""
-
-    BREAK = auto()  # a break, which Enter ends
-    READY = auto()  # before a trial, until the slider is at the left; on paper, until Enter
-    OPEN = auto()  # a trial, until its answer
-    LAST = auto()  # all trials are done; Enter ends the session, an undo takes back an answer
-    OVER = auto()  # the session waits for nothing any more
 
 
 class Course:
@@ -114,6 +105,7 @@ class Course:
         self._ready_ns = 0
         self._cue_ns = 0
         self._deaths = 0
+        self._watched: dict[str, Any] = {}  # fields that each run's event has again
 
     @property
     def trial(self) -> Trial | None:
@@ -139,6 +131,11 @@ class Course:
         return self.read_said if self.display is None else self.display.reached
 
     @property
+    def stimulus(self) -> int:
+        """Which stimulus of the open trial is shown: 0, or 1 for the second of two."""
+        return self._stimulus
+
+    @property
     def second_to_come(self) -> bool:
         """Whether a stimulus of the open trial has not been shown yet."""
         trial = self.open_trial
@@ -153,6 +150,7 @@ class Course:
     def start(self, **started: Any) -> None:
         """Begin a run, once the engine is started; `started` are fields for the event `Run`."""
         display = self.display
+        self._watched = {"monitor": started["monitor"]} if "monitor" in started else {}
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
             started |= {"trace": trace, "device": asdict(display.engine.display)}
@@ -345,11 +343,11 @@ class Course:
         return replace(trial.stimuli[self._stimulus].tuning, **self.progress.tuning)
 
     def _take(self, happened: Happened) -> None:
-        kind, fields = happened
+        kind, fields, said = happened
         trial = self.open_trial
-        if kind is events.Device:
-            self.book.log(events.Device, **fields)
-            self._say(fields["what"])
+        if said:
+            self.book.log(kind, None if kind is events.Device else trial, **fields)
+            self._say(said)
         elif trial is not None:
             self.book.log(kind, trial, attempt=self._attempt, stimulus=self._stimulus, **fields)
             if kind is events.Fault:
@@ -396,6 +394,6 @@ class Course:
         assert self.display is not None, "paper has no engine"
         self.book.log(events.Closed, **self.display.close_trace())
         self.display.engine.start()
-        self.start(why="fault")
+        self.start(why="fault", **self._watched)
         if trial is not None:
             self.next(gap=False)

@@ -47,6 +47,11 @@ class Logbook:
         """Begin a run: its time goes on from the total length of the runs before it."""
         self._begun_ns, self._begun_s = self._now_ns(), self._progress.t_s
 
+    @property
+    def elapsed_s(self) -> float:
+        """Seconds that the session has run for, without the time between runs."""
+        return self._begun_s + (self._now_ns() - self._begun_ns) / 1e9
+
     def log(self, kind: type[JournalEvent], trial: Trial | None = None, **fields: Any) -> None:
         """Write an event; if its kind is durable, it is on the disk when this returns.
 

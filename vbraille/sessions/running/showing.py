@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.saying import told
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
@@ -15,6 +14,7 @@ from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
+from vbraille.sessions.running.happened import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
-    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
@@ -70,23 +69,6 @@ class RunEngine(Engine, Protocol):
     def close(self) -> None:
         """Bring the array to rest, and close the device."""
         ...
-
-
-class Happened(NamedTuple):
-    """Something that the experimenter or the journal should be told.
-
-    Parameters
-    ----------
-    kind
-        Kind of event: ``Contact`` if the array came to the first dot, ``Read`` if the hand went
-        to the end and back, ``Fault`` if the stimulus can no longer be felt, ``Well`` if it can be
-        felt again, and ``Device`` if the device reports something.
-    fields
-        Those fields of the kind that are known here.
-    """
-
-    kind: type[JournalEvent]
-    fields: dict[str, Any]
 
 
 class OnDevice:
@@ -181,6 +163,11 @@ class OnDevice:
         return 0 if self._newest is None else int(self._newest["time_ns"])
 
     @property
+    def newest(self) -> np.void | None:
+        """Record of the newest tick that was polled; None before the first."""
+        return self._newest
+
+    @property
     def ready(self) -> bool:
         """Whether the device works, and its carriage has just been at the left stop."""
         return self._ready
@@ -270,8 +257,7 @@ class OnDevice:
             If the engine has ended, or the disk does not take the trace.
         """
         ticks = self.engine.poll()
-        sentences = told(self.engine.take_events())
-        happened = [Happened(events.Device, {"what": sentence}) for sentence in sentences]
+        happened = of_device(self.engine.take_events())
         if not ticks.size:
             return happened
         before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
@@ -286,7 +272,7 @@ class OnDevice:
         placing = placing_of(self._newest)
         if placing is not self._placing:
             self._placing = placing
-            happened.append(Happened(events.Device, {"what": _PLACES[placing]}))
+            happened.append(reported(_PLACES[placing]))
         if self._stimulus is not None:
             happened += sorted(
                 self._unfelt(ticks, lost) + self._follow(ticks),

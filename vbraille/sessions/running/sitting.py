@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from vbraille.caching import compiling_note
@@ -26,9 +27,14 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.simulation.steering import Steering
     from vbraille.sounds import Sound
+
+
+def _nothing() -> None:
+    """Do nothing, where nobody watches."""
 
 
 class Sitting:
@@ -51,6 +57,8 @@ class Sitting:
         should be kept apart from those.
     before_rest
         Function that is called just before the array is brought to rest.
+    onlookers
+        Live view of the session; None without one.
     """
 
     def __init__(
@@ -64,6 +72,7 @@ class Sitting:
         say: Callable[[str], None],
         warn: Callable[[str], None],
         before_rest: Callable[[], None],
+        onlookers: Onlookers | None = None,
     ) -> None:
         self._engine = engine
         self._answers = answers
@@ -73,6 +82,7 @@ class Sitting:
         self._say = say
         self._warn = warn
         self._before_rest = before_rest
+        self._watching = onlookers
         self._opened = False
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
@@ -117,6 +127,8 @@ class Sitting:
             told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
             told |= self._since(book, progress)
             told |= {"spec": spec, "hand": hand, "answers": self._answers.name}
+            if (onlookers := self._watching) is not None:
+                told["monitor"] = onlookers.told()
             practises = self._answers.typed or progress.begun
             try:
                 if not practises:
@@ -125,7 +137,8 @@ class Sitting:
                 if not practises:
                     self._say("practice: left out, since answers are not typed")
                     course.book.log(events.Begin)
-                Console(course, self._answers, say=self._say, real=self._real).run()
+                look = _nothing if onlookers is None else partial(onlookers.look, course)
+                Console(course, self._answers, say=self._say, real=self._real, look=look).run()
             finally:
                 self._before_rest()
                 if display is not None:

@@ -112,8 +112,8 @@ class BrailleLines(PartedSource):
     """A file of braille as a source of its lines and pages, none of them ever translated.
 
     Each character is the source of one cell. A line is a block, and an empty one is, too. The
-    first line of a page follows a block of the kind PAGE, which has no text, if the file has form
-    feeds. Blanks at the end of a line are left out, and a tab is one blank.
+    first line of a page follows a block of the kind PAGE, which has no text but is counted, if the
+    file has form feeds. Blanks at the end of a line are left out, and a tab is one blank.
 
     Parameters
     ----------
@@ -174,9 +174,9 @@ class BrailleLines(PartedSource):
         self._stream.close()
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return f"{type(self).__name__} 1", self._form
+        return f"{type(self).__name__} 2", self._form
 
-    def made(self, part: int, character: int, group: int) -> list[Block]:  # noqa: ARG002
+    def made(self, part: int, character: int, group: int) -> list[Block]:
         """Make the blocks of a part of the file."""
         start, stop = self._cut(part), self._cut(part + 1)
         read = _read(self._stream, self.name, start, stop - start)
@@ -186,9 +186,10 @@ class BrailleLines(PartedSource):
             )
         codes, masks = self._decode(read, start)
         begins = start == self._first or self._ends_before(start)
-        blocks = [_page(character)] if part == 0 and self._paged else []
+        blocks = [_page(character, 1)] if part == 0 and self._paged else []
+        page = max(group, 1)  # what stands before the first form feed is a page, too
         return blocks + self._blocks(
-            codes, masks, character, continues=not begins, final=stop == self._after
+            codes, masks, character, page, continues=not begins, final=stop == self._after
         )
 
     def _decode(self, read: bytes, start: int) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]:
@@ -235,6 +236,7 @@ class BrailleLines(PartedSource):
         codes: NDArray[np.uint32],
         masks: NDArray[np.uint8],
         character: int,
+        page: int,
         *,
         continues: bool,
         final: bool,
@@ -245,12 +247,10 @@ class BrailleLines(PartedSource):
         alphabet = frozenset(np.flatnonzero(np.bincount(codes)).tolist())
         blocks: list[Block] = []
 
-        def line(start: int, stop: int, after: int) -> None:
+        def line(start: int, stop: int, after: int, *, ended: bool = True) -> None:
             """Add a line, in pieces if it is long; after it, the next begins."""
             nonlocal continues
-            last = (
-                max(start, raised[stop - 1]) if stop > start and (after > stop or final) else stop
-            )
+            last = max(start, raised[stop - 1]) if stop > start and ended else stop
             while True:
                 cut = min(start + PIECE_CHARACTERS, last)
                 end = character + (after if cut == last else cut)
@@ -271,9 +271,10 @@ class BrailleLines(PartedSource):
                 continue
             if code == _FORM_FEED:
                 if continues or (at > start and raised[at - 1] > start):
-                    line(start, at, at + 1)
+                    line(start, at, at)  # the form feed is the place of the page
                 if at + 1 < codes.size or not final:
-                    blocks.append(_page(character + at + 1))
+                    page += 1
+                    blocks.append(_page(character + at + 1, page))
                 start = at + 1
                 continue
             following = at + 1
@@ -282,7 +283,7 @@ class BrailleLines(PartedSource):
             line(start, at, following)
             start = following
         if start < codes.size and (not final or continues or raised[-1] > start):
-            line(start, codes.size, codes.size)
+            line(start, codes.size, codes.size, ended=final)
         return blocks
 
     def _ends_before(self, offset: int) -> bool:
@@ -313,11 +314,11 @@ class BrailleLines(PartedSource):
         return offset
 
 
-def _page(character: int) -> Block:
-    """Block that says that a page begins at a place."""
+def _page(character: int, number: int) -> Block:
+    """Block that says that the page of a number begins at a place."""
     text = Text.empty(character)
     cells = Cells(np.empty(0, np.uint8), np.empty(0, np.int64), character)
-    return Block(text, BlockKind.PAGE, 0, cells)
+    return Block(text, BlockKind.PAGE, 0, cells, group=number)
 
 
 def _check_text(sample: bytes, name: str) -> None:

@@ -29,8 +29,8 @@ _NO_CELLS = Cells(np.empty(0, np.uint8), np.empty(0, np.int64), 0)
 class PefBook(PartedSource):
     """A PEF file as a source: each page a block of the kind PAGE without text, and its rows.
 
-    Volumes and sections follow one another; on which side of the paper a page stands and how far
-    rows are apart is left to embossers.
+    Volumes and sections follow one another, and their pages are counted on; on which side of the
+    paper a page stands and how far rows are apart is left to embossers.
 
     Parameters
     ----------
@@ -93,8 +93,8 @@ class PefBook(PartedSource):
     def passages(self, part: int) -> Iterable[Passage]:
         """Read the rows of some pages."""
         start = part * _PAGES_IN_PART
-        for page in self._pages[start : start + _PAGES_IN_PART]:
-            yield Passage("", BlockKind.PAGE, cells=_NO_CELLS)
+        for number, page in enumerate(self._pages[start : start + _PAGES_IN_PART], 1):
+            yield Passage("", BlockKind.PAGE, group=number, cells=_NO_CELLS)
             for row in () if page is None else page.split("\n"):
                 text = row.rstrip(chr(_BLANK))
                 yield Passage(text, BlockKind.LINE, cells=Cells.from_unicode(text))

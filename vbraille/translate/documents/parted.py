@@ -35,7 +35,8 @@ class Passage:
     marks
         Marks whose places are indices into the text.
     group
-        Number of the list or table within the part, from 1; 0 for other blocks.
+        Number of the list, of the table or of the counted page within the part, from 1; 0 for
+        other blocks.
     cells
         Cells of a source that is braille already, with places that are indices into the text.
     continues
@@ -57,7 +58,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True)
 class _Start:
-    """What comes before a part: numbers of blocks, of characters, and of lists and tables."""
+    """What comes before a part: numbers of blocks, characters, and groups as blocks have them."""
 
     block: int
     character: int
@@ -124,7 +125,7 @@ class PartedSource(ABC):
         character
             Place of its first character in the source.
         group
-            Number of lists and tables in the parts before it.
+            Number of lists and tables, or of counted pages, in the parts before it.
         """
         blocks: list[Block] = []
         for passage in self.passages(part):
@@ -215,7 +216,7 @@ class PartedSource(ABC):
         """Let go of the file, where one is open; further calls do nothing."""
 
     def _fits(self) -> tuple[str, tuple[str | int, ...]]:
-        return f"{type(self).__name__} 1", (self._digest, self.parts)
+        return f"{type(self).__name__} 2", (self._digest, self.parts)
 
     def _read(self, part: int) -> list[Block]:
         """Blocks of a part; where the next part begins is known after that."""

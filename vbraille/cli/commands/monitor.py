@@ -1,0 +1,64 @@
+"""``vbraille monitor``: a recording or a session, played back in the live view."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import threading
+import webbrowser
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from vbraille.cli.options.live import check_live_options
+from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
+from vbraille.errors import InputError
+from vbraille.live.server import LiveServer
+from vbraille.playback import open_recording
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.playback.playback import Playback
+
+# So long a signal may wait to be heard.
+_HEED_S = 0.1
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve a recording until a signal says to stop."""
+    check_live_options(arguments)
+    if arguments.play is None:
+        raise InputError(
+            f"nothing is to be played; give a recording or a session by {setting('play')}: what is "
+            f"read now is shown by vbraille read FILE --monitor"
+        )
+    source = open_recording(arguments.play)
+    for note in source.notes:
+        print(f"note: {note}", file=sys.stderr)
+    with EAR.deferred():
+        asyncio.run(_serve(source, arguments.host, arguments.port))
+    say_line("live view: ended")
+    return 0
+
+
+async def _serve(source: Playback, host: str | None, port: int | None) -> None:
+    server = LiveServer(source, host=host, port=port, steers=False)
+    async with server:
+        address = server.admission.watching_address
+        say_line(f"live view: {address}")
+        if _has_browser():
+            # Some browsers run in the foreground, and are not waited for.
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+        while not EAR.heard:
+            await asyncio.sleep(_HEED_S)
+
+
+def _has_browser() -> bool:
+    """Whether somebody sits here who would see a browser that opens."""
+    desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
+        return bool(desktop) and sys.stdin.isatty()
+    return False

@@ -1,0 +1,228 @@
+"""Groups of options that several commands have, each with a sentence that stands alone."""
+
+from __future__ import annotations
+
+from vbraille.cli.options.values import lines, number, seed, whole
+
+TYPE_CHECKING = False  # as in vbraille.cli
+if TYPE_CHECKING:
+    from argparse import ArgumentParser
+
+MAPPINGS = ("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact")
+MODELS = ("stress2", "vbd")
+
+# Options of reading that a settings file may say.
+SETTLED = (
+    "device",
+    "language",
+    "grade",
+    "table",
+    "encoding",
+    "undefined",
+    "keep_lines",
+    "advance",
+    "echo",
+    "speech",
+    "cues",
+    "verbose",
+)
+
+HANDS = (
+    "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
+    "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
+    "wander:SPEED goes about without reading, and still moves only in the live view of --monitor"
+)
+SPEC = "Name the device, such as serial:/dev/ttyACM0, or sim for a simulated one"
+
+
+def text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:
+    """Add the options that say what text is read, and in which braille."""
+    if file:
+        source(parser, optional=optional)
+    translation(parser)
+    parser.add_argument(
+        "--undefined",
+        choices=("mark", "name", "code", "drop"),
+        default="mark",
+        help="Choose what is written for a character that the table does not know: a marker such "
+        "as [?], its name in Unicode, its number, or nothing; they are counted at the end "
+        "(default: mark).",
+    )
+    parser.add_argument(
+        "--keep-lines",
+        action="store_true",
+        help="Keep the text's own line breaks, as for verse or a program.",
+    )
+    parser.add_argument(
+        "--lines",
+        type=lines,
+        default=(1, None),
+        metavar="3-10",
+        help="Take these lines of the page only, counted from 1 (default: all).",
+    )
+
+
+def source(parser: ArgumentParser, *, optional: bool = False) -> None:
+    """Add the options that say which file is read, and how."""
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="?" if optional else None,
+        help="Take this text file, or standard input for -.",
+    )
+    parser.add_argument(
+        "--encoding",
+        metavar="NAME",
+        help="Read the file in this text encoding (default: what its bytes say).",
+    )
+    parser.add_argument(
+        "--form",
+        metavar="NAME",
+        help="Read the file as text, markdown, html, epub, dtbook, docx, odt, rtf, brf, "
+        "unicode-braille or pef (default: what its content and then its name say).",
+    )
+    parser.add_argument(
+        "--brf-table",
+        metavar="NAME",
+        help="Read a BRF file in the dialect of this display table of liblouis, such as "
+        "de-eurobrl6.dis (default: North American ASCII braille).",
+    )
+
+
+def translation(parser: ArgumentParser) -> None:
+    """Add the options that choose a braille table."""
+    parser.add_argument(
+        "--table", metavar="NAME", help="Translate with this liblouis table (default: by language)."
+    )
+    parser.add_argument(
+        "--language",
+        metavar="TAG",
+        help="Translate with the usual table of this language, such as fr or pt-BR (default: en).",
+    )
+    parser.add_argument(
+        "--grade",
+        type=whole,
+        metavar="N",
+        help="Take uncontracted braille, 0 or 1, or contracted, 2 and up (default: what is usual "
+        "in the language).",
+    )
+    settings_file(parser)
+
+
+def settings_file(parser: ArgumentParser) -> None:
+    """Add the option that names another settings file."""
+    parser.add_argument(
+        "--settings",
+        metavar="FILE.toml",
+        help="Take what options do not say from this settings file (default: the one that "
+        "vbraille settings --path names).",
+    )
+
+
+def profile(parser: ArgumentParser) -> None:
+    """Add the option that chooses a profile of the settings file."""
+    parser.add_argument(
+        "--profile",
+        metavar="NAME",
+        help="Show braille as this profile of the settings file has it; one that is not there is "
+        "made when it is saved (default: the file's, or the one called default).",
+    )
+
+
+def leave_to_settings(parser: ArgumentParser) -> None:
+    """Leave options that a settings file may say without a value; `usual` has the usual ones."""
+    parser.set_defaults(usual={name: parser.get_default(name) for name in SETTLED})
+    parser.set_defaults(**dict.fromkeys(SETTLED))
+
+
+def layout(parser: ArgumentParser) -> None:
+    """Add the options that say for which display, and how large, braille is."""
+    parser.add_argument(
+        "--model",
+        choices=MODELS,
+        default="stress2",
+        help="Lay out for this display: the STReSS² or the VBD (default: the device's own, or "
+        "stress2).",
+    )
+    parser.add_argument(
+        "--geometry",
+        choices=("stress2", "vbd", "standard"),
+        help="Start from the distances of this display, or of embossed braille (default: the "
+        "display's own).",
+    )
+    for name, text in (
+        ("dot-width", "Make a dot so wide along the line"),
+        ("dot-spacing", "Set the two dot columns of a cell so far apart"),
+        ("cell-gap", "Leave so much from a cell's right dot column to the next cell's left one"),
+        ("line-pitch", "Set lines so far apart"),
+    ):
+        parser.add_argument(
+            f"--{name}", type=number, metavar="MM", help=f"{text}, in mm (default: the geometry's)."
+        )
+    parser.add_argument(
+        "--travel",
+        type=number,
+        metavar="MM",
+        help="Let the carriage go so far, in mm, which says how long a line is (default: what the "
+        "device has, or 300).",
+    )
+
+
+def show(parser: ArgumentParser) -> None:
+    """Add the options of how braille is shown on the actuators, and those of `layout`."""
+    layout(parser)
+    parser.add_argument(
+        "--texture",
+        type=number,
+        metavar="0…1",
+        help="Set the level of texture between the dots (default: the model's, 1 for the STReSS², "
+        "0 for the VBD).",
+    )
+    parser.add_argument(
+        "--texture-cycles",
+        type=whole,
+        metavar="K",
+        help="On the STReSS²: have so many half-cycles of texture in a dot's radius, an odd number "
+        "(default: 7).",
+    )
+    parser.add_argument(
+        "--contrast",
+        type=number,
+        metavar="0…1",
+        help="Use this share of the actuators' full swing (default: 1).",
+    )
+    parser.add_argument(
+        "--mapping",
+        choices=MAPPINGS,
+        help="On the STReSS²: choose which rows of actuators show which dots (default: alternate).",
+    )
+    parser.add_argument(
+        "--dot-row",
+        type=whole,
+        metavar="1|2|3",
+        help="On the VBD: show this row of dots (default: 1).",
+    )
+
+
+def hand(parser: ArgumentParser) -> None:
+    """Add the options of the hand that moves a simulated device."""
+    parser.add_argument(
+        "--hand",
+        default="sweep:60",
+        metavar="HAND",
+        help=f"Move the simulated device by this hand: {HANDS} (default: sweep:60).",
+    )
+    parser.add_argument(
+        "--seed",
+        type=seed,
+        default=1,
+        metavar="N",
+        help="Draw the hand's chances from this (default: 1).",
+    )
+    parser.add_argument(
+        "--rate",
+        type=number,
+        default=1000.0,
+        metavar="HZ",
+        help="Have so many frames a second (default: 1000).",
+    )

@@ -1,0 +1,347 @@
+"""What the page of the live view and its server say to each other.
+
+The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
+on the way. It asks in JSON. The server answers each `Next` with the `State`, if that has changed
+since this page was told it, and then with one frame: a `FRAME` header, the deflections, and the
+ticks since the frame before. `docs/live-view.md` has both as tables.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import msgspec
+import numpy as np
+
+VERSION: Final = 1
+# Longest request of a page, in bytes.
+MOST_BYTES: Final = 4096
+# The ticks of a frame are thinned out evenly to this number at most.
+MOST_SAMPLES: Final = 64
+FRAME_KIND: Final = 1
+MAP_KIND: Final = 2
+
+# The header of a frame, in the order of an Intel processor. After it come the deflections,
+# float32[rows, columns], and the samples, float32[samples, 3]: seconds before this tick, place of
+# the array's centre in mm, and deflection of the actuator that the page follows.
+FRAME: Final = np.dtype(
+    [
+        ("kind", "u1"),  # FRAME_KIND
+        ("version", "u1"),  # VERSION
+        ("samples", "<u2"),  # number of samples
+        ("flags", "<u4"),  # bits of `vbraille.engine.record.Flag`
+        ("state", "<u4"),  # number of the state that the frame belongs to
+        ("line", "<u4"),  # number of what is under the hand; 0 before the first
+        ("part", "<u4"),  # which part of the picture is shown
+        ("late", "<u4"),  # deadlines missed so far
+        ("tick", "<f8"),  # number of the tick, from 0
+        ("time_s", "<f8"),  # when the tick woke; in a recording, seconds from its start
+        ("x_mm", "<f4"),  # the array's centre on the canvas; NaN where it is not known
+        ("y_mm", "<f4"),
+        ("theta_rad", "<f4"),
+        ("vx_mm_s", "<f4"),  # the hand's velocity along x
+        ("lateness_us", "<f4"),  # from the deadline to the waking
+        ("work_us", "<f4"),  # from waking until the frame was written
+        ("share", "<f4"),  # how much of a change has faded in: 1 is all
+        ("age_ms", "<f4"),  # from the tick until the frame was sent; 0 in a recording
+        ("rows", "<u2"),  # shape of the deflections; 0 × 0 where they are not shown
+        ("columns", "<u2"),
+        ("reserved", "<u4"),
+    ]
+)
+# The header of a map; after it come the bytes of a file.
+MAP: Final = np.dtype([("kind", "u1"), ("svg", "u1"), ("reserved", "<u2"), ("bytes", "<u4")])
+
+
+class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_fields=True):
+    """What a page asks for; its subclasses are the kinds."""
+
+
+class Hello(Request, frozen=True, tag="hello"):
+    """The first request of a page, which the server answers with `Welcome`.
+
+    Parameters
+    ----------
+    token
+        Token of the address by which the page was opened; empty without one.
+    """
+
+    token: str = ""
+
+
+class Next(Request, frozen=True, tag="next"):
+    """The next frame.
+
+    Parameters
+    ----------
+    row, column
+        The actuator whose deflection the samples hold, from 0.
+    at_s
+        In a recording, the time of the frame that is asked for, in seconds from its start, and
+        ``since_s`` that of the frame before; the newest frame of a device where it is None.
+    """
+
+    row: int = 0
+    column: int = 0
+    at_s: float | None = None
+    since_s: float | None = None
+
+
+class Press(Request, frozen=True, tag="press"):
+    """A command of the reader by its name, as in `docs/keys.md`; it needs the right to steer."""
+
+    command: str
+
+
+class Turn(Request, frozen=True, tag="turn"):
+    """A knob of the braille style turned to a value; it needs the right to steer."""
+
+    knob: str
+    value: float
+
+
+class Point(Request, frozen=True, tag="point"):
+    """The hand of a simulated device held at a place; it needs the right to steer.
+
+    Parameters
+    ----------
+    x_mm, y_mm, theta_rad
+        Place of the array's centre on the canvas, and angle by which the array is turned.
+    """
+
+    x_mm: float
+    y_mm: float = 0.0
+    theta_rad: float = 0.0
+
+
+class LetGo(Request, frozen=True, tag="let-go"):
+    """The hand of a simulated device let go, so that it reads by itself again."""
+
+
+class Map(Request, frozen=True, tag="map"):
+    """The deflection map of what is under the hand, or of a recording at a time.
+
+    Parameters
+    ----------
+    form
+        "png" or "svg".
+    at_s
+        In a recording, the time of what is drawn.
+    """
+
+    form: str = "png"
+    at_s: float | None = None
+
+
+AnyRequest = Hello | Next | Press | Turn | Point | LetGo | Map
+
+
+class ArrayShown(msgspec.Struct, frozen=True):
+    """The actuators of a device, as a page draws them.
+
+    Parameters
+    ----------
+    name
+        Name of the device.
+    rows, columns
+        Shape of a frame.
+    column_pitch_mm, row_pitch_mm
+        Distances of neighbouring columns and rows.
+    swing_mm
+        Way of a contactor from rest to full deflection.
+    rest_right
+        Whether an actuator at rest stands at the right end of its swing.
+    travel_mm, height_mm
+        How far the carriage goes along x and y.
+    turns
+        Whether the carriage measures an angle.
+    rate_hz
+        Ticks a second that are wanted.
+    """
+
+    name: str
+    rows: int
+    columns: int
+    column_pitch_mm: float
+    row_pitch_mm: float
+    swing_mm: float
+    rest_right: bool
+    travel_mm: float
+    height_mm: float
+    turns: bool
+    rate_hz: float
+
+
+class LineShown(msgspec.Struct, frozen=True):
+    """A line on the virtual page.
+
+    Parameters
+    ----------
+    number
+        Number by which records call the line.
+    text
+        Text of the line in print; empty where the source is braille.
+    start_mm
+        Place of the left edge of the first of these cells.
+    top_mm
+        Place of the upper edge of the line: its dots stand around the middle of a line pitch.
+    cells
+        Dot masks of the cells; bit n - 1 is dot n.
+    sources
+        For each cell, where in the text that begins and ends which it stands for; two equal
+        numbers where it stands for nothing.
+    under
+        Whether this is the line under the hand.
+    """
+
+    number: int
+    text: str
+    start_mm: float
+    top_mm: float
+    cells: list[int]
+    sources: list[tuple[int, int]]
+    under: bool = False
+
+
+class KnobShown(msgspec.Struct, frozen=True):
+    """A knob of the braille style.
+
+    Parameters
+    ----------
+    name
+        Name of the knob, such as "dot_width_mm".
+    label, unit
+        Name and unit for people.
+    value, step, low, high
+        Value, how far a key turns it, and its bounds.
+    fixed
+        Reason why it cannot be turned here; empty if it can.
+    """
+
+    name: str
+    label: str
+    unit: str
+    value: float
+    step: float
+    low: float
+    high: float
+    fixed: str = ""
+
+
+class Moment(msgspec.Struct, frozen=True):
+    """Something that happened at a time of a recording.
+
+    Parameters
+    ----------
+    at_s
+        Seconds from the start of the recording.
+    kind
+        Kind: "line", "trial", "cue", "answer", "fault", "tuning", "pause" or "note".
+    text
+        Sentence on what happened.
+    """
+
+    at_s: float
+    kind: str
+    text: str
+
+
+class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
+    """The server's answer to `Hello`.
+
+    Parameters
+    ----------
+    version
+        `VERSION`.
+    steers
+        Whether this page may steer.
+    playback
+        Whether a recording is played back, so that `Next` and `Map` name a time.
+    length_s
+        Length of the recording in seconds; 0 without one.
+    moments
+        What happened in the recording, by time.
+    """
+
+    version: int
+    steers: bool
+    playback: bool = False
+    length_s: float = 0.0
+    moments: list[Moment] = []
+
+
+class State(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
+    """All that a page shows beside the frames, and that changes seldom.
+
+    Parameters
+    ----------
+    number
+        Number of the state, which grows with each.
+    title
+        Title of what is read.
+    array
+        The actuators; None before the device is known.
+    geometry
+        Distances of the braille in mm: `dot_width_mm`, `dot_spacing_mm`, `cell_gap_mm`,
+        `row_spacing_mm` and `line_pitch_mm`.
+    rows_shown
+        For each row of actuators, from row 0, which dots it shows: (dot row of the left dot
+        column, dot row of the right one), from 0; -1 for none. Empty where that is not shown.
+    lines
+        The line under the hand and some around it, from top to bottom; empty in a blind session.
+    place
+        Sentence that says where the reader is, such as "line 12, page 3".
+    knobs
+        Knobs of the braille style; empty where nothing may be turned.
+    mapping
+        Words for the mapping, such as "mapping: sheared".
+    paused
+        Whether the array rests because the reader said so.
+    simulated
+        Whether a simulated hand moves the carriage, so that a page may be the hand.
+    held
+        Whether a page is the hand now.
+    device
+        Sentence on the state of the device, such as "reading", "place: known" or a fault.
+    said
+        The last sentences that the reader was told, oldest first.
+    said_before
+        Number of sentences that were said before those.
+    facts
+        Name and value of whatever else is shown, such as the trial of a session.
+    blind
+        Whether stimuli are hidden, since somebody is to answer about them.
+    done
+        Whether reading is over.
+    """
+
+    number: int
+    title: str = ""
+    array: ArrayShown | None = None
+    geometry: dict[str, float] = {}
+    rows_shown: list[tuple[int, int]] = []
+    lines: list[LineShown] = []
+    place: str = ""
+    knobs: list[KnobShown] = []
+    mapping: str = ""
+    paused: bool = False
+    simulated: bool = False
+    held: bool = False
+    device: str = ""
+    said: list[str] = []
+    said_before: int = 0
+    facts: list[tuple[str, str]] = []
+    blind: bool = False
+    done: bool = False
+
+
+class Refused(msgspec.Struct, frozen=True, tag_field="tell", tag="refused"):
+    """The server's answer to a request that it cannot do; the connection may end after it.
+
+    Parameters
+    ----------
+    why
+        Sentence that says what is wrong and what to do.
+    """
+
+    why: str

@@ -1,0 +1,255 @@
+/**
+ * The live view. A frame is drawn when the browser draws, the next is asked for when it is drawn,
+ * and what is asked of the hand and the knobs goes out at the same time: once for each frame.
+ */
+
+import { sayWhere } from "./braille.js";
+import { Connection } from "./connection.js";
+import { byId, write } from "./drawing.js";
+import { Hand } from "./hand.js";
+import { Knobs } from "./knobs.js";
+import { DeflectionMap } from "./map.js";
+import { VERSION } from "./messages.js";
+import { Playback } from "./playback.js";
+import { Sheet } from "./sheet.js";
+import { Skin } from "./skin.js";
+import { Telling, tables } from "./telling.js";
+import { Traces } from "./traces.js";
+
+/** @typedef {import("./messages.js").State} State */
+/** @typedef {import("./messages.js").Frame} Frame */
+/** @typedef {import("./messages.js").Welcome} Welcome */
+
+const READ_MS = 100; // how often numbers change: people cannot read them faster
+const CALM_MS = 1000; // how often anything changes where motion is to be reduced
+const OWN_MS = 400; // for so long after the hand was moved here, the drawing follows it all the same
+const NOTICE_MS = 20_000;
+
+/** @type {Welcome | null} */
+let welcome = null;
+/** @type {State | null} */
+let state = null;
+/** @type {State | null} */
+let fresh = null; // told, and not yet shown
+/** @type {Frame | null} */
+let frame = null;
+/** @type {Frame[]} */
+let queue = [];
+let drawn = 0;
+let drawnAt = -Infinity;
+let readAt = -Infinity;
+let frozen = false;
+let woken = false;
+let noticed = 0;
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+let lostBefore = false;
+
+/** @type {Connection} */
+const connection = new Connection(token(), {
+  welcomed: (said) => {
+    welcome = said;
+    if (said.version !== VERSION) notice("The server speaks another version than this page; load the page again.");
+    else notice(lostBefore ? "Connected again." : "", lostBefore);
+    lostBefore = false;
+    queue = [];
+    byId("again").hidden = true;
+    playback.begin(said);
+    traces.wipe();
+    if (state) fresh = state;
+    wake();
+  },
+  told: (said) => {
+    fresh = said;
+    wake();
+  },
+  framed: (received) => {
+    queue.push(received);
+    wake();
+  },
+  mapped: (received) => map.take(received),
+  refused: (why) => {
+    const sentence = why.charAt(0).toUpperCase() + why.slice(1) + (/[.!?]$/.test(why) ? "" : ".");
+    if (!map.refused(sentence)) notice(sentence, connection.open);
+  },
+  lost: (again) => {
+    map.lost();
+    byId("again").hidden = again;
+    // It is said once, not at every attempt.
+    if (again && !lostBefore) notice("The connection to vbraille is lost. It is tried again every few seconds.");
+    lostBefore = again;
+    if (state) fresh = state;
+    wake();
+  },
+});
+
+/** @type {(request: {ask: string} & Record<string, unknown>) => boolean} */
+const ask = (request) => connection.ask(request);
+const sheet = new Sheet(byId("sheet"));
+const skin = new Skin(byId("deflection"), byId("strain"), byId("touch-note"));
+const traces = new Traces(byId("scopes"));
+const telling = new Telling();
+const knobs = new Knobs(ask);
+const hand = new Hand(sheet, ask, wake);
+const playback = new Playback(wake);
+const map = new DeflectionMap(ask);
+knobs.wake = wake;
+map.time = () => (playback.on ? playback.at_s : null);
+skin.onchoose = () => state && traces.show(state, skin.chosen);
+
+/** The token of the address; it stays for this tab, and goes out of the address bar. */
+function token() {
+  const given = decodeURIComponent(location.hash.slice(1));
+  // Only what looks like a token: the page has places of its own, such as #page.
+  if (given && document.getElementById(given) === null) {
+    sessionStorage.setItem("vbraille-token", given);
+    history.replaceState(null, "", location.pathname);
+  }
+  return sessionStorage.getItem("vbraille-token") ?? "";
+}
+
+/**
+ * Says something about the connection or a refusal.
+ * @param {string} words
+ * @param {boolean} brief whether it goes away by itself
+ */
+function notice(words, brief = false) {
+  clearTimeout(noticed);
+  write(byId("notice"), words);
+  if (brief && words) noticed = window.setTimeout(() => write(byId("notice"), ""), NOTICE_MS);
+}
+
+/** Has the browser call `beat` when it draws next. */
+function wake() {
+  if (woken) return;
+  woken = true;
+  requestAnimationFrame(beat);
+}
+
+/**
+ * What is done once for each picture of the browser.
+ * @param {number} now in ms
+ */
+function beat(now) {
+  woken = false;
+  knobs.send();
+  hand.send();
+  if (fresh) show();
+  if (playback.on) {
+    playback.advance(now);
+    if (playback.playing) wake();
+  }
+  if (frozen) return;
+  const calm = still.matches && performance.now() - hand.moved > OWN_MS && !(playback.on && !playback.playing);
+  if (queue.length && calm && now - drawnAt < CALM_MS) {
+    setTimeout(wake, CALM_MS - (now - drawnAt));
+    return;
+  }
+  if (queue.length && state) draw(now);
+  const { row, column } = skin.chosen;
+  if (!playback.on) connection.pull(() => ({ row, column }));
+  else if (playback.wanted) connection.pull(() => ({ row, column, ...playback.request() }), 1);
+}
+
+/** Shows a new state. */
+function show() {
+  state = /** @type {State} */ (fresh);
+  fresh = null;
+  const open = connection.open;
+  const steers = Boolean(open && welcome?.steers && !playback.on && !state.done);
+  document.body.classList.toggle("blind", state.blind);
+  for (const id of ["touch"]) byId(id).hidden = state.blind;
+  telling.show(state);
+  sheet.show(state);
+  skin.show(state);
+  traces.show(state, skin.chosen);
+  knobs.show(state, steers, whyNot(state, open));
+  hand.show(state, steers);
+  map.show(state.blind);
+  map.title = state.title;
+  if (state.array) playback.tick(state.array.rate_hz);
+  write(byId("kind"), playback.on ? "· a recording" : open ? (steers ? "· may steer" : "· watching") : "· not connected");
+  write(byId("page-note"), pageNote(state));
+  if (frame && frame.deflections.length) skin.move(state, frame);
+}
+
+/**
+ * Reason why nothing can be turned here; empty if it can.
+ * @param {State} now
+ * @param {boolean} open
+ */
+function whyNot(now, open) {
+  if (!open) return "Nothing can be turned without a connection.";
+  if (playback.on) return "A recording is shown: nothing can be turned in it.";
+  if (now.done) return "Reading is over.";
+  if (!welcome?.steers) return "This page watches. To steer, open the address with a token that vbraille says when it begins.";
+  return now.knobs.length ? "" : "Nothing may be turned here.";
+}
+
+/** @param {State} now */
+function pageNote(now) {
+  if (now.blind) return "Blind session: where the hand is, and nothing of what it feels.";
+  if (!hand.can) return "To scale; the rulers are in mm.";
+  const two = (now.array?.height_mm ?? 0) > 0;
+  return `To scale, in mm. Drag the array${two ? "" : " along the line"}, or press where it is to go; arrow keys move it by 0.5 mm, with Shift by 5 mm; Escape lets it go.`;
+}
+
+/** @param {number} now */
+function draw(now) {
+  if (!state) return;
+  for (const each of queue) traces.draw(each);
+  frame = queue[queue.length - 1];
+  queue = [];
+  sheet.move(state, frame);
+  if (!state.blind) skin.move(state, frame);
+  hand.see(frame);
+  if (playback.on) playback.show();
+  if (now - readAt >= READ_MS || (playback.on && !playback.playing)) {
+    readAt = now;
+    telling.read(state, frame);
+  }
+  drawn += 1;
+  drawnAt = now;
+}
+
+byId("say").addEventListener("click", () => {
+  const words = state && frame ? sayWhere(state, frame) : "Nothing is shown yet.";
+  write(byId("where"), "");
+  setTimeout(() => write(byId("where"), words), 30); // so that the same words are said again
+});
+byId("freeze").addEventListener("click", () => {
+  frozen = !frozen;
+  byId("freeze").setAttribute("aria-pressed", String(frozen));
+  if (state && frame) telling.read(state, frame); // the numbers are those of the picture
+  wake();
+});
+byId("again").addEventListener("click", () => {
+  byId("again").hidden = true;
+  notice("Connecting.");
+  connection.begin();
+});
+const take = () => state && byId("tables").replaceChildren(...tables(state, frame));
+byId("take").addEventListener("click", take);
+byId("words").addEventListener("toggle", take);
+const tellMotion = () => write(byId("manual"), still.matches
+  ? "Motion is reduced, as your system asks: the drawing changes once a second, and when you move the hand or step through a recording."
+  : "“Hold the picture” stops all motion. Where the system asks for less motion, the drawing changes once a second.");
+still.addEventListener("change", () => (tellMotion(), wake()));
+tellMotion();
+connection.begin();
+
+/** For tests: what was drawn last. */
+const shown = {
+  get drawn() {
+    return drawn;
+  },
+  get last() {
+    if (!frame) return null;
+    const { tick, time_s, x_mm, y_mm, rows, columns } = frame;
+    return { tick, time_s, x_mm, y_mm, rows, columns, deflections: Array.from(frame.deflections) };
+  },
+  get state() {
+    return state;
+  },
+};
+Object.assign(window, { vbraille: shown });

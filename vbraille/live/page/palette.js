@@ -1,0 +1,63 @@
+/**
+ * Colours of what is measured. Deflection goes evenly from pale to deep (on a dark ground from dim
+ * to bright), so that the order stays in every colour blindness and in grey. Strain has two hues of
+ * that kind, and a shape: what is stretched stands up and is filled, what is pressed hangs hollow.
+ */
+
+/** Colours of the page that the canvas needs, too; `style.css` has the rest. */
+export const LIGHT = {
+  ramp: ["#f3eddc", "#acc4bb", "#6796ad", "#305e8a", "#0d1b3c"],
+  stretch: "#a8480f",
+  press: "#1d5f9e",
+  trace: "#1d3f66",
+};
+export const DARK = {
+  ramp: ["#33302b", "#3b5667", "#5388a0", "#93c2bd", "#f7f1d8"],
+  stretch: "#f0a060",
+  press: "#86bdf2",
+  trace: "#a8cfe6",
+};
+
+/** Number of steps between rest and full swing that have a colour of their own. */
+export const STEPS = 20;
+
+/** @param {string} hex */
+const channels = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+
+/**
+ * The colour of each step, evenly along the stops.
+ * @param {string[]} stops
+ * @returns {string[]}
+ */
+export function ramp(stops) {
+  return Array.from({ length: STEPS + 1 }, (_, step) => {
+    const place = (step / STEPS) * (stops.length - 1);
+    const at = Math.min(Math.floor(place), stops.length - 2);
+    const [from, to] = [channels(stops[at]), channels(stops[at + 1])];
+    const mixed = from.map((value, n) => Math.round(value + (to[n] - value) * (place - at)));
+    return "#" + mixed.map((value) => value.toString(16).padStart(2, "0")).join("");
+  });
+}
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const ramps = { light: ramp(LIGHT.ramp), dark: ramp(DARK.ramp) };
+
+/** The colours of now. */
+export const colours = () => (dark.matches ? DARK : LIGHT);
+/** The steps of now, from rest to full swing. */
+export const steps = () => (dark.matches ? ramps.dark : ramps.light);
+
+/**
+ * Call when light becomes dark, or dark light.
+ * @param {() => void} then
+ */
+export function onScheme(then) {
+  dark.addEventListener("change", then);
+}
+
+/**
+ * The step of a deflection, 0 to STEPS.
+ * @param {number} deflection
+ */
+export const stepOf = (deflection) =>
+  Math.round(Math.min(Math.max(deflection, 0), 1) * STEPS);

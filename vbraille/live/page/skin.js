@@ -1,0 +1,418 @@
+/**
+ * The array enlarged: where each actuator leans and what passes beneath it, and beside that how
+ * the skin between neighbours is stretched or pressed.
+ */
+
+import { DOTS, distances, dotX, dotY, lineUnder, placeOf } from "./braille.js";
+import { fixed, html, put, ruler, short, svg } from "./drawing.js";
+import { STEPS, colours, onScheme, stepOf, steps } from "./palette.js";
+import { circle } from "./sheet.js";
+
+/** @typedef {import("./messages.js").State} State */
+/** @typedef {import("./messages.js").Frame} Frame */
+/** @typedef {import("./messages.js").ArrayShown} ArrayShown */
+
+const LEFT_PX = 58;
+const TOP_PX = 30;
+const MOST_HIGH_PX = 400;
+const NICE = [1, 2, 3, 4, 5, 8, 10, 15, 20, 30, 50];
+
+/**
+ * Strain between each actuator and its right neighbour: how much further apart they are than at
+ * rest, as a share of the pitch.
+ * @param {ArrayShown} array
+ * @param {ArrayLike<number>} deflections
+ * @returns {number[]} row by row, columns - 1 in each
+ */
+export function strains(array, deflections) {
+  const way = (array.rest_right ? -1 : 1) * (array.swing_mm / array.column_pitch_mm);
+  const found = [];
+  for (let row = 0; row < array.rows; row++) {
+    for (let column = 0; column + 1 < array.columns; column++) {
+      const n = row * array.columns + column;
+      found.push((deflections[n + 1] - deflections[n]) * way);
+    }
+  }
+  return found;
+}
+
+/**
+ * Words for the dots that a row of actuators shows, such as "dots 1 4".
+ * @param {[number, number] | undefined} shown
+ */
+export function rowWords(shown) {
+  if (!shown) return "";
+  const dots = DOTS.flatMap(([column, row], dot) => (shown[column] === row ? [dot + 1] : []));
+  return dots.length ? `dot${dots.length > 1 ? "s" : ""} ${dots.join(" ")}` : "";
+}
+
+export class Skin {
+  /** @type {State | null} */
+  #state = null;
+  /** @type {Frame | null} */
+  #frame = null;
+  #px_mm = 20;
+  #times = 1;
+  /** @type {SVGRectElement[]} */
+  #marks = [];
+  /** @type {SVGGElement[]} */
+  #cells = [];
+  /** @type {number[]} */
+  #steps = [];
+  /** @type {{path: SVGPathElement, x: number, y: number, high: number, kind: string}[]} */
+  #bars = [];
+  /** What stands in the drawing, so that only what changes is touched: in 1/10000 and in pixels. */
+  #shown = new Int32Array(0);
+  #moved = new Int32Array(0);
+  #made = "";
+  #dots = "";
+  chosen = { row: 0, column: 0 };
+  #first = true;
+  /** Called when another actuator is chosen. */
+  onchoose = () => {};
+
+  /**
+   * @param {HTMLElement} leaning
+   * @param {HTMLElement} strained
+   * @param {HTMLElement} note
+   */
+  constructor(leaning, strained, note) {
+    this.left = svg("svg", { class: "skin" });
+    this.right = svg("svg", {
+      class: "skin", role: "img", "aria-label": "Strain of the skin between neighbours, a bar for each; the same stands in a table below",
+    });
+    this.legend = html("div", { class: "legend" });
+    this.key = html("div", { class: "legend" });
+    this.note = note;
+    leaning.append(this.left, html("figcaption", {}, this.legend));
+    strained.append(this.right, html("figcaption", {}, this.key));
+    this.beneath = svg("g", { class: "beneath" });
+    this.figure = leaning;
+    new ResizeObserver(() => this.#again()).observe(leaning);
+    onScheme(() => this.#again());
+    this.left.addEventListener("keydown", (event) => this.#key(event));
+    this.left.addEventListener("focusin", (event) => this.#focused(event));
+  }
+
+  #again() {
+    this.#made = "";
+    if (this.#state) this.show(this.#state);
+    if (this.#state && this.#frame) this.move(this.#state, this.#frame);
+  }
+
+  /**
+   * Draws what stands still.
+   * @param {State} state
+   */
+  show(state) {
+    this.#state = state;
+    const array = state.array;
+    const width = this.figure.clientWidth;
+    if (!array || width === 0 || state.blind) return;
+    const made = JSON.stringify([array, state.rows_shown, width]);
+    if (made !== this.#made) {
+      this.#made = made;
+      this.#make(state, array, width);
+    }
+  }
+
+  /**
+   * Height of a row as it is drawn: a single row has no pitch of its own.
+   * @param {ArrayShown} array
+   */
+  #rowOf(array) {
+    return array.rows === 1 ? Math.max(array.row_pitch_mm, 2.6 * array.column_pitch_mm) : array.row_pitch_mm;
+  }
+
+  /**
+   * @param {State} state
+   * @param {ArrayShown} array
+   * @param {number} width
+   */
+  #make(state, array, width) {
+    const pitch = array.column_pitch_mm;
+    const row_mm = this.#rowOf(array);
+    const wide = (array.columns + 0.6) * pitch;
+    const high = (array.rows + 0.5) * row_mm;
+    this.#px_mm = Math.min((width - LEFT_PX) / wide, MOST_HIGH_PX / high);
+    const px = 1 / this.#px_mm;
+    const room = (0.56 * pitch) / (array.swing_mm || 1);
+    this.#times = NICE.findLast((times) => times <= room) ?? 1;
+    const box = [-wide / 2 - LEFT_PX * px, -high / 2 - TOP_PX * px, wide + LEFT_PX * px, high + (TOP_PX + 2) * px];
+    for (const drawing of [this.left, this.right]) {
+      drawing.setAttribute("viewBox", box.map((value) => value.toFixed(3)).join(" "));
+      drawing.setAttribute("width", String(Math.round(box[2] * this.#px_mm)));
+      drawing.setAttribute("height", String(Math.round(box[3] * this.#px_mm)));
+      drawing.setAttribute("font-size", String(11.5 * px));
+      drawing.setAttribute("stroke-width", String(px));
+    }
+    const x = (/** @type {number} */ column) => (column - (array.columns - 1) / 2) * pitch;
+    const y = (/** @type {number} */ row) => (row - (array.rows - 1) / 2) * row_mm;
+    const scales = () => {
+      const group = svg("g", { "aria-hidden": "true" });
+      group.append(ruler(-Math.floor(wide / 2), Math.floor(wide / 2), -high / 2 - 4 * px, false, this.#px_mm));
+      group.append(svg("text", { x: -wide / 2 - LEFT_PX * px, y: -high / 2 - 16 * px, class: "unit" }, "mm"));
+      for (let row = 0; row < array.rows; row++) {
+        const words = rowWords(state.rows_shown[row]) || `row ${row + 1}`;
+        group.append(svg("text", {
+          x: -wide / 2 - 10 * px, y: y(row) + 4 * px, "text-anchor": "end", class: "row",
+        }, words));
+      }
+      return group;
+    };
+    const clip = svg("clipPath", { id: "window" });
+    clip.append(svg("rect", { x: -wide / 2, y: -high / 2, width: wide, height: high }));
+    const window = svg("rect", { class: "window", x: -wide / 2, y: -high / 2, width: wide, height: high });
+    const grid = svg("g", { role: "grid", "aria-labelledby": "touch-heading", class: "actuators" });
+    this.#marks = [];
+    this.#cells = [];
+    this.#steps = [];
+    this.#dots = "";
+    this.#shown = new Int32Array(array.rows * array.columns).fill(-1);
+    this.#moved = new Int32Array(array.rows * array.columns).fill(1 << 30);
+    const slot = (array.swing_mm * this.#times) / 2;
+    const [w, h] = [0.36 * pitch, 0.62 * row_mm];
+    for (let row = 0; row < array.rows; row++) {
+      const line = svg("g", { role: "row" });
+      for (let column = 0; column < array.columns; column++) {
+        const rest = x(column) + (array.rest_right ? slot : -slot);
+        const mark = svg("rect", {
+          class: "contactor", x: x(column) - w / 2, y: y(row) - h / 2, width: w, height: h,
+        });
+        const cell = svg("g", {
+          role: "gridcell", class: "actuator", tabindex: -1, "data-row": row, "data-column": column,
+          "aria-label": `row ${row + 1}, column ${column + 1}`,
+        },
+        svg("rect", { class: "hit", x: x(column) - pitch / 2, y: y(row) - row_mm / 2, width: pitch, height: row_mm }),
+        svg("rect", {
+          class: "ring", x: x(column) - pitch / 2 + px, y: y(row) - row_mm / 2 + px, width: pitch - 2 * px,
+          height: row_mm - 2 * px, rx: 3 * px,
+        }),
+        svg("rect", {
+          class: "chosen", x: x(column) - pitch / 2 + 2 * px, y: y(row) - row_mm / 2 + 2 * px, width: pitch - 4 * px,
+          height: row_mm - 4 * px, rx: 2 * px, "stroke-width": 2 * px,
+        }),
+        svg("path", { class: "slot", d: `M${x(column) - slot} ${y(row)}h${2 * slot}M${rest} ${y(row) - h / 2}v${h}` }),
+        mark);
+        cell.addEventListener("click", () => this.choose(row, column, true));
+        this.#marks.push(mark);
+        this.#cells.push(cell);
+        line.append(cell);
+      }
+      grid.append(line);
+    }
+    const clipped = svg("g", { "clip-path": "url(#window)", "aria-hidden": "true" }, this.beneath);
+    this.left.replaceChildren(clip, window, clipped, scales(), grid);
+    this.#strain(array, x, y, row_mm, scales(), wide);
+    this.#words(array);
+    const { row, column } = this.#first ? { row: 0, column: array.columns >> 1 } : this.chosen;
+    this.#first = false;
+    this.choose(Math.min(row, array.rows - 1), Math.min(column, array.columns - 1), false);
+  }
+
+  /**
+   * @param {ArrayShown} array
+   * @param {(column: number) => number} x
+   * @param {(row: number) => number} y
+   * @param {number} row_mm
+   * @param {SVGGElement} scales
+   * @param {number} wide
+   */
+  #strain(array, x, y, row_mm, scales, wide) {
+    const most = array.swing_mm / array.column_pitch_mm || 1;
+    this.unit = (0.44 * row_mm) / most; // mm on the drawing for a strain of 1
+    const bars = svg("g", { class: "bars" });
+    this.#bars = [];
+    for (let row = 0; row < array.rows; row++) {
+      bars.append(svg("path", { class: "slot", d: `M${-wide / 2} ${y(row)}h${wide}` }));
+      for (let column = 0; column < array.columns; column++) {
+        const seat = x(column) - 0.05 * array.column_pitch_mm;
+        bars.append(svg("rect", { class: "seat", x: seat, y: y(row) - 1 / this.#px_mm, width: 0.1 * array.column_pitch_mm, height: 2 / this.#px_mm }));
+        if (column + 1 === array.columns) continue;
+        const path = svg("path", { class: "bar" });
+        this.#bars.push({ path, x: x(column) + 0.19 * array.column_pitch_mm, y: y(row), high: NaN, kind: "" });
+        bars.append(path);
+      }
+    }
+    this.right.replaceChildren(scales, bars);
+  }
+
+  /** @param {ArrayShown} array */
+  #words(array) {
+    const side = array.rest_right ? "right" : "left";
+    this.note.textContent =
+      `${array.name}: ${array.rows} × ${array.columns} actuators, ${short(array.column_pitch_mm)} mm apart` +
+      (array.rows > 1 ? ` and ${short(array.row_pitch_mm)} mm from row to row` : "");
+    const bar = svg("svg", { class: "ramp", viewBox: `0 0 ${STEPS + 1} 1`, preserveAspectRatio: "none", "aria-hidden": "true" });
+    steps().forEach((colour, n) => bar.append(svg("rect", { x: n, width: 1.02, height: 1, fill: colour })));
+    this.legend.replaceChildren(
+      html("span", { class: "keys" }, "rest 0", bar, "1 full swing"),
+      html("span", {}, `${short(array.swing_mm)} mm, drawn × ${this.#times} sideways; at rest they stand at the ${side}`),
+    );
+    const most = (100 * array.swing_mm) / array.column_pitch_mm;
+    const swatch = (/** @type {string} */ kind) => svg("svg", { class: "swatch", viewBox: "0 0 10 12", "aria-hidden": "true" },
+      svg("rect", { x: 1, y: 1, width: 8, height: 10, "stroke-width": 1.4, ...this.#look(kind === "stretch") }));
+    this.key.replaceChildren(
+      html("span", { class: "keys" }, swatch("stretch"), "up: stretched", swatch("press"), "down: pressed"),
+      html("span", {}, `strain of the skin between neighbours; the tallest bar there can be is ${fixed(most, 1)} %`),
+    );
+  }
+
+  /**
+   * What a bar looks like: stretched is filled, pressed is hollow.
+   * @param {boolean} stretched
+   */
+  #look(stretched) {
+    const { stretch, press } = colours();
+    return stretched ? { fill: stretch, stroke: "none" } : { fill: "none", stroke: press };
+  }
+
+  /**
+   * Draws the dots that pass beneath the array; only those near it, which are few.
+   * @param {State} state
+   * @param {Frame} frame
+   */
+  #near(state, frame) {
+    const d = distances(state);
+    const array = state.array;
+    if (!d || !array || !Number.isFinite(frame.x_mm)) return;
+    const reach = Math.hypot(array.columns * array.column_pitch_mm, array.rows * this.#rowOf(array)) / 2 + d.width;
+    const two = array.height_mm > 0;
+    const near = (/** @type {import("./messages.js").LineShown} */ line) =>
+      two ? Math.abs(line.top_mm + d.line / 2 - frame.y_mm) < reach + d.line : line.under;
+    const lines = state.lines.filter(near);
+    const first = (/** @type {number} */ start) => Math.floor((frame.x_mm - reach - start) / d.pitch);
+    const count = Math.ceil((2 * reach) / d.pitch) + 1;
+    const made = `${state.number} ${lines.map((line) => `${line.number}:${first(line.start_mm)}`).join()}`;
+    if (made === this.#dots) return;
+    this.#dots = made;
+    let raised = "";
+    let flat = "";
+    for (const line of lines) {
+      const from = Math.max(first(line.start_mm), 0);
+      line.cells.slice(from, from + count).forEach((mask, n) => {
+        DOTS.slice(0, mask > 0x3f ? 8 : 6).forEach(([column, row], dot) => {
+          const drawn = circle(dotX(d, line, from + n, column), dotY(d, line, row), d.width / 2);
+          if ((mask >> dot) & 1) raised += drawn;
+          else flat += drawn;
+        });
+      });
+    }
+    this.beneath.replaceChildren(svg("path", { class: "flat", d: flat }), svg("path", { class: "raised", d: raised }));
+  }
+
+  /**
+   * Shows a frame.
+   * @param {State} state
+   * @param {Frame} frame
+   */
+  move(state, frame) {
+    this.#frame = frame;
+    const array = state.array;
+    if (!array || frame.deflections.length !== this.#marks.length || state.blind) return;
+    const palette = steps();
+    const way = (array.rest_right ? -1 : 1) * array.swing_mm * this.#times;
+    const fine = 4 * this.#px_mm; // quarters of a pixel
+    for (let n = 0; n < this.#marks.length; n++) {
+      const deflection = frame.deflections[n];
+      const exact = Math.round(deflection * 10_000);
+      if (this.#shown[n] === exact) continue;
+      this.#shown[n] = exact;
+      this.#cells[n].setAttribute("data-deflection", deflection.toFixed(4));
+      const moved = Math.round((deflection - 0.5) * way * fine);
+      if (this.#moved[n] !== moved) {
+        this.#moved[n] = moved;
+        this.#marks[n].setAttribute("transform", `translate(${(moved / fine).toFixed(3)})`);
+      }
+      const step = stepOf(deflection);
+      if (this.#steps[n] !== step) this.#marks[n].setAttribute("fill", palette[(this.#steps[n] = step)]);
+    }
+    this.#stretch(array, frame);
+    this.#near(state, frame);
+    if (!Number.isFinite(frame.x_mm)) return;
+    const { x, y, theta } = placeOf(state, frame);
+    const turn = theta ? `rotate(${((theta * 180) / Math.PI).toFixed(2)}) ` : "";
+    put(this.beneath, "transform", `${turn}translate(${(-x).toFixed(2)} ${(-y).toFixed(2)})`);
+    put(this.beneath, "visibility", lineUnder(state, frame) || array.height_mm > 0 ? "visible" : "hidden");
+  }
+
+  /**
+   * @param {ArrayShown} array
+   * @param {Frame} frame
+   */
+  #stretch(array, frame) {
+    const unit = (this.unit ?? 1) * this.#px_mm * 2;
+    const wide = (0.62 * array.column_pitch_mm).toFixed(3);
+    const found = strains(array, frame.deflections);
+    for (let n = 0; n < found.length; n++) {
+      const bar = this.#bars[n];
+      const high = Math.round(found[n] * unit); // in halves of a pixel
+      if (bar.high === high) continue;
+      bar.high = high;
+      const tall = (-high / (2 * this.#px_mm)).toFixed(3);
+      bar.path.setAttribute("d", high ? `M${bar.x.toFixed(3)} ${bar.y.toFixed(3)}h${wide}v${tall}h-${wide}z` : "");
+      const kind = high > 0 ? "stretch" : "press";
+      if (bar.kind === kind) continue;
+      bar.kind = kind;
+      for (const [name, value] of Object.entries(this.#look(high > 0))) bar.path.setAttribute(name, String(value));
+    }
+  }
+
+  /**
+   * Chooses the actuator that is followed.
+   * @param {number} row
+   * @param {number} column
+   * @param {boolean} focus
+   */
+  choose(row, column, focus) {
+    const array = this.#state?.array;
+    if (!array) return;
+    this.chosen = { row, column };
+    this.#cells.forEach((cell, n) => {
+      const here = n === row * array.columns + column;
+      cell.setAttribute("tabindex", here ? "0" : "-1");
+      cell.setAttribute("aria-selected", String(here));
+      if (here) this.#name(cell, n);
+      if (here && focus) cell.focus();
+    });
+    this.onchoose();
+  }
+
+  /**
+   * Names an actuator with what it does now.
+   * @param {SVGGElement} cell
+   * @param {number} n
+   */
+  #name(cell, n) {
+    const { row, column } = cell.dataset;
+    const shown = rowWords(this.#state?.rows_shown[Number(row)]);
+    const deflection = this.#frame?.deflections[n];
+    cell.setAttribute("aria-label", `row ${Number(row) + 1}, column ${Number(column) + 1}` +
+      (shown ? `, ${shown}` : "") + (deflection === undefined ? "" : `: deflection ${fixed(deflection, 2)}`));
+  }
+
+  /** @param {FocusEvent} event */
+  #focused(event) {
+    const cell = event.target instanceof Element ? event.target.closest(".actuator") : null;
+    const n = this.#cells.indexOf(/** @type {SVGGElement} */ (cell));
+    if (n >= 0) this.#name(this.#cells[n], n);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    const array = this.#state?.array;
+    if (!array || event.altKey || event.ctrlKey || event.metaKey) return;
+    let { row, column } = this.chosen;
+    if (event.key === "ArrowRight") column += 1;
+    else if (event.key === "ArrowLeft") column -= 1;
+    else if (event.key === "ArrowDown") row += 1;
+    else if (event.key === "ArrowUp") row -= 1;
+    else if (event.key === "Home") column = 0;
+    else if (event.key === "End") column = array.columns - 1;
+    else return;
+    event.preventDefault();
+    row = Math.min(Math.max(row, 0), array.rows - 1);
+    column = Math.min(Math.max(column, 0), array.columns - 1);
+    this.choose(row, column, true);
+  }
+}

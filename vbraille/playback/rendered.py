@@ -1,0 +1,284 @@
+"""What `vbraille render` wrote, as a reel: `docs/recording.md` describes the file."""
+
+from __future__ import annotations
+
+import json
+from bisect import bisect_right
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import h5py
+import numpy as np
+
+from vbraille.braille.geometry import Geometry
+from vbraille.display import Display
+from vbraille.errors import InputError
+from vbraille.live.messages import Moment, State
+from vbraille.playback.changes import changes
+from vbraille.playback.reels import PLAYED, Piece
+from vbraille.playback.shown import array_shown, distances_shown, line_shown, rows_shown
+from vbraille.recording import anchor_mm
+from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from vbraille.live.messages import LineShown
+    from vbraille.render import BrailleStyle
+    from vbraille.render.program import Program
+
+_PIECE_FRAMES: Final = 1024
+# Lines above and below the one under the hand that are told to a page.
+_AROUND: Final = 3
+_MOST_MOMENTS: Final = 4000
+_MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
+_NUMBERS: Final = ("t_s", "x_mm", "line")
+_LATER: Final = ("y_mm", "theta_rad", "part")  # from format 2 on
+# What reading a file raises that is HDF5, but not as `vbraille render` writes it.
+_UNLIKE: Final = (
+    OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
+    RuntimeError, MemoryError,
+)  # fmt: skip
+
+
+class Rendered:
+    """Frames of a file that `vbraille render` wrote, of any format.
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        If it is no such file, has no frames, or is of a newer format.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.notes: list[str] = []
+        try:
+            self._file = h5py.File(path, "r")
+        except _UNLIKE as error:
+            raise InputError(_not_one(path, "it is damaged, or was not written whole")) from error
+        try:
+            self._open()
+        except InputError:
+            self._file.close()
+            raise
+        except _UNLIKE as error:
+            self._file.close()
+            raise InputError(_not_one(path, "it is HDF5 of something else")) from error
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def find(self, at_s: float) -> int:
+        """Number of the piece that has the frame of a time."""
+        return max(bisect_right(range(self._pieces), at_s, key=self._first_s) - 1, 0)
+
+    def piece(self, number: int) -> Piece:
+        """Read a piece; it is empty where the file is damaged."""
+        span = slice(number * _PIECE_FRAMES, (number + 1) * _PIECE_FRAMES)
+        try:
+            frames = self._numbers["frames"][span].astype(np.float32, copy=False)
+            ticks = np.zeros(frames.shape[0], PLAYED)
+            times_s = np.nan_to_num(self._numbers["t_s"][span], posinf=0.0)
+            x_mm = self._numbers["x_mm"][span].astype(np.float64) + self._right_mm
+            lines = self._numbers["line"][span].astype(np.int64)
+            for name in _LATER:
+                if name in self._numbers:
+                    ticks[name] = self._numbers[name][span]
+        except OSError:
+            return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
+        if "y_mm" not in self._numbers and self._style is not None:
+            ticks["y_mm"] = self._style.geometry.line_pitch_mm / 2
+        rows = np.where((lines >= 0) & (lines < self._lengths.size), lines, -1)
+        ticks["scene"] = rows + 1
+        ticks["line"] = np.where(rows >= 0, rows + self._first_line, 0)
+        ticks["tick"] = np.arange(span.start, span.start + frames.shape[0])
+        ticks["time_s"] = np.maximum.accumulate(times_s)
+        ticks["x_mm"] = x_mm
+        steps_s = np.diff(ticks["time_s"], prepend=ticks["time_s"][:1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ticks["vx_mm_s"] = np.diff(x_mm, prepend=x_mm[:1]) / steps_s
+        ticks["share"] = 1.0
+        return Piece(ticks, frames)
+
+    def state(self, scene: int) -> State:
+        """Make what a page shows of a line of the recording; scene 0 is no line."""
+        style = self._style
+        return State(
+            number=0,
+            title=self._title,
+            array=array_shown(self._display),
+            geometry={} if style is None else distances_shown(style.geometry),
+            rows_shown=[] if style is None else rows_shown(style, self._display),
+            lines=self._lines(scene - 1) if scene else [],
+            place=self._name(scene - 1) if scene else "",
+            mapping=f"mapping: {self._told('mapping', 'not known')}",
+            device="recording",
+            facts=self._facts,
+        )
+
+    def program(self, scene: int) -> tuple[Program, str] | None:
+        """Compile the line of a scene, or the page that it is on, and tell its title."""
+        if self._style is None or not scene:
+            return None
+        first, stop = self._page(scene - 1)
+        masks = [self._masks(row) for row in range(first, stop)]
+        if self._paged:
+            title = f"{self._title}, {self._name(first)} to {self._name(stop - 1)}"
+            return self._style.render_page(masks, self._display), title
+        return self._style.render(masks[0], self._display), f"{self._title}, {self._name(first)}"
+
+    def _open(self) -> None:
+        file = self._file
+        anchor_mm(file)  # refuses newer formats
+        needed = (*_NUMBERS, "frames", "page/cells", "page/length")
+        more = [name for name in _LATER if name in file]
+        self._numbers = found = {name: _dataset(file, name) for name in (*needed, *more)}
+        count, rows, columns = found["frames"].shape
+        if any(found[name].shape != (count,) for name in (*_NUMBERS, *more)):
+            raise ValueError
+        if not count:
+            raise InputError(f"{self._path} has no frame; there is nothing to play")
+        offsets_mm = [np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in ("column", "row")]
+        if [offsets.shape for offsets in offsets_mm] != [(columns,), (rows,)]:
+            raise ValueError
+        self._count, self._pieces = count, -(-count // _PIECE_FRAMES)
+        self._rate_hz = float(self._told("rate_hz", "nan"))
+        self._style, self._display = self._describe(*offsets_mm)
+        self._right_mm = 0.0 if "y_mm" in found else self._display.span_mm / 2
+        self._first_line = max(int(self._told("first_line", "1")), 0)
+        self._lengths = found["page/length"][:].astype(np.int64)
+        self._title = self._told("source", self._path.name)
+        self._facts = [
+            ("model", self._told("model", "not known")),
+            ("recorded by", f"vbraille {self._told('vbraille_version', 'not known')}"),
+            ("frames", f"{count}, {self._rate_hz:g} a second"),
+        ]
+        self._firsts_s: dict[int, float] = {}
+        self.length_s = float(self._time_s(count - 1))
+        starts, lines = changes(found["line"])
+        part_starts, parts = changes(found["part"]) if "part" in found else (starts[:1], [0])
+        self._paged = bool(np.any(parts))
+        self._pages = np.arange(self._lengths.size)
+        if self._paged:
+            self._pages = self._find_pages(starts, lines, part_starts, np.asarray(parts))
+        if self._paged and self._style is not None:
+            height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
+            self._display = replace(self._display, height_mm=height_mm)
+        self.moments = self._find_moments(starts, lines)
+
+    def _describe(
+        self, columns_mm: NDArray[np.float64], rows_mm: NDArray[np.float64]
+    ) -> tuple[BrailleStyle | None, Display]:
+        """How braille was shown, None if that cannot be told, and on what."""
+        file = self._file
+        model = MODELS.get(self._told("model", ""))
+        geometry = Geometry(**json.loads(self._told("geometry", "{}")))
+        display = Display(
+            self._told("model", "not known"),
+            rows_mm.size,
+            columns_mm.size,
+            float(columns_mm[1]) if columns_mm.size > 1 else 1.0,
+            float(rows_mm[1]) if rows_mm.size > 1 else 1.0,
+            rest_side="right" if model is None else model.display.rest_side,
+            travel_mm=geometry.travel_mm,
+            rate_hz=self._rate_hz,
+        )
+        if model is None or (mapping := _MAPPINGS.get(self._told("mapping", ""))) is None:
+            return None, display
+        tuning = Tuning(**json.loads(str(file.attrs["tuning"])))
+        style = replace(model.style, mapping=mapping, geometry=geometry, tuning=tuning)
+        style.rows_on(display)
+        return style, replace(display, name=model.title)
+
+    def _told(self, name: str, otherwise: str) -> str:
+        return str(self._file.attrs.get(name, otherwise))
+
+    def _time_s(self, frame: int) -> float:
+        """Time of a frame; about, where the file is damaged."""
+        try:
+            return float(np.nan_to_num(self._numbers["t_s"][frame], posinf=0.0))
+        except OSError:
+            return frame / self._rate_hz
+
+    def _first_s(self, number: int) -> float:
+        """Time of the first frame of a piece."""
+        if number not in self._firsts_s:
+            self._firsts_s[number] = self._time_s(number * _PIECE_FRAMES)
+        return self._firsts_s[number]
+
+    def _find_pages(
+        self,
+        starts: NDArray[np.int64],
+        lines: NDArray[np.int64],
+        part_starts: NDArray[np.int64],
+        parts: NDArray[np.int64],
+    ) -> NDArray[np.int64]:
+        """Rows at which pages of lines begin."""
+        at = np.union1d(starts, part_starts)
+        row = lines[np.searchsorted(starts, at, "right") - 1]
+        part = parts[np.searchsorted(part_starts, at, "right") - 1]
+        # Above a page the row is that of its first line, below it that of its last one. Pages
+        # follow each other, so that one which would begin before the page so far is below it.
+        first = np.maximum.accumulate(np.where(part < 0, row, row - part))
+        return np.unique(np.concatenate([[0], first.clip(0, max(self._lengths.size - 1, 0))]))
+
+    def _page(self, row: int) -> tuple[int, int]:
+        """Rows of the lines that were shown together with a line: the first, and after the last."""
+        page = int(np.searchsorted(self._pages, row, "right")) - 1
+        stop = self._pages[page + 1] if page + 1 < len(self._pages) else self._lengths.size
+        return int(self._pages[page]), int(stop)
+
+    def _masks(self, row: int) -> NDArray[np.uint8]:
+        cells = self._numbers["page/cells"][row].astype(np.uint8)
+        return cells[: max(int(self._lengths[row]), 0)]
+
+    def _lines(self, row: int) -> list[LineShown]:
+        """Lines around one; of those that were shown by themselves, the others are beside it."""
+        first, stop = self._page(row) if self._paged else (0, self._lengths.size)
+        top = first if self._paged else row
+        geometry = STRESS2.style.geometry if self._style is None else self._style.geometry
+        return [
+            line_shown(
+                at + self._first_line,
+                self._masks(at),
+                (at - top) * geometry.line_pitch_mm,
+                under=at == row,
+            )
+            for at in range(max(first, row - _AROUND), min(stop, row + _AROUND + 1))
+        ]
+
+    def _name(self, row: int) -> str:
+        return f"line {row + self._first_line}"
+
+    def _find_moments(self, starts: NDArray[np.int64], lines: NDArray[np.int64]) -> list[Moment]:
+        """When the hand came to each line."""
+        every = -(-starts.size // _MOST_MOMENTS)
+        # Reading a time takes long; as a rule frames are evenly spaced.
+        even = abs(self.length_s * self._rate_hz - (self._count - 1)) < 1e-3
+        return [
+            Moment(start / self._rate_hz if even else self._time_s(start), "line", self._name(row))
+            for start, row in zip(starts[::every].tolist(), lines[::every].tolist(), strict=True)
+        ]
+
+
+def _dataset(file: h5py.File, name: str) -> h5py.Dataset:
+    found = file[name]
+    if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "iuf":
+        raise TypeError
+    return found
+
+
+def _not_one(path: Path, why: str) -> str:
+    return (
+        f"{path} cannot be played: {why}; give what vbraille render wrote, or the directory of a "
+        f"session"
+    )

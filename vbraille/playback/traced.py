@@ -1,0 +1,326 @@
+"""A session as a reel: its frames made again from the traces, and its journal beside them."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from bisect import bisect_right
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from msgspec import structs
+
+from vbraille.braille.spelling import to_braille
+from vbraille.errors import InputError, VbrailleError
+from vbraille.live.messages import Moment, State
+from vbraille.playback.happened import moments_of
+from vbraille.playback.reels import PLAYED, Piece
+from vbraille.playback.shown import array_shown, distances_shown, line_shown, rows_shown
+from vbraille.render import work
+from vbraille.render.program import Program, nothing
+from vbraille.sessions.record import journal
+from vbraille.sessions.record.bidsevents import runs_of
+from vbraille.sessions.record.chunks import ChunkedTrace
+from vbraille.sessions.record.folder import load
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.record.replay import Pictures, Replay
+from vbraille.sessions.record.traces import posed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from vbraille.sessions.planning.stimuli import Trial
+    from vbraille.sessions.record.bidsevents import BidsRun
+    from vbraille.sessions.record.folder import Record
+
+# A fade is over long before so many chunks; a trace that says otherwise is not believed.
+_MOST_BEFORE: Final = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _PlayedRun:
+    """A trace, and where it stands in the recording.
+
+    Parameters
+    ----------
+    trace
+        The trace.
+    first
+        Number of its first chunk in the recording.
+    first_ns
+        Time of its first tick, by the host's clock.
+    begun_s
+        Time of its first tick, in seconds from the start of the recording.
+    """
+
+    trace: ChunkedTrace
+    first: int
+    first_ns: int
+    begun_s: float
+
+    @property
+    def stop(self) -> int:
+        """Number of the chunk after its last one."""
+        return self.first + len(self.trace)
+
+    def seconds(self, time_ns: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Times of ticks in seconds from the start of the recording."""
+        return self.begun_s + (time_ns - self.first_ns) / 1e9
+
+
+class Traced:
+    """Frames of a session, or of one of its traces.
+
+    Parameters
+    ----------
+    folder
+        The session's directory.
+    trace
+        Name of the trace that is played alone; all of them if it is empty.
+
+    Raises
+    ------
+    InputError
+        If it is no session, it runs, it is of a newer format, or has no frame.
+    VbrailleError
+        If it cannot be read, or is damaged beyond use.
+    """
+
+    def __init__(self, folder: Path, trace: str = "") -> None:
+        record = load(folder, salvaged=True)
+        _refuse_running(folder)
+        self._record = record
+        self._progress = Progress(record.plan, record.told.events, record.procedure)
+        self._display = record.protocol.model.display
+        self._left_mm = self._display.span_mm / 2
+        self._pictures = Pictures(record, self._progress)
+        self._firsts_ns: dict[int, int | None] = {}
+        self._picture = lru_cache(64)(self._make_picture)
+        self.notes: list[str] = []
+        self.moments: list[Moment] = []
+        if record.told.damage is not None:
+            self.notes.append(
+                f"{journal.NAME} is damaged: {record.told.damage}; the rest is played"
+            )
+        if not self._progress.ended:
+            self.notes.append(
+                "the session is not ended; whoever goes on with it should not see this"
+            )
+        self._runs: list[_PlayedRun] = []
+        runs = [run for run in runs_of(record) if not trace or run.event.trace == trace]
+        if trace and not runs:
+            raise InputError(
+                f"{folder / trace} is no trace that the session's journal names; give {folder}"
+            )
+        self._end_s = 0.0  # of the run before
+        for run in runs:
+            self._add(run, alone=bool(trace))
+        if not self._runs:
+            raise InputError(_no_frames(folder, record))
+        self.moments.sort(key=lambda moment: moment.at_s)
+        self.length_s = max([self._end_s, *(moment.at_s for moment in self.moments)])
+
+    def close(self) -> None:
+        """Close the traces."""
+        for run in self._runs:
+            run.trace.close()
+
+    def find(self, at_s: float) -> int:
+        """Number of the piece that has the frame of a time."""
+        return max(bisect_right(range(self._runs[-1].stop), at_s, key=self._first_s) - 1, 0)
+
+    def piece(self, number: int) -> Piece:
+        """Make the frames of a chunk again; it is empty where the trace is damaged."""
+        run = self._run(number)
+        chunk = number - run.first
+        ticks = run.trace.ticks(chunk)
+        if not ticks.size:
+            return Piece(np.zeros(0, PLAYED), np.zeros((0, *self._display.shape), np.float32))
+        before = self._before(run.trace, chunk, ticks)
+        replay = Replay(self._picture, self._display)
+        if before.size:
+            replay.frames(before)
+        frames = replay.frames(ticks).astype(np.float32)
+        return Piece(self._played(run, ticks), frames)
+
+    def state(self, scene: int) -> State:
+        """Make what a page shows of a showing of a stimulus; scene 0 is none."""
+        protocol, head = self._record.protocol, self._record.head
+        participant = str(head.get("participant", ""))
+        plain = State(
+            number=0,
+            title=f"{participant}: {protocol.name}" if participant else protocol.name,
+            array=array_shown(self._display),
+            geometry=distances_shown(protocol.model.style.geometry),
+            mapping=f"mapping: {protocol.mapping.name}",
+            device="recording",
+            facts=[("session", self._record.folder.resolve().name)],
+        )
+        if scene not in self._pictures.shown:
+            return plain
+        trial, showing = self._pictures.shown[scene]
+        told = self._progress.told(trial)
+        stimulus = showing.stimulus_of(trial)
+        style = replace(protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry)
+        facts = [
+            *plain.facts,
+            ("trial", _name(trial)),
+            ("condition", trial.condition),
+            ("shown", to_braille(stimulus.masks[slice(*trial.asked)])),
+            ("answer", "none" if told.answer is None else told.answer),
+        ]
+        if len(trial.stimuli) > 1:
+            facts.insert(3, ("stimulus", f"{showing.stimulus + 1} of {len(trial.stimuli)}"))
+        if showing.attempt > 1:
+            facts.insert(2, ("attempt", str(showing.attempt)))
+        return structs.replace(
+            plain,
+            geometry=distances_shown(stimulus.geometry),
+            rows_shown=rows_shown(style, self._display),
+            lines=[line_shown(scene, protocol.line(stimulus.masks), under=True)],
+            place=_name(trial),
+            facts=facts,
+        )
+
+    def program(self, scene: int) -> tuple[Program, str] | None:
+        """Compile the stimulus of a showing, and tell its title."""
+        if scene not in self._pictures.shown:
+            return None
+        trial, _ = self._pictures.shown[scene]
+        return self._picture(scene), f"{self._record.protocol.name}, {_name(trial)}"
+
+    def _add(self, run: BidsRun, *, alone: bool) -> None:
+        """Take in a run: its trace, if it has one, and what happened in it."""
+        name, trace = run.event.trace, None
+        if name:
+            try:
+                trace = ChunkedTrace(self._record.folder / name)
+            except VbrailleError as error:
+                self.notes.append(str(error))
+        first_ns = None if trace is None else _first_ns(trace)
+        begun_s = _begun_s(run, first_ns)
+        # The trace of the run before may go on after its last event, when the machine failed.
+        shift_s = -begun_s if alone else max(self._end_s - begun_s, 0.0)
+        told = [run.event, *run.events]
+        self.moments += moments_of(told, self._progress, -shift_s)
+        if trace is None or first_ns is None:
+            return
+        first = self._runs[-1].stop if self._runs else 0
+        played = _PlayedRun(trace, first, first_ns, begun_s + shift_s)
+        self._runs.append(played)
+        for chunk in trace.damage:
+            text = f"{name} is damaged here: a part of it is missing"
+            self.moments.append(Moment(self._first_s(first + chunk), "fault", text))
+        if trace.damage:
+            self.notes.append(f"{name} is damaged; what is whole is played")
+        last = next(ticks for n in range(len(trace), 0, -1) if (ticks := trace.ticks(n - 1)).size)
+        self._end_s = max(self._end_s, float(played.seconds(last["time_ns"][-1:])[0]))
+        if trace.torn_bytes:
+            self.notes.append(f"{name} was cut short; it is played up to its last whole chunk")
+            self.moments.append(Moment(self._end_s, "fault", f"{name} was cut short here"))
+
+    def _run(self, number: int) -> _PlayedRun:
+        """Run that a piece belongs to."""
+        return self._runs[bisect_right(self._runs, number, key=lambda run: run.first) - 1]
+
+    def _first_s(self, number: int) -> float:
+        """Time of the first tick of a piece, or of the last one before a damaged one."""
+        run = self._run(number)
+        for chunk in range(number - run.first, -1, -1):
+            ns = self._first_ticks_ns(run, chunk)
+            if ns is not None:
+                return float(run.seconds(np.array([ns]))[0])
+        return run.begun_s
+
+    def _first_ticks_ns(self, run: _PlayedRun, chunk: int) -> int | None:
+        key = run.first + chunk
+        if key not in self._firsts_ns:
+            ticks = run.trace.ticks(chunk)
+            self._firsts_ns[key] = int(ticks["time_ns"][0]) if ticks.size else None
+        return self._firsts_ns[key]
+
+    def _before(self, trace: ChunkedTrace, chunk: int, ticks: NDArray[np.void]) -> NDArray[np.void]:
+        """Ticks before a chunk that its first frames are made from: those of an unended fade."""
+        parts: list[NDArray[np.void]] = []
+        earliest = ticks
+        while earliest["share"][0] < 1 and chunk > 0 and len(parts) < _MOST_BEFORE:
+            chunk -= 1
+            earliest = trace.ticks(chunk)
+            if not earliest.size:
+                break
+            # A frame that is shown in full needs none before it.
+            full = np.flatnonzero(earliest["share"] >= 1)
+            if full.size:
+                earliest = earliest[full[-1] :]
+            parts.insert(0, earliest)
+        return np.concatenate(parts) if parts else ticks[:0]
+
+    def _played(self, run: _PlayedRun, ticks: NDArray[np.void]) -> NDArray[np.void]:
+        """What is known of ticks beside their deflections."""
+        centred = posed(ticks, self._left_mm)
+        made = np.zeros(ticks.size, PLAYED)
+        for name in ("flags", "line", "part", "late", "tick", "x_mm", "y_mm", "theta_rad",
+                     "vx_mm_s", "share"):  # fmt: skip
+            made[name] = centred[name]
+        if not self._record.centred:  # then y was not kept
+            known = ~np.isnan(made["x_mm"])
+            made["y_mm"][known] = self._record.protocol.geometry.line_pitch_mm / 2
+        made["time_s"] = np.maximum.accumulate(run.seconds(ticks["time_ns"]))
+        made["scene"] = centred["line"]
+        return made
+
+    def _make_picture(self, line: int) -> Program:
+        """Picture of a line number; what is not known is NaN in all that it has a share in."""
+        if line in self._pictures.shown:
+            return self._pictures.of(line)
+        program = nothing(self._display)
+        program.numbers[work.IDLE : work.IDLE + self._display.rows] = np.nan
+        return program
+
+
+def _refuse_running(folder: Path) -> None:
+    """Refuse a session that a console has open: its stimuli are still to be answered."""
+    try:
+        journal_file = os.open(folder / journal.NAME, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError as error:
+        raise VbrailleError(f"{folder / journal.NAME} cannot be read: {error.strerror}") from None
+    try:
+        fcntl.flock(journal_file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise InputError(f"{folder} runs in a console; play it when that has ended") from None
+    except OSError:
+        pass  # a file system without locks
+    finally:
+        os.close(journal_file)
+
+
+def _begun_s(run: BidsRun, first_ns: int | None) -> float:
+    """Time of the first tick of a run, in seconds that the session had run for."""
+    for event in run.events:
+        time_ns = getattr(event, "time_ns", None)
+        if first_ns is not None and time_ns is not None:
+            return event.t_s - (time_ns - first_ns) / 1e9
+    return run.event.t_s
+
+
+def _first_ns(trace: ChunkedTrace) -> int | None:
+    """Time of the first tick of a trace; None if it has none."""
+    for chunk in range(len(trace)):
+        ticks = trace.ticks(chunk)
+        if ticks.size:
+            return int(ticks["time_ns"][0])
+    return None
+
+
+def _no_frames(folder: Path, record: Record) -> str:
+    if record.protocol.medium == "paper":
+        return f"{folder} is a session that was read on paper; it has no frames to play"
+    return f"{folder} has no trace with a frame in it; there is nothing to play"
+
+
+def _name(trial: Trial) -> str:
+    return f"{'practice trial' if trial.practice else 'trial'} {trial.number}"

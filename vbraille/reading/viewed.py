@@ -1,0 +1,192 @@
+"""A reading as pages of the live view are told of it, whenever something has changed."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Final
+
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Back, Changed, Silent, Stranger, Unplugged
+from vbraille.devices.saying import say
+from vbraille.live.messages import LineShown, State
+from vbraille.live.states import (
+    array_shown,
+    geometry_shown,
+    knobs_shown,
+    line_shown,
+    rows_shown,
+)
+from vbraille.reading.whereabouts import is_counted, line_name, percent
+from vbraille.render.braille.knobs import say_mapping
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vbraille.devices.events import Event
+    from vbraille.layout.pages import Line
+    from vbraille.reading.opened import OpenDevice
+
+MOST_SAID: Final = 20
+BEFORE, AFTER = 2, 3  # lines around the one under the hand
+_NUMBER: Final = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
+_PLACES: Final = {
+    Placing.DONE: "reading",
+    Placing.MARK: "place: the carriage has to pass its mark",
+    Placing.STOP: "place: the carriage has to be shown its left stop",
+}
+_GONE: Final = (Unplugged, Silent, Stranger)
+_BACK: Final = (Back, Changed)
+
+
+class Said:
+    """The last sentences that a reader was told.
+
+    Attributes
+    ----------
+    count : int
+        Number of all sentences so far.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._last: deque[str] = deque(maxlen=MOST_SAID)
+
+    def add(self, sentence: str) -> None:
+        """Keep a sentence."""
+        self.count += 1
+        self._last.append(sentence)
+
+    @property
+    def last(self) -> list[str]:
+        """The last sentences, oldest first, `MOST_SAID` at most."""
+        return list(self._last)
+
+
+class Viewed:
+    """What is read on a device, as the state of the live view.
+
+    Nothing is translated or laid out for it: of the lines around the one under the hand it shows
+    those that are there already.
+
+    Parameters
+    ----------
+    device
+        Device that a text is shown on.
+    title
+        Title of what is read.
+    said
+        What the reader was told.
+    facts
+        Name and value of whatever else is to be shown.
+
+    Attributes
+    ----------
+    standing : str
+        Sentence on why nothing is read, such as that the program is stopped; empty if it is.
+    """
+
+    def __init__(
+        self, device: OpenDevice, title: str, said: Said, facts: Iterable[tuple[str, str]] = ()
+    ) -> None:
+        self.standing = ""
+        self._device = device
+        self._title = title
+        self._said = said
+        self._facts = list(facts)
+        self._gone = ""  # sentence on where the device is
+        self._number = 0
+        self._told: tuple[object, ...] = ()
+
+    def see(self, events: Iterable[Event]) -> None:
+        """Take note of events of the device."""
+        for event in events:
+            if isinstance(event, _GONE):
+                self._gone = say(event)
+            elif isinstance(event, _BACK):
+                self._gone = ""
+
+    def changed(self) -> State | None:
+        """State of the reading; None if it is what it was at the last call."""
+        device, reader = self._device, self._device.reader
+        under = reader.under
+        # What is compared is small, for this is asked fifty times a second. What cannot change is
+        # compared as an object, and kept here, so that no other can take its place in memory.
+        now = (
+            *(reader.window, under.style, reader.layout, under.shown, under.reached),
+            *(reader.layout.counted, reader.done, device.paused, device.placing, device.held),
+            *(self._said.count, self._gone, self.standing),
+        )
+        if len(now) == len(self._told) and all(
+            a is b or (isinstance(a, bool | int | str) and a == b)
+            for a, b in zip(now, self._told, strict=True)
+        ):
+            return None
+        self._told = now
+        return self._state()
+
+    def _state(self) -> State:
+        device, reader = self._device, self._device.reader
+        style, display, layout, line = reader.style, device.display, reader.layout, reader.line
+        self._number += 1
+        said = self._said.last
+        where = ""
+        if line is not None:
+            counted = f"{line_name(layout, line)}, " if is_counted(layout) else ""
+            where = f"{counted}{percent(layout, line)} %"
+        return State(
+            number=self._number,
+            title=self._title,
+            array=array_shown(display),
+            geometry=geometry_shown(style.geometry),
+            rows_shown=rows_shown(style, display),
+            lines=[] if line is None else list(self._lines(line)),
+            place=where,
+            knobs=knobs_shown(style),
+            mapping=say_mapping(style.mapping),
+            paused=device.paused,
+            simulated=device.pointer is not None,
+            held=device.held,
+            device=self._standing(),
+            said=said,
+            said_before=self._said.count - len(said),
+            facts=self._facts,
+            done=reader.done,
+        )
+
+    def _standing(self) -> str:
+        """Sentence on the state of the device."""
+        if self.standing:
+            return self.standing
+        if self._device.reader.done:
+            return "reading is over"
+        if self._gone:
+            return self._gone
+        if self._device.paused and self._device.placing is Placing.DONE:
+            return "paused"
+        return _PLACES[self._device.placing]
+
+    def _lines(self, line: Line) -> Iterable[LineShown]:
+        """Lines to be drawn, from top to bottom."""
+        reader = self._device.reader
+        window, layout = reader.window, reader.layout
+        assert window is not None, "a line is under the hand"
+        pitch_mm = reader.style.geometry.line_pitch_mm
+        for step in range(-BEFORE, AFTER + 1):
+            if step == 0:
+                yield line_shown(
+                    line,
+                    first=window.offset,
+                    count=len(window),
+                    start_mm=window.start_mm,
+                    number=line.number & _NUMBER,
+                    under=True,
+                )
+                continue
+            other = layout.laid_near(line, step)
+            if other is not None:
+                yield line_shown(
+                    other,
+                    count=min(len(other), window.width),
+                    top_mm=step * pitch_mm,
+                    number=other.number & _NUMBER,
+                )

@@ -1,0 +1,250 @@
+"""What a page of the live view is told of a session, which may have to be blind.
+
+A blind state is made of nothing from which a stimulus or an answer could be read: neither cells
+nor condition nor distances of a stimulus, no answers, no sentence that may hold one of these, and
+not the participant, whose number chooses the order of the conditions. `docs/session-format.md`
+has the list.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from msgspec import structs
+
+from vbraille.braille.spelling import say_cells, to_braille
+from vbraille.devices.base import Placing
+from vbraille.engine.engine import placing_of
+from vbraille.engine.record import Flag
+from vbraille.live.messages import LineShown, State
+from vbraille.live.states import array_shown, geometry_shown, rows_shown
+from vbraille.render.braille.knobs import say_mapping
+from vbraille.sessions.running.phases import Phase
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Stimulus, Trial
+    from vbraille.sessions.running.course import Course
+
+# Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
+_SAFE: Final = frozenset(
+    {
+        "begin",
+        "break",
+        "cue",
+        "device",
+        "end",
+        "fault",
+        "go",
+        "hand",
+        "last",
+        "pause",
+        "place",
+        "read",
+        "ready",
+        "refused",
+        "repeat",
+        "resume",
+        "stopped",
+        "timing",
+        "undo",
+        "warning",
+    }
+)
+# The live view's address holds its token, and the others tell who takes part, or the seed.
+_NEVER: Final = frozenset({"live view", "record", "seed", "session"})
+_MOST_SAID: Final = 20
+_SECONDS_PER_MINUTE: Final = 60
+_PLACES: Final = {
+    Placing.MARK: "place: the carriage has to pass its mark",
+    Placing.STOP: "place: the left stop has to be shown",
+}
+
+
+@dataclass(slots=True)
+class Heard:
+    """The sentences for the experimenter that a page may be told.
+
+    Parameters
+    ----------
+    blind
+        Whether only sentences of kinds that hold no stimulus and no answer are kept.
+    last
+        The last of those sentences, oldest first.
+    before
+        Number of such sentences before these.
+    """
+
+    blind: bool
+    last: list[str] = field(default_factory=list)
+    before: int = 0
+
+    def hear(self, sentence: str) -> None:
+        """Keep a sentence if a page may be told it."""
+        kind = sentence.partition(":")[0]
+        if kind in _NEVER or (self.blind and kind not in _SAFE):
+            return
+        self.last.append(sentence)
+        if len(self.last) > _MOST_SAID:
+            self.last.pop(0)
+            self.before += 1
+
+
+def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
+    """Make the state of a session that its pages show.
+
+    Parameters
+    ----------
+    course
+        Course of the session, which has a display.
+    heard
+        Sentences that pages may be told, and whether the session is blind.
+    simulated
+        Whether a page may be the hand.
+
+    Returns
+    -------
+    State
+        State without a number, which whoever sends it gives.
+    """
+    assert course.display is not None, "paper cannot be watched"
+    engine, protocol = course.display.engine, course.protocol
+    state = State(
+        number=0,
+        title=protocol.title,
+        array=array_shown(engine.display),
+        geometry=geometry_shown(protocol.geometry),
+        rows_shown=rows_shown(protocol.style, engine.display),
+        place=_place(course),
+        mapping=say_mapping(protocol.mapping),
+        paused=course.paused,
+        simulated=simulated,
+        held=course.progress.pointed,
+        device=_device(course.display.newest),
+        said=list(heard.last),
+        said_before=heard.before,
+        facts=_facts(course),
+        blind=heard.blind,
+        done=course.phase is Phase.OVER,
+    )
+    return state if heard.blind else _unhidden(state, course)
+
+
+def _unhidden(state: State, course: Course) -> State:
+    """State with all that a blind one keeps back."""
+    facts, trial = [*state.facts], course.trial
+    answered = course.progress.last_answered
+    if answered is not None and (answer := course.progress.told(answered).answer) is not None:
+        facts.append(("last answer", _answer(course.protocol, answered, answer)))
+    if trial is None:
+        return structs.replace(state, facts=facts)
+    facts.append(("condition", trial.condition))
+    if course.phase is not Phase.OPEN:
+        return structs.replace(state, facts=facts)
+    stimulus = trial.stimuli[course.stimulus]
+    tuning = asdict(stimulus.tuning) | course.progress.tuning
+    facts += [
+        ("contrast", f"{tuning['contrast']:g}"),
+        ("texture", f"{tuning['texture']:g}"),
+        ("asked for", _asked(course.protocol, trial, stimulus)),
+    ]
+    geometry = geometry_shown(stimulus.geometry)
+    return structs.replace(state, facts=facts, geometry=geometry, lines=[_line(course, stimulus)])
+
+
+def _line(course: Course, stimulus: Stimulus) -> LineShown:
+    """Line on which a stimulus is shown."""
+    assert course.display is not None
+    cells = list(course.protocol.line(stimulus.masks))
+    return LineShown(
+        number=course.display.line,
+        text="",
+        start_mm=0.0,
+        top_mm=0.0,
+        cells=cells,
+        sources=[(0, 0)] * len(cells),
+        under=True,
+    )
+
+
+def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
+    """Words for what the participant is to say about a stimulus."""
+    if stimulus.value is not None:
+        return f"{stimulus.value:g} mm"
+    return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
+
+
+def _answer(protocol: Protocol, trial: Trial, answer: str) -> str:
+    """Words for an answer, and whether it is right."""
+    if len(trial.stimuli) == 2:
+        values = [stimulus.value for stimulus in trial.stimuli]
+        return f"{values[int(answer) - 1]:g} mm of {values[0]:g} mm and {values[1]:g} mm"
+    said, shown = (say_cells(cells, protocol.keys) for cells in (answer, trial.presented))
+    return f"{said}, right" if answer == trial.presented else f"{said}, wrong: it was {shown}"
+
+
+def _facts(course: Course) -> list[tuple[str, str]]:
+    """How far the session has come; nothing here depends on stimuli or answers."""
+    protocol, progress, trial = course.protocol, course.progress, course.trial
+    facts: list[tuple[str, str]] = []
+    if trial is not None:
+        practice, number = trial.practice, trial.number
+        told = f"{number} of {len(course.plan.practice)}" if practice else progress.of_all(number)
+        facts.append(("practice" if practice else "trial", told))
+        blocks = max((one.block for one in course.plan.trials), default=0)
+        if not practice and blocks > 1:
+            facts.append(("block", f"{trial.block} of {blocks}"))
+        if len(trial.stimuli) == 2 and course.phase is Phase.OPEN:
+            facts.append(("stimulus", "second of 2" if course.stimulus else "first of 2"))
+        if (attempt := progress.told(trial).attempts) > 1:
+            facts.append(("attempt", f"{attempt}"))
+    facts.append(("answered", progress.of_all(progress.done)))
+    if protocol.session.break_every is not None:
+        facts.append(("since the last break", f"{progress.done - progress.broken} trials"))
+    facts.append(("time", _time(course.book.elapsed_s)))
+    if protocol.session.limit_s is not None:
+        facts.append(("limit", _time(protocol.session.limit_s)))
+    return facts
+
+
+def _time(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), _SECONDS_PER_MINUTE)
+    return f"{minutes} min {rest:02} s"
+
+
+def _place(course: Course) -> str:
+    """Sentence that says what the session waits for."""
+    if course.phase is Phase.OVER:
+        return "the session is over"
+    correcting = course.progress.correcting
+    if correcting is not None:
+        return f"{course.name(correcting)}: its answer was taken back, and is typed anew"
+    if course.phase is Phase.LAST:
+        return "all trials are done; Enter at the console ends the session"
+    if course.phase is Phase.BREAK:
+        return "a break; Enter at the console ends it"
+    assert course.trial is not None
+    name = course.name(course.trial)
+    if course.paused:
+        return f"{name}: a pause; Enter at the console ends it"
+    if course.phase is Phase.READY:
+        return f"{name}: waits until the array is at the left stop"
+    if course.read:
+        return f"{name}: was read; waits for the answer"
+    return f"{name}: is read"
+
+
+def _device(newest: np.void | None) -> str:
+    """Sentence on the state of the device, by the newest tick."""
+    if newest is None:
+        return "device: starts"
+    flags = int(newest["flags"])
+    if flags & int(Flag.SILENT):
+        return "device: silent"
+    placing = placing_of(newest)
+    if placing is not Placing.DONE:
+        return _PLACES[placing]
+    return "device: at rest by itself" if flags & int(Flag.HELD) else "device: in use"
