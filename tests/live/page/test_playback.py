@@ -48,7 +48,7 @@ def test_the_frame_of_each_time_is_shown(opens):
     slider.press("Home")
     shows(0.0)
 
-    page.locator("#speed").select_option("10")
+    page.locator("#speed").select_option("2")
     press("Play")
     until(page, "vbraille.last.time_s > 0.2")
     press("Pause")
