@@ -1,9 +1,9 @@
 """What the page of the live view and its server say to each other.
 
 The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
-on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has changed
-since this page was told it, and then with one frame: a `FRAME` header, the deflections, and the
-ticks since the frame before. `docs/live-view.md` has both as tables.
+on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has
+changed since this page was told it, and then with one frame: a `FRAME` header, the deflections,
+and the ticks since the frame before. `docs/live-view.md` has both as tables.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a page shows of braille that was recorded: the array, the cells and the distances."""
+"""What a page shows of a line of braille that was recorded."""
 
 from __future__ import annotations
 
