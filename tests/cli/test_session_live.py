@@ -19,14 +19,14 @@ from tests.sessions.sittings import MINI, of
 from tests.tiers import heavy
 from vbraille.live.messages import (
     FRAME,
-    Hello,
     LetGo,
     Next,
+    PageHello,
+    PagePress,
     Point,
-    Press,
     Refused,
-    State,
     Turn,
+    ViewState,
     Welcome,
 )
 from vbraille.sessions.record.check import check
@@ -52,7 +52,7 @@ class Page:
         self.socket = socket
         self.state = None
         self.states = []
-        self.ask(Hello(token=token))
+        self.ask(PageHello(token=token))
         self.welcome = msgspec.json.decode(self.socket.recv(program.PATIENCE_S), type=Welcome)
 
     def ask(self, request):
@@ -62,7 +62,7 @@ class Page:
         """The next frame: its header, and its deflections; states that come before are kept."""
         self.ask(Next())
         while isinstance(told := self.socket.recv(program.PATIENCE_S), str):
-            self.state = msgspec.json.decode(told, type=State)
+            self.state = msgspec.json.decode(told, type=ViewState)
             self.states.append(self.state)
         header = np.frombuffer(told, FRAME, 1)[0]
         shape = int(header["rows"]), int(header["columns"])
@@ -198,7 +198,7 @@ def test_nothing_is_turned_or_pressed_at_the_page(tmp_path):
     with sat(tmp_path) as sitting, opened(address_of(sitting)) as page:
         page.until("trial 1 of 4")
         assert page.welcome.steers
-        for request in (Turn("contrast", 0.5), Press("pause")):
+        for request in (Turn("contrast", 0.5), PagePress("pause")):
             page.ask(request)
         while not any("refused: in a session" in one for one in page.state.said):
             page.next()

@@ -24,9 +24,9 @@ from vbraille.live.messages import (
     KnobShown,
     LineShown,
     Map,
-    Moment,
     Next,
-    State,
+    PlayedEvent,
+    ViewState,
 )
 from vbraille.live.server import LiveServer
 
@@ -68,17 +68,17 @@ KNOBS = [
     KnobShown("texture", "texture", "", 0.1, 0.05, 0.0, 1.0, fixed="the protocol says so"),
 ]
 MOMENTS = [
-    Moment(0.5, "line", "line 1"),
-    Moment(1.0, "trial", "trial 1"),
-    Moment(2.0, "cue", "cue: line end"),
-    Moment(2.5, "answer", "answer: e"),
-    Moment(3.0, "fault", "fault: the device was silent for 0.2 s"),
+    PlayedEvent(0.5, "line", "line 1"),
+    PlayedEvent(1.0, "trial", "trial 1"),
+    PlayedEvent(2.0, "cue", "cue: line end"),
+    PlayedEvent(2.5, "answer", "answer: e"),
+    PlayedEvent(3.0, "fault", "fault: the device was silent for 0.2 s"),
 ]
 
 
-def canned_state(number: int = 1, **changes) -> State:
+def canned_state(number: int = 1, **changes) -> ViewState:
     """A state as a reader has it."""
-    state = State(
+    state = ViewState(
         number,
         title="a canned text",
         array=ARRAY,
@@ -153,7 +153,7 @@ class CannedSource:
         Whether there is no new frame for the time being.
     """
 
-    def __init__(self, *, playback: bool = False, state: State | None = None) -> None:
+    def __init__(self, *, playback: bool = False, state: ViewState | None = None) -> None:
         self.playback = playback
         self.length_s = LENGTH_S if playback else 0.0
         self.moments = MOMENTS if playback else []
@@ -161,7 +161,7 @@ class CannedSource:
         self.silent = False
         self.show(state or canned_state())
 
-    def show(self, state: State) -> None:
+    def show(self, state: ViewState) -> None:
         """Have pages be told another state."""
         self.now = state
         self.told = state.number, msgspec.json.encode(state)

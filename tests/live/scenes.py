@@ -28,12 +28,12 @@ from vbraille.live.messages import (
     LetGo,
     LineShown,
     Map,
-    Moment,
     Next,
+    PagePress,
+    PlayedEvent,
     Point,
-    Press,
-    State,
     Turn,
+    ViewState,
 )
 from vbraille.live.server import LiveServer
 from vbraille.render.braille.knobs import KNOBS, say_mapping
@@ -61,20 +61,20 @@ SAID = [
     "texture: 0.2",
 ]
 MOMENTS = [
-    Moment(0.0, "line", "line 1 under the hand"),
-    Moment(2.4, "trial", "trial 12 of 78: letter, 2.6 mm dots"),
-    Moment(3.1, "cue", "cue: begin"),
-    Moment(7.85, "answer", "answer: n (right, after 4.7 s)"),
-    Moment(9.0, "trial", "trial 13 of 78: letter, 2.2 mm dots"),
-    Moment(9.7, "cue", "cue: begin"),
-    Moment(13.2, "tuning", "contrast: 0.9"),
-    Moment(16.4, "answer", "answer: m (asked: n, after 6.7 s)"),
-    Moment(18.0, "pause", "the participant rests"),
-    Moment(24.0, "line", "line 2 under the hand"),
-    Moment(25.0, "trial", "trial 14 of 78: word, 2.6 mm dots"),
-    Moment(28.316, "fault", "the device was silent for 0.21 s"),
-    Moment(33.5, "answer", "answer: garden (right, after 7.8 s)"),
-    Moment(38.0, "note", "the experimenter notes: finger slipped"),
+    PlayedEvent(0.0, "line", "line 1 under the hand"),
+    PlayedEvent(2.4, "trial", "trial 12 of 78: letter, 2.6 mm dots"),
+    PlayedEvent(3.1, "cue", "cue: begin"),
+    PlayedEvent(7.85, "answer", "answer: n (right, after 4.7 s)"),
+    PlayedEvent(9.0, "trial", "trial 13 of 78: letter, 2.2 mm dots"),
+    PlayedEvent(9.7, "cue", "cue: begin"),
+    PlayedEvent(13.2, "tuning", "contrast: 0.9"),
+    PlayedEvent(16.4, "answer", "answer: m (asked: n, after 6.7 s)"),
+    PlayedEvent(18.0, "pause", "the participant rests"),
+    PlayedEvent(24.0, "line", "line 2 under the hand"),
+    PlayedEvent(25.0, "trial", "trial 14 of 78: word, 2.6 mm dots"),
+    PlayedEvent(28.316, "fault", "the device was silent for 0.21 s"),
+    PlayedEvent(33.5, "answer", "answer: garden (right, after 7.8 s)"),
+    PlayedEvent(38.0, "note", "the experimenter notes: finger slipped"),
 ]
 
 
@@ -149,7 +149,7 @@ class Scene:
         self.state = self.made_state()
         self.told = self.number, msgspec.json.encode(self.state)
 
-    def made_state(self) -> State:
+    def made_state(self) -> ViewState:
         array, style, blind = self.display, self.style, self.kind == "blind"
         geometry = style.geometry
         rows = [(-1, -1)] * array.rows
@@ -159,7 +159,7 @@ class Scene:
             strict=False,
         ):
             rows[row] = pair
-        return State(
+        return ViewState(
             self.number,
             title="The story of an unknown reader" if not blind else "Legibility of letters",
             array=ArrayShown(
@@ -261,9 +261,9 @@ class Scene:
                 except ValueError as error:
                     raise InputError(str(error)) from None
                 self.said = [*self.said, KNOBS[knob].said(value)]
-            case Press(command="PAUSE"):
+            case PagePress(command="PAUSE"):
                 self.paused = not self.paused
-            case Press(command="LNDN" | "LNUP" as command):
+            case PagePress(command="LNDN" | "LNUP" as command):
                 self.row = min(max(self.row + (1 if command == "LNDN" else -1), 0), 3)
                 self.said = [*self.said, f"line {self.row + 1}"]
         self.compile()

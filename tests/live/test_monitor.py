@@ -19,8 +19,9 @@ from tests.live.pages import get, page, parts_of
 from tests.live.rings import TestRing, frame_of
 from tests.tiers import by_tier
 from vbraille.live.channel import MOST_MESSAGE_BYTES, Shares, Tells, encode, open_line, to_server
-from vbraille.live.messages import Press, Turn
-from vbraille.live.monitor import Monitor, _has_browser
+from vbraille.live.desktop import has_desktop
+from vbraille.live.messages import PagePress, Turn
+from vbraille.live.monitor import Monitor
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.steering import BeAt
 
@@ -101,7 +102,7 @@ def test_the_newest_state_arrives_and_what_pages_ask_for_comes_back(monitor, add
         opened.say("turn", knob="contrast", value=0.5)
         asked = until(monitor.take)
         asked += [] if len(asked) == 2 else until(monitor.take)
-        assert asked == [Press("next line"), Turn("contrast", 0.5)]
+        assert asked == [PagePress("next line"), Turn("contrast", 0.5)]
         assert monitor.take() == []
 
 
@@ -221,6 +222,7 @@ def test_blind_is_a_matter_of_the_server():
 
 _PARENT = """
 import sys, time
+from vbraille.live.desktop import has_desktop
 from vbraille.live.monitor import Monitor
 monitor = Monitor()
 monitor.launch()
@@ -311,7 +313,7 @@ def test_neither_end_loads_what_it_does_not_need():
 
 def test_a_browser_is_opened_for_somebody_at_a_terminal_only(monkeypatch):
     monkeypatch.setenv("DISPLAY", ":0")
-    assert not _has_browser()  # tests have no terminal
+    assert not has_desktop()  # tests have no terminal
 
 
 def test_memory_is_flat_over_many_frames(monitor, address):

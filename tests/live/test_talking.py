@@ -12,7 +12,7 @@ from tests.live.canned import COUNT, CannedSource, canned_frame, canned_state
 from tests.live.pages import page, served
 from tests.tiers import examples, heavy
 from vbraille.errors import InputError
-from vbraille.live.messages import MOST_BYTES, VERSION, LetGo, Point, Press, Turn
+from vbraille.live.messages import MOST_BYTES, VERSION, LetGo, PagePress, Point, Turn
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def test_whoever_steers_does_not_wait_for_a_frame(address, source):
         opened.say("press", command="next line")
         opened.say("map")
         assert opened.connection.recv(20)[0] == 2  # the map, before the frame
-        assert source.asked == [Press("next line")]
+        assert source.asked == [PagePress("next line")]
 
 
 def test_frames_may_be_asked_for_ahead(address):
@@ -131,7 +131,7 @@ def test_frames_may_be_asked_for_ahead(address):
 
 
 def test_what_is_steered_arrives_in_its_order(address, source):
-    asked = [Press("next line"), Turn("contrast", 0.5), Point(1.0, 2.0, 0.1), LetGo()]
+    asked = [PagePress("next line"), Turn("contrast", 0.5), Point(1.0, 2.0, 0.1), LetGo()]
     with page(address) as opened:
         for request in asked:
             opened.connection.send(msgspec.json.encode(request), text=True)

@@ -17,7 +17,7 @@ from tests.tiers import examples
 from vbraille.engine.record import FLOATS, INTS, tick_dtype
 from vbraille.engine.shared import Extent
 from vbraille.errors import InputError
-from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, Point, Press, Turn
+from vbraille.live.messages import MOST_SAMPLES, LetGo, Map, Next, PagePress, Point, Turn
 from vbraille.live.ticks import _NUMBERS, TickViews
 from vbraille.live.watching import Watching
 from vbraille.render import STRESS2
@@ -245,7 +245,7 @@ def test_a_device_with_a_real_hand_cannot_be_pointed(source):
 def test_commands_and_knobs_go_to_whoever_reads():
     heard = []
     source = Watching(heard.append)
-    asked = [Press("next line"), Turn("contrast", 0.5)]
+    asked = [PagePress("next line"), Turn("contrast", 0.5)]
     for request in asked:
         source.ask(request)
     assert heard == asked

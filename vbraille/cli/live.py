@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.engine.shared import Extent
-    from vbraille.live.messages import Press, Turn
+    from vbraille.live.messages import PagePress, Turn
     from vbraille.reading.opened import OpenDevice
 
 
@@ -84,11 +84,11 @@ class LiveView:
         if state is not None:
             self._monitor.tell(state)
 
-    def take(self) -> list[Press | Turn]:
+    def take(self) -> list[PagePress | Turn]:
         """Take what pages have asked for since the last call."""
         return self._monitor.take()
 
-    def obey(self, asked: Press | Turn) -> None:
+    def obey(self, asked: PagePress | Turn) -> None:
         """Do what a page has asked for."""
         if self._device is not None:
             obey(self._device.reader, asked)

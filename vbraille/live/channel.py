@@ -11,7 +11,7 @@ from typing import Final
 
 import msgspec
 
-from vbraille.live.messages import Press, State, Turn
+from vbraille.live.messages import PagePress, Turn, ViewState
 
 # Room that is asked for on the line; the system gives less if its bounds are lower.
 _ROOM_BYTES: Final = 1 << 20
@@ -68,13 +68,13 @@ class Shares(msgspec.Struct, frozen=True, tag=True):
 class Tells(msgspec.Struct, frozen=True, tag=True):
     """The newest state."""
 
-    state: State
+    state: ViewState
 
 
 class Asks(msgspec.Struct, frozen=True, tag=True):
     """What a page with the right to steer asks for."""
 
-    request: Press | Turn
+    request: PagePress | Turn
 
 
 class Says(msgspec.Struct, frozen=True, tag=True):

@@ -1,9 +1,9 @@
 """What the page of the live view and its server say to each other.
 
 The page pulls: it asks for a frame when it has drawn the one before, so that nothing can pile up
-on the way. It asks in JSON. The server answers each `Next` with the `State`, if that has changed
-since this page was told it, and then with one frame: a `FRAME` header, the deflections, and the
-ticks since the frame before. `docs/live-view.md` has both as tables.
+on the way. It asks in JSON. The server answers each `Next` with the `ViewState`, if that has
+changed since this page was told it, and then with one frame: a `FRAME` header, the deflections,
+and the ticks since the frame before. `docs/live-view.md` has both as tables.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Request(msgspec.Struct, frozen=True, tag_field="ask", forbid_unknown_field
     """What a page asks for; its subclasses are the kinds."""
 
 
-class Hello(Request, frozen=True, tag="hello"):
+class PageHello(Request, frozen=True, tag="hello"):
     """The first request of a page, which the server answers with `Welcome`.
 
     Parameters
@@ -87,7 +87,7 @@ class Next(Request, frozen=True, tag="next"):
     since_s: float | None = None
 
 
-class Press(Request, frozen=True, tag="press"):
+class PagePress(Request, frozen=True, tag="press"):
     """A command of the reader by its name, as in `docs/keys.md`; it needs the right to steer."""
 
     command: str
@@ -133,7 +133,7 @@ class Map(Request, frozen=True, tag="map"):
     at_s: float | None = None
 
 
-AnyRequest = Hello | Next | Press | Turn | Point | LetGo | Map
+AnyRequest = PageHello | Next | PagePress | Turn | Point | LetGo | Map
 
 
 class ArrayShown(msgspec.Struct, frozen=True):
@@ -228,7 +228,7 @@ class KnobShown(msgspec.Struct, frozen=True):
     fixed: str = ""
 
 
-class Moment(msgspec.Struct, frozen=True):
+class PlayedEvent(msgspec.Struct, frozen=True):
     """Something that happened at a time of a recording.
 
     Parameters
@@ -247,7 +247,7 @@ class Moment(msgspec.Struct, frozen=True):
 
 
 class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
-    """The server's answer to `Hello`.
+    """The server's answer to `PageHello`.
 
     Parameters
     ----------
@@ -267,10 +267,10 @@ class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
     steers: bool
     playback: bool = False
     length_s: float = 0.0
-    moments: list[Moment] = []
+    moments: list[PlayedEvent] = []
 
 
-class State(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
+class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     """All that a page shows beside the frames, and that changes seldom.
 
     Parameters

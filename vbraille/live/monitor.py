@@ -10,7 +10,6 @@ import os
 import socket
 import subprocess
 import sys
-from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Final, Self
 
@@ -26,14 +25,15 @@ from vbraille.live.channel import (
     from_server,
     open_line,
 )
-from vbraille.live.messages import State
+from vbraille.live.desktop import has_desktop
+from vbraille.live.messages import ViewState
 from vbraille.logs import kept
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.engine.shared import Extent
-    from vbraille.live.messages import Press, Turn
+    from vbraille.live.messages import PagePress, Turn
     from vbraille.simulation.pointing import Pointer
 
 _END_S: Final = 2.0
@@ -75,11 +75,11 @@ class Monitor:
         self._blind, self._steers = blind, steers
         self._line: socket.socket | None = None
         self._process: subprocess.Popen[bytes] | None = None
-        self._asked: list[Press | Turn] = []
+        self._asked: list[PagePress | Turn] = []
         self._notes: list[str] = []
         # What the line had no room for yet: the newest memory, and the newest state.
         self._unshared: tuple[int, Extent] | None = None
-        self._untold: State | None = None
+        self._untold: ViewState | None = None
 
     def launch(self) -> None:
         """Start the process without waiting for it; `notes` says its address, or why not."""
@@ -96,7 +96,7 @@ class Monitor:
             pointer=pointer,
             blind=self._blind,
             steers=self._steers,
-            opens=_has_browser(),
+            opens=has_desktop(),
             log=kept(),
         )
         with other:
@@ -120,12 +120,12 @@ class Monitor:
         self._unshared = os.dup(descriptor), extent
         self._flush()
 
-    def tell(self, state: State) -> None:
+    def tell(self, state: ViewState) -> None:
         """Have pages be told another state; of those that must wait only the newest is kept."""
         self._untold = state
         self._flush()
 
-    def take(self) -> list[Press | Turn]:
+    def take(self) -> list[PagePress | Turn]:
         """Take what pages have asked for since the last call, oldest first."""
         self._hear()
         self._flush()
@@ -210,7 +210,7 @@ class Monitor:
             self._line = None
 
 
-def _send_fitting(line: socket.socket, state: State) -> None:
+def _send_fitting(line: socket.socket, state: ViewState) -> None:
     """Send as much of a state as one message of the line can hold."""
     for fewer in _fewer(state):
         try:
@@ -222,17 +222,9 @@ def _send_fitting(line: socket.socket, state: State) -> None:
             return
 
 
-def _fewer(state: State) -> Iterator[State]:
+def _fewer(state: ViewState) -> Iterator[ViewState]:
     """Give a state, then ever less of it, down to what there is always room for."""
     yield state
     under = [line for line in state.lines if line.under]
     yield msgspec.structs.replace(state, lines=under)
-    yield State(state.number, place=state.place, device=_TOO_LARGE, blind=state.blind)
-
-
-def _has_browser() -> bool:
-    """Whether somebody sits here who would see a browser that opens."""
-    desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
-        return bool(desktop) and sys.stdin.isatty()
-    return False
+    yield ViewState(state.number, place=state.place, device=_TOO_LARGE, blind=state.blind)

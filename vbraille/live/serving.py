@@ -40,7 +40,7 @@ from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     from vbraille.live.admission import Admission
-    from vbraille.live.messages import Press, Turn
+    from vbraille.live.messages import PagePress, Turn
 
 _NICE: Final = 5
 # Pages are told that it is over; one that does not answer is not waited for.
@@ -64,7 +64,7 @@ class ServerLine:
         prepare(self._socket)
         self.ended = asyncio.Event()
 
-    def forward(self, request: Press | Turn) -> None:
+    def forward(self, request: PagePress | Turn) -> None:
         """Tell the program what a page asks for.
 
         Raises

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from vbraille.live.messages import LetGo, Point, Press, Turn
+from vbraille.live.messages import LetGo, PagePress, Point, Turn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.live.messages import Map, Moment, Next
+    from vbraille.live.messages import Map, Next, PlayedEvent
 
-Steering = Press | Turn | Point | LetGo
+Steering = PagePress | Turn | Point | LetGo
 
 
 class Viewer(Protocol):
@@ -57,7 +57,7 @@ class LiveSource(Protocol):
         ...
 
     @property
-    def moments(self) -> Sequence[Moment]:
+    def moments(self) -> Sequence[PlayedEvent]:
         """What happened in the recording, by time."""
         ...
 

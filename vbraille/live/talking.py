@@ -18,10 +18,10 @@ from vbraille.live.framing import map_bytes
 from vbraille.live.messages import (
     VERSION,
     AnyRequest,
-    Hello,
     LetGo,
     Map,
     Next,
+    PageHello,
     Point,
     Refused,
     Welcome,
@@ -138,7 +138,7 @@ class Talk:
             raise _EndTalkError(
                 f"nothing was said for {_HELLO_S:g} s; the first message is hello"
             ) from None
-        if not isinstance(hello, Hello):
+        if not isinstance(hello, PageHello):
             raise _EndTalkError("the first message is hello")
         request = self._connection.request
         from_page = request is not None and "Origin" in request.headers
@@ -207,14 +207,18 @@ class Talk:
                 self._owed.append(request)
             case Map():
                 await self._draw(request)
-            case Hello():
+            case PageHello():
                 raise _EndTalkError("hello is said once")
             case _:
                 await self._steer(request)
 
     async def _steer(self, request: Steering) -> None:
         if self._right is not Right.STEER:
-            await self._refuse("this page may only watch; steering needs the other address")
+            await self._refuse(
+                "nobody steers what is played back"
+                if self._source.playback
+                else "this page may only watch; steering needs the other address"
+            )
             return
         try:
             self._source.ask(request)

@@ -14,13 +14,13 @@ import msgspec
 
 from vbraille.errors import InputError
 from vbraille.live.framing import FrameHeader, frame_bytes, joined
-from vbraille.live.messages import LetGo, Point, Press, State, Turn
+from vbraille.live.messages import LetGo, PagePress, Point, Turn, ViewState
 from vbraille.simulation.steering import BeAt
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from vbraille.live.messages import Map, Moment, Next
+    from vbraille.live.messages import Map, Next, PlayedEvent
     from vbraille.live.sources import Steering
     from vbraille.live.ticks import TickViews
 
@@ -66,11 +66,11 @@ class Watching:
 
     playback = False
     length_s = 0.0
-    moments: Sequence[Moment] = ()
+    moments: Sequence[PlayedEvent] = ()
 
     def __init__(
         self,
-        forward: Callable[[Press | Turn], None],
+        forward: Callable[[PagePress | Turn], None],
         hand: HandHolder | None = None,
         *,
         blind: bool = False,
@@ -80,9 +80,9 @@ class Watching:
         self._forward = forward
         self._hand = hand
         self._title = ""
-        self.show(State(0, device="device: not open yet"))
+        self.show(ViewState(0, device="device: not open yet"))
 
-    def show(self, state: State) -> None:
+    def show(self, state: ViewState) -> None:
         """Have pages be told another state, without the stimuli if those are hidden."""
         self.blind = self.blind or state.blind
         if self.blind:

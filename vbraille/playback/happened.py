@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.live.messages import Moment
+from vbraille.live.messages import PlayedEvent
 from vbraille.sessions.record import events
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def moments_of(
     told: Iterable[JournalEvent], progress: Progress, begun_s: float = 0.0
-) -> list[Moment]:
+) -> list[PlayedEvent]:
     """Make the moments of events, by time.
 
     Parameters
@@ -33,7 +33,7 @@ def moments_of(
         found = _say(event, progress)
         if found is not None:
             kind, text = found
-            made.append(Moment(max(event.t_s - begun_s, 0.0), kind, _in_trial(event) + text))
+            made.append(PlayedEvent(max(event.t_s - begun_s, 0.0), kind, _in_trial(event) + text))
     # The journal may have an event a little later than one that happened after it.
     return sorted(made, key=lambda moment: moment.at_s)
 

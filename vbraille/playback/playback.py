@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.live.messages import Map, Moment, Next
+    from vbraille.live.messages import Map, Next, PlayedEvent
     from vbraille.live.sources import Steering
     from vbraille.playback.reels import Piece, Reel
 
@@ -67,7 +67,7 @@ class Playback:
         return self._reel.length_s
 
     @property
-    def moments(self) -> Sequence[Moment]:
+    def moments(self) -> Sequence[PlayedEvent]:
         """What happened in the recording, by time."""
         return self._reel.moments
 

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.live.messages import Moment, State
+    from vbraille.live.messages import PlayedEvent, ViewState
     from vbraille.render.program import Program
 
 # What is known of each frame, by the names of `vbraille.live.framing.FrameHeader`.
@@ -63,14 +63,14 @@ class Reel(Protocol):
     ----------
     length_s : float
         Length in seconds.
-    moments : list[Moment]
+    moments : list[PlayedEvent]
         What happened, by time.
     notes : list[str]
         Sentences for whoever plays it, such as on damage.
     """
 
     length_s: float
-    moments: list[Moment]
+    moments: list[PlayedEvent]
     notes: list[str]
 
     def find(self, at_s: float) -> int:
@@ -81,7 +81,7 @@ class Reel(Protocol):
         """Read a piece, which may be empty where the recording is damaged."""
         ...
 
-    def state(self, scene: int) -> State:
+    def state(self, scene: int) -> ViewState:
         """Make what a page shows beside the frames of a scene; its number is left 0."""
         ...
 

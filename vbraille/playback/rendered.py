@@ -13,10 +13,11 @@ import numpy as np
 from vbraille.braille.geometry import Geometry
 from vbraille.display import Display
 from vbraille.errors import InputError
-from vbraille.live.messages import Moment, State
+from vbraille.live.messages import PlayedEvent, ViewState
+from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.playback.changes import changes
 from vbraille.playback.reels import PLAYED, Piece
-from vbraille.playback.shown import array_shown, distances_shown, line_shown, rows_shown
+from vbraille.playback.shown import line_shown
 from vbraille.recording import anchor_mm
 from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
 
@@ -109,14 +110,14 @@ class Rendered:
         ticks["share"] = 1.0
         return Piece(ticks, frames)
 
-    def state(self, scene: int) -> State:
+    def state(self, scene: int) -> ViewState:
         """Make what a page shows of a line of the recording; scene 0 is no line."""
         style = self._style
-        return State(
+        return ViewState(
             number=0,
             title=self._title,
             array=array_shown(self._display),
-            geometry={} if style is None else distances_shown(style.geometry),
+            geometry={} if style is None else geometry_shown(style.geometry),
             rows_shown=[] if style is None else rows_shown(style, self._display),
             lines=self._lines(scene - 1) if scene else [],
             place=self._name(scene - 1) if scene else "",
@@ -259,13 +260,17 @@ class Rendered:
     def _name(self, row: int) -> str:
         return f"line {row + self._first_line}"
 
-    def _find_moments(self, starts: NDArray[np.int64], lines: NDArray[np.int64]) -> list[Moment]:
+    def _find_moments(
+        self, starts: NDArray[np.int64], lines: NDArray[np.int64]
+    ) -> list[PlayedEvent]:
         """When the hand came to each line."""
         every = -(-starts.size // _MOST_MOMENTS)
         # Reading a time takes long; as a rule frames are evenly spaced.
         even = abs(self.length_s * self._rate_hz - (self._count - 1)) < 1e-3
         return [
-            Moment(start / self._rate_hz if even else self._time_s(start), "line", self._name(row))
+            PlayedEvent(
+                start / self._rate_hz if even else self._time_s(start), "line", self._name(row)
+            )
             for start, row in zip(starts[::every].tolist(), lines[::every].tolist(), strict=True)
         ]
 

@@ -14,10 +14,11 @@ from msgspec import structs
 
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError, VbrailleError
-from vbraille.live.messages import Moment, State
+from vbraille.live.messages import PlayedEvent, ViewState
+from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.playback.happened import moments_of
 from vbraille.playback.reels import PLAYED, Piece
-from vbraille.playback.shown import array_shown, distances_shown, line_shown, rows_shown
+from vbraille.playback.shown import line_shown
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.record import journal
@@ -101,7 +102,7 @@ class Traced:
         self._firsts_ns: dict[int, int | None] = {}
         self._picture = lru_cache(64)(self._make_picture)
         self.notes: list[str] = []
-        self.moments: list[Moment] = []
+        self.moments: list[PlayedEvent] = []
         if record.told.damage is not None:
             self.notes.append(
                 f"{journal.NAME} is damaged: {record.told.damage}; the rest is played"
@@ -147,15 +148,15 @@ class Traced:
         frames = replay.frames(ticks).astype(np.float32)
         return Piece(self._played(run, ticks), frames)
 
-    def state(self, scene: int) -> State:
+    def state(self, scene: int) -> ViewState:
         """Make what a page shows of a showing of a stimulus; scene 0 is none."""
         protocol, head = self._record.protocol, self._record.head
         participant = str(head.get("participant", ""))
-        plain = State(
+        plain = ViewState(
             number=0,
             title=f"{participant}: {protocol.name}" if participant else protocol.name,
             array=array_shown(self._display),
-            geometry=distances_shown(protocol.model.style.geometry),
+            geometry=geometry_shown(protocol.model.style.geometry),
             mapping=f"mapping: {protocol.mapping.name}",
             device="recording",
             facts=[("session", self._record.folder.resolve().name)],
@@ -179,7 +180,7 @@ class Traced:
             facts.insert(2, ("attempt", str(showing.attempt)))
         return structs.replace(
             plain,
-            geometry=distances_shown(stimulus.geometry),
+            geometry=geometry_shown(stimulus.geometry),
             rows_shown=rows_shown(style, self._display),
             lines=[line_shown(scene, protocol.line(stimulus.masks), under=True)],
             place=_name(trial),
@@ -214,14 +215,14 @@ class Traced:
         self._runs.append(played)
         for chunk in trace.damage:
             text = f"{name} is damaged here: a part of it is missing"
-            self.moments.append(Moment(self._first_s(first + chunk), "fault", text))
+            self.moments.append(PlayedEvent(self._first_s(first + chunk), "fault", text))
         if trace.damage:
             self.notes.append(f"{name} is damaged; what is whole is played")
         last = next(ticks for n in range(len(trace), 0, -1) if (ticks := trace.ticks(n - 1)).size)
         self._end_s = max(self._end_s, float(played.seconds(last["time_ns"][-1:])[0]))
         if trace.torn_bytes:
             self.notes.append(f"{name} was cut short; it is played up to its last whole chunk")
-            self.moments.append(Moment(self._end_s, "fault", f"{name} was cut short here"))
+            self.moments.append(PlayedEvent(self._end_s, "fault", f"{name} was cut short here"))
 
     def _run(self, number: int) -> _PlayedRun:
         """Run that a piece belongs to."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Back, Changed, Silent, Stranger, Unplugged
 from vbraille.devices.saying import say
-from vbraille.live.messages import LineShown, State
+from vbraille.live.messages import LineShown, ViewState
 from vbraille.live.states import (
     array_shown,
     geometry_shown,
@@ -105,7 +105,7 @@ class Viewed:
             elif isinstance(event, _BACK):
                 self._gone = ""
 
-    def changed(self) -> State | None:
+    def changed(self) -> ViewState | None:
         """State of the reading; None if it is what it was at the last call."""
         device, reader = self._device, self._device.reader
         under = reader.under
@@ -124,7 +124,7 @@ class Viewed:
         self._told = now
         return self._state()
 
-    def _state(self) -> State:
+    def _state(self) -> ViewState:
         device, reader = self._device, self._device.reader
         style, display, layout, line = reader.style, device.display, reader.layout, reader.line
         self._number += 1
@@ -133,7 +133,7 @@ class Viewed:
         if line is not None:
             counted = f"{line_name(layout, line)}, " if is_counted(layout) else ""
             where = f"{counted}{percent(layout, line)} %"
-        return State(
+        return ViewState(
             number=self._number,
             title=self._title,
             array=array_shown(display),

@@ -94,19 +94,3 @@ def test_stretched_and_pressed_have_two_hues_for_every_eye(scheme, eye):
 def test_what_is_measured_stands_out_from_the_paper(scheme):
     for name, colour in palette(scheme)[1].items():
         assert contrast(colour, paper(scheme)) > 4.5, name
-
-
-def test_strain_has_a_shape_as_well(opens):
-    """Bars that go down are hollow."""
-    from tests.live.page.showing import settled
-    from tests.live.scenes import Scene
-
-    page, _ = opens(Scene("still"), steers=False)
-    settled(page)
-    bars = page.locator("#strain .bar").evaluate_all(
-        """all => all.filter((b) => b.getAttribute("d")).map((b) =>
-        [b.getAttribute("d").includes("v-"), b.getAttribute("fill") !== "none"])"""
-    )
-    assert bars
-    assert all(up == filled for up, filled in bars)
-    assert {up for up, _ in bars} == {True, False}

@@ -47,6 +47,14 @@ def test_frames_drawn_are_the_renderers_and_strain_and_text_follow(opens):
     wanted = -np.diff(frame, axis=1) * SWING_MM / scene.display.column_pitch_mm
     np.testing.assert_allclose(strain, wanted.ravel(), atol=1e-6)
 
+    # Bars of what is pressed go down, and are hollow: the sign is seen without colour.
+    bars = page.locator("#strain .bar").evaluate_all(
+        """all => all.filter((b) => b.getAttribute("d")).map((b) =>
+        [b.getAttribute("d").includes("v-"), b.getAttribute("fill") !== "none"])"""
+    )
+    assert all(up == filled for up, filled in bars)
+    assert {up for up, _ in bars} == {True, False}
+
     # The array stands on the page where the finger is.
     assert "translate(117.30" in page.locator("#finger").get_attribute("transform")
     assert page.locator(".line.under").get_attribute("data-line") == "2"

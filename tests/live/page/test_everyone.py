@@ -64,6 +64,7 @@ def test_a_lost_connection_is_said_once_and_begun_again(opens):
         settled(page)
 
 
+@heavy
 def test_who_is_not_let_in_reads_why_and_may_try_again(opens):
     scene = Scene("still")
     page, served = opens(scene, steers=False)
@@ -125,7 +126,11 @@ def test_keys_alone_reach_everything_and_focus_is_seen(opens):
 
 @pytest.mark.parametrize(
     ("width", "kind"),
-    [(320, "playback"), (640, "live"), pytest.param(320, "live", marks=heavy)],
+    [
+        (320, "playback"),
+        pytest.param(640, "live", marks=heavy),
+        pytest.param(320, "live", marks=heavy),
+    ],
 )
 def test_a_narrow_page_needs_no_scrolling_sideways(opens, width, kind):
     """320 pixels are a small phone, and a screen of 1280 at 400 %; 640 are it at 200 %."""

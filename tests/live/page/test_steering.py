@@ -7,7 +7,7 @@ import pytest
 
 from tests.live.page.showing import comes, settled, until
 from tests.live.scenes import Scene
-from vbraille.live.messages import LetGo, Point, Press, Turn
+from vbraille.live.messages import LetGo, PagePress, Point, Turn
 
 PX_MM = """(() => { const drawing = document.querySelector("#sheet .moving");
 return drawing.getBoundingClientRect().width / drawing.viewBox.baseVal.width; })()"""
@@ -94,7 +94,7 @@ def test_knobs_and_commands(opens):
     assert re.search("dot width|dot must", page.locator("#notice").inner_text(), re.IGNORECASE)
 
     page.get_by_role("button", name="Next line").click()
-    comes(page, lambda: Press("LNDN") in scene.asked)
+    comes(page, lambda: PagePress("LNDN") in scene.asked)
     until(page, "document.querySelector('.line.under').dataset.line === '3'")
     until(page, "[...document.querySelectorAll('#said p')].pop().textContent === 'line 3'")
     page.get_by_role("button", name="Rest the array").click()

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tests.reading.commands.test_turning import bench
 from tests.tiers import examples
-from vbraille.live.messages import Press, Turn
+from vbraille.live.messages import PagePress, Turn
 from vbraille.reading.commands.paged import ALLOWED, obey
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.context import Context
@@ -55,7 +55,7 @@ def test_whatever_a_page_asks_of_a_knob_it_stays_within_its_bounds(name, value):
     assert knob.low <= knob.value(made.reader.style) <= knob.high
     assert len(said) == (value != knob.value(before))
     if made.reader.style != before:
-        asked(made, Press("UNDO"))
+        asked(made, PagePress("UNDO"))
         assert made.reader.style == before
 
 
@@ -79,8 +79,8 @@ def test_a_knob_stops_at_its_end_and_says_why():
         (Turn("\x1b[2J" + 99 * "x", 1.0), "live view: <escape>[2J" + 36 * "x" + " is no knob"),
         (Turn("texture", math.nan), "live view: texture cannot be nan; it must be a number"),
         (Turn("texture", math.inf), "live view: texture cannot be inf; it must be a number"),
-        (Press("QUIT"), "live view: QUIT is no command that a page may call"),
-        (Press("nothing"), "live view: nothing is no command that a page may call"),
+        (PagePress("QUIT"), "live view: QUIT is no command that a page may call"),
+        (PagePress("nothing"), "live view: nothing is no command that a page may call"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_a_sentence(request_, why):
@@ -94,7 +94,7 @@ def test_what_cannot_be_done_is_said_in_a_sentence(request_, why):
 def test_a_command_does_and_says_what_its_key_does():
     by_key, by_page = bench(), bench()
     for name, key in (("LNDN", "n"), ("INFO", "i"), ("PAUSE", " "), ("MAPPING", "#"), ("BOT", ">")):
-        assert asked(by_page, Press(name)) == by_key.press(key)
+        assert asked(by_page, PagePress(name)) == by_key.press(key)
         assert by_page.reader.line_number == by_key.reader.line_number
     assert by_page.reader.engine.paused
     assert by_page.reader.style == by_key.reader.style
@@ -116,6 +116,6 @@ def test_while_the_keys_mean_something_else_a_page_does_nothing(context):
     made.reader.context = context
     style = made.reader.style
     sentence = "live view: not now; what the keys have begun comes first"
-    assert asked(made, Press("LNDN"), Turn("texture", 0.5)) == [sentence] * 2
+    assert asked(made, PagePress("LNDN"), Turn("texture", 0.5)) == [sentence] * 2
     assert made.reader.style == style
     assert made.reader.line_number == 1

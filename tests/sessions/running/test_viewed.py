@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.sessions.sittings import COMPARED, MINI, Session, of
 from tests.tiers import by_tier
 from vbraille.engine.batch import BatchEngine
-from vbraille.live.messages import Press, Turn
+from vbraille.live.messages import PagePress, Turn
 from vbraille.sessions.record.check import check
 from vbraille.sessions.running.onlookers import ENDED, Onlookers
 from vbraille.sessions.running.viewed import Heard
@@ -161,7 +161,7 @@ def test_what_is_drawn_is_there(tmp_path):
 
 
 def test_knobs_are_off_and_who_turns_one_is_told(tmp_path):
-    monitor = FakeMonitor(asked=[Press("contrast-up"), Turn("contrast", 0.5)])
+    monitor = FakeMonitor(asked=[PagePress("contrast-up"), Turn("contrast", 0.5)])
     states, sat = watch(Session(tmp_path / "s"), monitor=monitor)
     assert not any(state.knobs for state in states)
     refused = [one for one in states[-1].said if one.startswith("refused: in a session nothing")]

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sys
 import threading
 import webbrowser
-from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
+from vbraille.live.desktop import has_desktop
 from vbraille.live.server import LiveServer
 from vbraille.playback import open_recording
 from vbraille.wording import setting
@@ -49,16 +48,8 @@ async def _serve(source: Playback, host: str | None, port: int | None) -> None:
     async with server:
         address = server.admission.watching_address
         say_line(f"live view: {address}")
-        if _has_browser():
+        if has_desktop():
             # Some browsers run in the foreground, and are not waited for.
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         while not EAR.heard:
             await asyncio.sleep(_HEED_S)
-
-
-def _has_browser() -> bool:
-    """Whether somebody sits here who would see a browser that opens."""
-    desktop = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    with suppress(OSError, ValueError, AttributeError):  # there may be no standard input
-        return bool(desktop) and sys.stdin.isatty()
-    return False

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.live.messages import Press, Turn
+from vbraille.live.messages import PagePress, Turn
 from vbraille.reading.commands.table import COMMANDS
 from vbraille.reading.commands.turning import turn_to
 from vbraille.reading.context import Context
@@ -39,13 +39,13 @@ _COMMANDS: Final = {command.name: command for command in COMMANDS if command.nam
 _MOST_NAMED = 40  # characters of a name that nobody knows
 
 
-def obey(reader: Reader, asked: Press | Turn) -> None:
+def obey(reader: Reader, asked: PagePress | Turn) -> None:
     """Do what a page asks, as if the reader had pressed a key, or say why it cannot be done."""
     if reader.context is not Context.READING:
         reader.say("live view: not now; what the keys have begun comes first")
         return
     try:
-        if isinstance(asked, Press):
+        if isinstance(asked, PagePress):
             _press(reader, asked.command)
         else:
             _turn(reader, asked.knob, asked.value)

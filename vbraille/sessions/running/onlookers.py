@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from vbraille.engine.shared import Extent
-    from vbraille.live.messages import Press, State, Turn
+    from vbraille.live.messages import PagePress, Turn, ViewState
     from vbraille.sessions.running.course import Course
 
 LOOPBACK: Final = "127.0.0.1"
@@ -37,11 +37,11 @@ class ToldMonitor(Protocol):
         """Give the server the memory of an engine."""
         ...
 
-    def tell(self, state: State) -> None:
+    def tell(self, state: ViewState) -> None:
         """Give the pages another state."""
         ...
 
-    def take(self) -> Sequence[Press | Turn]:
+    def take(self) -> Sequence[PagePress | Turn]:
         """What pages have asked for since the last call."""
         ...
 
@@ -82,7 +82,7 @@ class Onlookers:
         self._host = host
         self._say: Callable[[str], None] = _nobody
         self._heard = Heard(blind=blind)
-        self._newest: State | None = None
+        self._newest: ViewState | None = None
         self._number = 0
 
     def begin(self, engine: object) -> None:

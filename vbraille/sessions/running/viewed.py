@@ -17,7 +17,7 @@ from vbraille.braille.spelling import say_cells, to_braille
 from vbraille.devices.base import Placing
 from vbraille.engine.engine import placing_of
 from vbraille.engine.record import Flag
-from vbraille.live.messages import LineShown, State
+from vbraille.live.messages import LineShown, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.render.braille.knobs import say_mapping
 from vbraille.sessions.running.phases import Phase
@@ -93,7 +93,7 @@ class Heard:
             self.before += 1
 
 
-def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
+def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> ViewState:
     """Make the state of a session that its pages show.
 
     Parameters
@@ -107,12 +107,12 @@ def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
 
     Returns
     -------
-    State
-        State without a number, which whoever sends it gives.
+    ViewState
+        ViewState without a number, which whoever sends it gives.
     """
     assert course.display is not None, "paper cannot be watched"
     engine, protocol = course.display.engine, course.protocol
-    state = State(
+    state = ViewState(
         number=0,
         title=protocol.title,
         array=array_shown(engine.display),
@@ -133,8 +133,8 @@ def state_of(course: Course, heard: Heard, *, simulated: bool = False) -> State:
     return state if heard.blind else _unhidden(state, course)
 
 
-def _unhidden(state: State, course: Course) -> State:
-    """State with all that a blind one keeps back."""
+def _unhidden(state: ViewState, course: Course) -> ViewState:
+    """ViewState with all that a blind one keeps back."""
     facts, trial = [*state.facts], course.trial
     answered = course.progress.last_answered
     if answered is not None and (answer := course.progress.told(answered).answer) is not None:
