@@ -92,8 +92,9 @@ export class Skin {
     new ResizeObserver(() => this.#again()).observe(leaning);
     onScheme(() => this.#again());
     onSharpness(() => this.#again());
-    this.left.addEventListener("keydown", (event) => this.#key(event));
-    this.left.addEventListener("focusin", (event) => this.#focused(event));
+    // Not of the drawing itself: that would make it a stop of the tabulator key.
+    leaning.addEventListener("keydown", (event) => this.#key(event));
+    leaning.addEventListener("focusin", (event) => this.#focused(event));
   }
 
   #again() {
