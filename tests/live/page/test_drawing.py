@@ -1,7 +1,5 @@
 """What the page draws is what the renderer made, and stands where the braille is."""
 
-import re
-
 import numpy as np
 import pytest
 
@@ -47,7 +45,7 @@ def test_the_pixels_drawn_are_the_frame(opens):
     look = lambda figure, places: page.evaluate(COLOURS, [figure, places.tolist()])  # noqa: E731
     stops, named = palette("LIGHT")
     drawn = ramp(stops)
-    times = int(re.search(r"× (\d+)", page.locator("#deflection").inner_text())[1])
+    times = int(page.locator("#deflection").inner_text().split("× ")[1].split()[0])
     # At rest they stand at the right, and go to the left.
     middles = seats(scene.display)
     middles[:, 0] += (0.5 - frame.ravel()) * SWING_MM * times
@@ -89,6 +87,17 @@ def test_what_elements_say_of_the_frame_is_so_whenever_the_picture_stands(opens)
         assert max(page.evaluate(differs)) < 1 / 255
         page.locator("#freeze").click()
         settled(page)
+
+
+def test_canvases_are_as_sharp_as_the_screen_and_sharper_on_paper(opens):
+    page, _ = opens(Scene("still"), device_scale_factor=2)
+    wide = """[...document.querySelectorAll("#sheet canvas, #touch canvas")].map((canvas) =>
+      canvas.width / canvas.getBoundingClientRect().width)"""
+    assert page.evaluate(wide) == pytest.approx([2, 2, 2])
+    page.evaluate(f"addEventListener('beforeprint', () => {{ window.printed = {wide}; }})")
+    page.pdf()
+    assert page.evaluate("printed") == pytest.approx([4, 4, 4])
+    assert page.evaluate(wide) == pytest.approx([2, 2, 2])
 
 
 def test_frames_drawn_are_the_renderers_and_strain_and_text_follow(opens):

@@ -51,7 +51,7 @@ export class Canvas {
   /** @param {boolean} ground whether it has a ground of its own; nothing beneath is seen then */
   constructor(ground) {
     this.ground = ground;
-    this.element = html("canvas", { "aria-hidden": "true" });
+    this.element = html("canvas", { "aria-hidden": "true", hidden: "" });
     this.pen = /** @type {CanvasRenderingContext2D} */ (this.element.getContext("2d", { alpha: !ground }));
   }
 
@@ -67,6 +67,7 @@ export class Canvas {
     const sharp = sharpness();
     [this.#left, this.#top, this.#scale] = [left, top, px_mm * sharp];
     const { element } = this;
+    element.hidden = false; // before that, one with a ground would be black
     element.width = Math.max(Math.ceil(wide_px * sharp), 1);
     element.height = Math.max(Math.ceil(high_px * sharp), 1);
     element.style.width = `${element.width / sharp}px`;

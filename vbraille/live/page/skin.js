@@ -82,7 +82,7 @@ export class Skin {
     this.right = svg("svg", {
       class: "skin", role: "img", "aria-label": "Strain of the skin between neighbours, a bar for each; the same stands in a table below",
     });
-    this.ring = html("div", { class: "chosen" });
+    this.ring = html("div", { class: "chosen", hidden: "" });
     this.legend = html("div", { class: "legend" });
     this.key = html("div", { class: "legend" });
     this.note = note;
@@ -386,6 +386,7 @@ export class Skin {
       if (here && focus) cell.focus();
     });
     const n = row * array.columns + column;
+    this.ring.hidden = false;
     const [wide, high] = [array.column_pitch_mm, this.#rowOf(array)];
     const corner = [this.#seats.x[n] - wide / 2 - this.#corner.x, this.#seats.y[n] - high / 2 - this.#corner.y];
     const px = [...corner, wide, high].map((mm, at) => `${(mm * this.#px_mm + (at < 2 ? 1 : -2)).toFixed(2)}px`);
