@@ -100,4 +100,4 @@ def test_only_programs_keep_a_log():
         if "vbraille.logs import keep\n" in path.read_text()
         or "addHandler(handler)" in path.read_text()
     }
-    assert keepers == {"logs.py", "cli/main.py", "engine/hosted.py"}
+    assert keepers == {"logs.py", "cli/main.py", "engine/hosted.py", "live/serving.py"}

@@ -268,7 +268,7 @@ def _pointing(pages: list[Page]) -> Result:
         _show(pages, block.address)
         page = pages[0]
         page.evaluate(_OBSERVE)
-        box = page.locator("svg.moving").bounding_box()
+        box = page.locator("#sheet .moving").bounding_box()
         assert box is not None
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
         page.mouse.move(x, y)

@@ -35,11 +35,13 @@ def job(shell):
 
 
 def until_stopped(shell):
-    """Wait until the program is stopped: the shell says that only with its next prompt."""
-    process, end = job(shell), time.monotonic() + program.PATIENCE_S
-    while Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "T":
+    """Wait until the shell knows that the program is stopped: else its fg would not continue it."""
+    end = time.monotonic() + program.PATIENCE_S
+    told = ""
+    while "Stopped" not in told:
         assert time.monotonic() < end, "the program is not stopped"
-        os.sched_yield()
+        shell.type("jobs\n")
+        told = shell.until(r"jobs[\s\S]*" + PROMPT)
 
 
 def frames(log):

@@ -13,6 +13,7 @@ from vbraille.devices.events import (
     Difference,
     Exposed,
     Fault,
+    HandHeld,
     Knob,
     Notice,
     NotInTime,
@@ -66,6 +67,8 @@ SAID = [
     (Button(1, pressed=True), "device: button 1 pressed"),
     (Button(2, pressed=False), "device: button 2 let go"),
     (Knob(1, 0.25), "device: knob 1 at 25%"),
+    (HandHeld(held=True), "hand: moved in the live view"),
+    (HandHeld(held=False), "hand: simulated again"),
     (Placed(Placing.STOP), "device: it waits to be shown the left stop"),
     (
         NotInTime(("priority", "memory")),

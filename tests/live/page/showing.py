@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Browser, Page, Playwright
 
-    from vbraille.live.sources import Source
+    from vbraille.live.sources import LiveSource
 
 _PATIENCE_MS = 20_000
 
@@ -35,7 +35,7 @@ def launch(playwright: Playwright) -> Browser:
 class Served:
     """A server of a source, in a thread of its own."""
 
-    def __init__(self, source: Source, *, steers: bool = True, port: int | None = None) -> None:
+    def __init__(self, source: LiveSource, *, steers: bool = True, port: int | None = None) -> None:
         self.source, self._steers, self._port = source, steers, port
         self._ready, self._thread = threading.Event(), threading.Thread(target=self._run)
 

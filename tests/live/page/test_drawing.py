@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.live.page.showing import settled, until
+from tests.live.page.test_colours import STEPS, palette, paper, ramp
 from tests.live.scenes import SWING_MM, Scene
 from tests.tiers import heavy
 from vbraille.live.pagefiles import page_files
@@ -11,6 +12,92 @@ from vbraille.live.pagefiles import page_files
 SHOWN = """[...document.querySelectorAll("#deflection [data-deflection]")].map((actuator) => ({
   deflection: Number(actuator.dataset.deflection), row: Number(actuator.dataset.row),
   column: Number(actuator.dataset.column) }))"""
+
+# Colours of a canvas, at places in mm of the drawing that it lies upon.
+COLOURS = """([figure, places]) => {
+  const canvas = document.querySelector(`#${figure} canvas`);
+  const drawing = document.querySelector(`#${figure} svg.skin`);
+  const box = canvas.getBoundingClientRect(), turned = drawing.getScreenCTM();
+  const sharp = canvas.width / box.width, pen = canvas.getContext("2d");
+  return places.map(([x, y]) => {
+    const at = new DOMPoint(x, y).matrixTransform(turned);
+    const pixel = pen.getImageData(Math.floor((at.x - box.x) * sharp),
+      Math.floor((at.y - box.y) * sharp), 1, 1).data;
+    return "#" + [...pixel.slice(0, 3)].map((v) => v.toString(16).padStart(2, "0")).join("");
+  });
+}"""
+
+
+def seats(display):
+    """Places of the actuators' middles from that of the array, in mm, row by row."""
+    rows, columns = np.indices((display.rows, display.columns)).reshape(2, -1)
+    return np.column_stack([
+        (columns - (display.columns - 1) / 2) * display.column_pitch_mm,
+        (rows - (display.rows - 1) / 2) * display.row_pitch_mm,
+    ])  # fmt: skip
+
+
+def test_the_pixels_drawn_are_the_frame(opens):
+    scene = Scene("still")
+    page, _ = opens(scene, steers=False)
+    settled(page)
+    frame = scene.frames(np.array([117.3]))[0]
+    look = lambda figure, places: page.evaluate(COLOURS, [figure, places.tolist()])  # noqa: E731
+    stops, named = palette("LIGHT")
+    drawn = ramp(stops)
+    times = int(page.locator("#deflection").inner_text().split("× ")[1].split()[0])
+    # At rest they stand at the right, and go to the left.
+    middles = seats(scene.display)
+    middles[:, 0] += (0.5 - frame.ravel()) * SWING_MM * times
+    wanted = [drawn[round(min(max(value, 0), 1) * STEPS)] for value in frame.ravel().tolist()]
+    assert look("deflection", middles) == wanted
+    assert len(set(wanted)) > 3
+    # Each ends where it should: 0.18 of the pitch to either side, and there is a stroke.
+    for side in (-1, 1):
+        beside = middles + np.array([side * 0.24 * scene.display.column_pitch_mm, 0.2])
+        assert not any(a == b for a, b in zip(look("deflection", beside), wanted, strict=True))
+
+    # What is stretched stands up and is filled, what is pressed hangs down and is hollow: the sign
+    # is seen without colour.
+    strain = -np.diff(frame, axis=1).ravel() * SWING_MM / scene.display.column_pitch_mm
+    tall = strain * 0.44 * scene.display.row_pitch_mm * scene.display.column_pitch_mm / SWING_MM
+    left = seats(scene.display).reshape(*frame.shape, 2)[:, :-1].reshape(-1, 2)
+    left[:, 0] += 0.5 * scene.display.column_pitch_mm
+    within, other = left - [0, 1] * (tall / 2)[:, None], left + [0, 1] * (tall / 2)[:, None]
+    is_up, is_down = tall > 0.2, tall < -0.2
+    assert is_up.any()
+    assert is_down.any()
+    colours, empty = np.array(look("strain", within)), np.array(look("strain", other))
+    assert set(colours[is_up]) == {named["stretch"]}
+    assert set(colours[is_down]) | set(empty[is_up | is_down]) == {paper("LIGHT")}
+    ends = left - [0, 1] * tall[:, None]
+    for colour in np.array(look("strain", ends))[is_down]:
+        assert colour != paper("LIGHT")
+
+
+def test_what_elements_say_of_the_frame_is_so_whenever_the_picture_stands(opens):
+    page, _ = opens(Scene("live"), steers=False)
+    until(page, "Math.max(...vbraille.last.deflections) > 0.5")
+    differs = """[...document.querySelectorAll("#deflection .actuator")].map((actuator, n) =>
+      Math.abs(Number(actuator.dataset.deflection) - vbraille.last.deflections[n]))"""
+    for _ in range(3):
+        at_once = f"() => {{ document.getElementById('freeze').click(); return {differs}; }}"
+        assert max(page.evaluate(at_once)) < 1 / 255
+        page.wait_for_timeout(120)
+        assert max(page.evaluate(differs)) < 1 / 255
+        page.locator("#freeze").click()
+        settled(page)
+
+
+def test_canvases_are_as_sharp_as_the_screen_and_sharper_on_paper(opens):
+    page, _ = opens(Scene("still"), device_scale_factor=2)
+    wide = """[...document.querySelectorAll("#sheet canvas, #touch canvas")].map((canvas) =>
+      canvas.width / canvas.getBoundingClientRect().width)"""
+    assert page.evaluate(wide) == pytest.approx([2, 2, 2])
+    page.evaluate(f"addEventListener('beforeprint', () => {{ window.printed = {wide}; }})")
+    page.pdf()
+    assert page.evaluate("printed") == pytest.approx([4, 4, 4])
+    assert page.evaluate(wide) == pytest.approx([2, 2, 2])
 
 
 def test_frames_drawn_are_the_renderers_and_strain_and_text_follow(opens):
@@ -47,16 +134,16 @@ def test_frames_drawn_are_the_renderers_and_strain_and_text_follow(opens):
     wanted = -np.diff(frame, axis=1) * SWING_MM / scene.display.column_pitch_mm
     np.testing.assert_allclose(strain, wanted.ravel(), atol=1e-6)
 
-    # Bars of what is pressed go down, and are hollow: the sign is seen without colour.
-    bars = page.locator("#strain .bar").evaluate_all(
-        """all => all.filter((b) => b.getAttribute("d")).map((b) =>
-        [b.getAttribute("d").includes("v-"), b.getAttribute("fill") !== "none"])"""
-    )
-    assert all(up == filled for up, filled in bars)
-    assert {up for up, _ in bars} == {True, False}
-
     # The array stands on the page where the finger is.
-    assert "translate(117.30" in page.locator("#finger").get_attribute("transform")
+    still = page.locator("#sheet .still").bounding_box()
+    left_mm, _, wide_mm, _ = (
+        float(number) for number in page.locator(".still").get_attribute("viewBox").split()
+    )
+    px_mm = still["width"] / wide_mm
+    for drawn in ("#finger .frame", "#finger canvas", ".hairline"):
+        box = page.locator(drawn).bounding_box()
+        at_mm = left_mm + (box["x"] + box["width"] / 2 - still["x"]) / px_mm
+        assert at_mm == pytest.approx(117.3, abs=1 / px_mm), drawn
     assert page.locator(".line.under").get_attribute("data-line") == "2"
     page.locator("summary").click()
     cells = page.locator("#tables table").first.locator("td").all_inner_texts()

@@ -9,7 +9,7 @@ from tests.live.page.showing import comes, settled, until
 from tests.live.scenes import Scene
 from vbraille.live.messages import LetGo, PagePress, Point, Turn
 
-PX_MM = """(() => { const drawing = document.querySelector("#sheet .moving");
+PX_MM = """(() => { const drawing = document.querySelector("#sheet .still");
 return drawing.getBoundingClientRect().width / drawing.viewBox.baseVal.width; })()"""
 
 

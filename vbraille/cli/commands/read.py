@@ -209,7 +209,9 @@ class _Reading:
 
     def _obey(self) -> None:
         """Do what pages of the live view have asked for."""
-        for asked in () if self._live is None else self._live.take():
+        if self._live is None:
+            return
+        for asked in self._live.take():
             self._set_context()
             self._live.obey(asked)
 

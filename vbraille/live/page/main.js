@@ -37,7 +37,7 @@ let frame = null;
 let queue = [];
 let drawn = 0;
 let drawnAt = -Infinity;
-let readAt = -Infinity;
+let reading = 0; // until the numbers are read anew
 let frozen = false;
 let woken = false;
 let noticed = 0;
@@ -197,19 +197,27 @@ function pageNote(now) {
 /** @param {number} now */
 function draw(now) {
   if (!state) return;
-  for (const each of queue) traces.draw(each);
+  for (const each of queue) traces.take(each);
   frame = queue[queue.length - 1];
   queue = [];
   sheet.move(state, frame);
   if (!state.blind) skin.move(state, frame);
   hand.see(frame);
   if (playback.on) playback.show();
-  if (now - readAt >= READ_MS || (playback.on && !playback.playing)) {
-    readAt = now;
-    telling.read(state, frame);
-  }
+  if (still.matches || (playback.on && !playback.playing)) read();
+  else if (!reading) reading = window.setTimeout(read, READ_MS);
   drawn += 1;
   drawnAt = now;
+}
+
+/** Tells what is drawn in words and numbers. */
+function read() {
+  clearTimeout(reading);
+  reading = 0;
+  if (!state || !frame) return;
+  telling.read(state, frame);
+  traces.draw();
+  if (!state.blind) skin.tell();
 }
 
 byId("say").addEventListener("click", () => {
@@ -220,7 +228,7 @@ byId("say").addEventListener("click", () => {
 byId("freeze").addEventListener("click", () => {
   frozen = !frozen;
   byId("freeze").setAttribute("aria-pressed", String(frozen));
-  if (state && frame) telling.read(state, frame); // the numbers are those of the picture
+  read(); // the numbers are those of the picture
   wake();
 });
 byId("again").addEventListener("click", () => {

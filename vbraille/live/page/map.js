@@ -46,7 +46,7 @@ export class DeflectionMap {
     }
     if (this.#address) URL.revokeObjectURL(this.#address);
     this.#address = URL.createObjectURL(map.file);
-    const words = `Deflection map of ${this.title || "the page"}, with scales in mm`;
+    const words = `Deflection map of ${this.title || "the page"}, to scale`;
     byId("map-figure").replaceChildren(html("img", { src: this.#address, alt: words }), html("figcaption", {}, words));
     byId("map-figure").hidden = false;
     write(byId("map-words"), "The map is drawn.");

@@ -1,9 +1,11 @@
 /**
  * The page to scale: its lines with cells, dots and print, rulers in mm, and the array where the
- * finger is. What stands still is one drawing, and the array another over it.
+ * finger is. What stands still is one drawing, and the array another that is moved over it as a
+ * whole, so that neither is drawn again for that.
  */
 
 import { DOTS, distances, dotX, dotY, endOf, placeOf, under } from "./braille.js";
+import { Canvas, onSharpness, whole } from "./canvas.js";
 import { fixed, html, put, ruler, svg } from "./drawing.js";
 import { onScheme, stepOf, steps } from "./palette.js";
 
@@ -31,23 +33,27 @@ export class Sheet {
   #wide = 1;
   #high = 1;
   #most = 0; // the tallest page so far, so that nothing below it jumps
-  /** @type {SVGRectElement[]} */
-  #contactors = [];
+  #contactors = new Canvas(false);
   /** @type {number[]} */
-  #steps = [];
+  #steps = []; // the colour in which each contactor is drawn; it is not moved by less, either
+  #moved = ""; // what stands in the drawing, so that only what changes is touched
+  #marked = "";
+  /** @type {boolean | null} */
+  #known = null;
 
   /** @param {HTMLElement} figure */
   constructor(figure) {
     this.still = svg("svg", { "aria-hidden": "true", class: "still" });
-    this.moving = svg("svg", { class: "moving" });
-    this.marks = svg("g", { class: "marks" });
-    this.hairline = svg("g", { class: "hairline" });
-    this.array = svg("g", { class: "array", id: "finger" });
-    this.moving.append(this.marks, this.hairline, this.array);
+    this.marks = html("div", { class: "marks" }, html("div"), html("div"));
+    this.hairline = svg("svg", { class: "hairline", "aria-hidden": "true" });
+    this.outline = svg("svg", { "aria-hidden": "true" });
+    this.array = html("div", { class: "array", id: "finger" }, this.outline, this.#contactors.element);
+    this.moving = html("div", { class: "moving" }, this.marks, this.hairline, this.array);
     figure.append(html("div", { class: "layers" }, this.still, this.moving));
     const layers = /** @type {HTMLElement} */ (figure.firstElementChild);
     new ResizeObserver(() => this.show(this.#state)).observe(layers);
     onScheme(() => this.show(this.#state));
+    onSharpness(() => this.show(this.#state));
   }
 
   /**
@@ -89,7 +95,7 @@ export class Sheet {
     this.#most = state.lines.length ? Math.max(this.#most, tall) : tall;
     if (this.#most > 3 * tall) this.#most = tall;
     this.#top = first - TOP_PX * px;
-    this.#high = this.#most + (TOP_PX + 14) * px;
+    this.#high = Math.ceil(this.#most * this.#px_mm + TOP_PX + 14) * px;
     if (fit >= LEAST_PX_MM) this.#left = from - pad * px;
     this.#draw(state, d, first);
     this.#contact(state);
@@ -205,42 +211,51 @@ export class Sheet {
     const px = 1 / this.#px_mm;
     const [wide, high] = [array.columns * array.column_pitch_mm, array.rows * array.row_pitch_mm];
     const hit = [Math.max(wide, LEAST_FINGER_PX * px), Math.max(high, LEAST_FINGER_PX * px)];
-    this.#contactors = [];
     this.#steps = [];
-    const group = svg("g", { class: "contactors" });
-    const seats = svg("path", { class: "seats", "stroke-width": 0.5 * px });
-    group.append(seats);
-    let outline = "";
-    if (!state.blind) {
-      for (let row = 0; row < array.rows; row++) {
-        for (let column = 0; column < array.columns; column++) {
-          const mark = svg("rect", {
-            x: (column - (array.columns - 1) / 2 - 0.3) * array.column_pitch_mm,
-            y: (row - (array.rows - 1) / 2 - 0.32) * array.row_pitch_mm,
-            width: 0.6 * array.column_pitch_mm, height: 0.64 * array.row_pitch_mm, visibility: "hidden",
-          });
-          const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
-          outline += `M${mark.getAttribute("x")} ${mark.getAttribute("y")}h${w}v${h}h${-w}z`;
-          this.#contactors.push(mark);
-          group.append(mark);
-        }
+    this.#moved = this.#marked = "";
+    let seats = "";
+    const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
+    for (let row = 0; row < array.rows && !state.blind; row++) {
+      for (let column = 0; column < array.columns; column++) {
+        const [x, y] = this.#seat(array, row, column);
+        seats += `M${x} ${y}h${w}v${h}h${-w}z`;
       }
     }
-    seats.setAttribute("d", outline);
     const frame = { x: -wide / 2, y: -high / 2, width: wide, height: high, rx: 3 * px };
     const grown = { x: frame.x - 3 * px, y: frame.y - 3 * px, width: wide + 6 * px, height: high + 6 * px, rx: 5 * px };
-    this.array.replaceChildren(
+    // As wide as an even number of pixels, so that its middle falls on a whole one.
+    const even = (/** @type {number} */ mm) => 2 * Math.ceil((mm * this.#px_mm) / 2 + 5);
+    const [box, tall] = [even(hit[0]), even(hit[1])];
+    sized(this.outline, -box / 2, -tall / 2, box, tall, px);
+    this.outline.replaceChildren(
       svg("rect", { class: "hit", x: -hit[0] / 2, y: -hit[1] / 2, width: hit[0], height: hit[1] }),
       svg("rect", { class: "ring", ...grown }),
       svg("rect", { class: "frame", ...frame }),
-      group,
+      svg("path", { class: "seats", "stroke-width": 0.5 * px, d: seats }),
     );
-    const to = this.#top + (TOP_PX - 6) * px;
+    this.#contactors.fit(-box / 2 * px, -tall / 2 * px, box, tall, this.#px_mm);
+    const { style: canvas } = this.#contactors.element;
+    [canvas.left, canvas.top] = [`${-box / 2}px`, `${-tall / 2}px`];
+    const to = TOP_PX - 6;
+    const down = Math.round(this.#high * this.#px_mm);
+    sized(this.hairline, -6, 0, 12, down, 1);
     this.hairline.replaceChildren(
-      svg("path", { d: `M0 ${to}V${this.#top + this.#high}`, class: "thread" }),
-      svg("path", { d: `M0 ${to}l${-5 * px} ${-8 * px}h${10 * px}z`, class: "pointer" }),
+      svg("path", { d: `M0 ${to}V${down}`, class: "thread" }),
+      svg("path", { d: `M0 ${to}l-5 -8h10z`, class: "pointer" }),
     );
-    this.marks.replaceChildren(svg("rect", { class: "word" }), svg("rect", { class: "cell" }));
+  }
+
+  /**
+   * The upper left corner of a contactor in the middle of its swing, from the array's middle.
+   * @param {import("./messages.js").ArrayShown} array
+   * @param {number} row
+   * @param {number} column
+   */
+  #seat(array, row, column) {
+    return [
+      (column - (array.columns - 1) / 2 - 0.3) * array.column_pitch_mm,
+      (row - (array.rows - 1) / 2 - 0.32) * array.row_pitch_mm,
+    ];
   }
 
   /**
@@ -251,10 +266,8 @@ export class Sheet {
     this.#left = left;
     const box = [left, this.#top, this.#wide, this.#high].map((value) => value.toFixed(3)).join(" ");
     const height = String(Math.round(this.#high * this.#px_mm));
-    for (const drawing of [this.still, this.moving]) {
-      put(drawing, "viewBox", box);
-      put(drawing, "height", height);
-    }
+    put(this.still, "viewBox", box);
+    put(this.still, "height", height);
     const at = left + (this.span?.pad ?? 0) - 10 / this.#px_mm;
     if (this.side) put(this.side, "transform", `translate(${at.toFixed(3)} 0)`);
   }
@@ -268,13 +281,17 @@ export class Sheet {
     this.#frame = frame;
     if (!state.array || !this.span) return;
     const known = Number.isFinite(frame.x_mm);
-    put(this.moving, "visibility", known ? "visible" : "hidden");
+    if (known !== this.#known) this.moving.style.visibility = (this.#known = known) ? "visible" : "hidden";
     if (!known) return;
     const { x, y, theta } = placeOf(state, frame);
     this.#follow(x);
-    const turn = theta ? ` rotate(${((-theta * 180) / Math.PI).toFixed(2)})` : "";
-    put(this.array, "transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})${turn}`);
-    put(this.hairline, "transform", `translate(${x.toFixed(2)} 0)`);
+    const [right, down] = [whole((x - this.#left) * this.#px_mm), whole((y - this.#top) * this.#px_mm)];
+    const turn = theta ? ` rotate(${(-theta).toFixed(4)}rad)` : "";
+    const moved = `translate(${right}px, ${down}px)${turn}`;
+    if (moved !== this.#moved) {
+      this.array.style.transform = this.#moved = moved;
+      this.hairline.style.transform = `translate(${right}px)`;
+    }
     this.#mark(state, frame);
     this.#deflect(state, frame);
   }
@@ -298,22 +315,24 @@ export class Sheet {
    * @param {Frame} frame
    */
   #mark(state, frame) {
-    const [word, cell] = this.marks.children;
-    if (!word || !cell) return;
+    const [word, cell] = /** @type {HTMLCollectionOf<HTMLElement>} */ (this.marks.children);
     const d = distances(state);
     const here = state.blind || !d ? null : under(state, frame);
-    const show = (/** @type {Element} */ mark, /** @type {[number, number] | null} */ cells) => {
-      put(mark, "visibility", cells && here && d ? "inherit" : "hidden");
+    const marked = here && d ? `${here.line.number} ${here.line.start_mm} ${here.cell} ${this.#left}` : "";
+    if (marked === this.#marked) return;
+    this.#marked = marked;
+    const show = (/** @type {HTMLElement} */ mark, /** @type {number} */ thick, /** @type {[number, number] | null} */ cells) => {
+      mark.hidden = !cells;
       if (!cells || !here || !d) return;
       const [from, to] = [dotX(d, here.line, cells[0], 0) - d.width / 2, dotX(d, here.line, cells[1], 1) + d.width / 2];
-      const thick = (mark === cell ? 2.6 : 1.2) / this.#px_mm;
-      put(mark, "x", from.toFixed(2));
-      put(mark, "width", (to - from).toFixed(2));
-      put(mark, "y", (here.line.top_mm + d.line + this.#below(d) - thick).toFixed(2));
-      put(mark, "height", thick.toFixed(3));
+      const bottom = (here.line.top_mm + d.line + this.#below(d) - this.#top) * this.#px_mm;
+      mark.style.left = `${((from - this.#left) * this.#px_mm).toFixed(2)}px`;
+      mark.style.width = `${((to - from) * this.#px_mm).toFixed(2)}px`;
+      mark.style.top = `${(bottom - thick).toFixed(2)}px`;
+      mark.style.height = `${thick}px`;
     };
-    show(cell, here && here.cell >= 0 ? [here.cell, here.cell] : null);
-    show(word, here && here.word[1] > here.word[0] ? cellsOf(here.line, here.word) : null);
+    show(cell, 2.6, here && here.cell >= 0 ? [here.cell, here.cell] : null);
+    show(word, 1.2, here && here.word[1] > here.word[0] ? cellsOf(here.line, here.word) : null);
   }
 
   /**
@@ -330,16 +349,19 @@ export class Sheet {
    */
   #deflect(state, frame) {
     const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
-    const fits = frame.deflections.length === this.#contactors.length;
     const palette = steps();
     const way = (array.rest_right ? -1 : 1) * array.swing_mm;
-    this.#contactors.forEach((mark, n) => {
-      const step = fits ? stepOf(frame.deflections[n]) : 0;
-      if (this.#steps[n] === step) return;
-      this.#steps[n] = step;
-      mark.setAttribute("visibility", step ? "inherit" : "hidden"); // at rest, the dots below are seen
-      mark.setAttribute("fill", palette[step]);
-      mark.setAttribute("transform", `translate(${((frame.deflections[n] - 0.5) * way).toFixed(3)})`);
+    const fits = frame.deflections.length === array.rows * array.columns;
+    const wanted = fits ? Array.from(frame.deflections, stepOf) : [];
+    if (wanted.length === this.#steps.length && wanted.every((step, n) => step === this.#steps[n])) return;
+    this.#steps = wanted;
+    const pen = this.#contactors.begin();
+    const [w, h] = [0.6 * array.column_pitch_mm, 0.64 * array.row_pitch_mm];
+    wanted.forEach((step, n) => {
+      if (!step) return; // at rest, the dots below are seen
+      const [x, y] = this.#seat(array, Math.floor(n / array.columns), n % array.columns);
+      pen.fillStyle = palette[step];
+      pen.fillRect(x + (frame.deflections[n] - 0.5) * way, y, w, h);
     });
   }
 
@@ -361,9 +383,26 @@ function cellsOf(line, [from, to]) {
 }
 
 /**
+ * Gives a small drawing its place around the point that it is moved by, and its scale.
+ * @param {SVGSVGElement} drawing
+ * @param {number} left in pixels
+ * @param {number} top
+ * @param {number} wide
+ * @param {number} high
+ * @param {number} unit of its coordinates, for a pixel
+ */
+function sized(drawing, left, top, wide, high, unit) {
+  drawing.setAttribute("width", String(wide));
+  drawing.setAttribute("height", String(high));
+  drawing.setAttribute("viewBox", [left, top, wide, high].map((px) => px * unit).join(" "));
+  drawing.style.left = `${left}px`;
+  drawing.style.top = `${top}px`;
+}
+
+/**
  * @param {number} x
  * @param {number} y
  * @param {number} r
  */
-export const circle = (x, y, r) =>
+const circle = (x, y, r) =>
   `M${(x - r).toFixed(2)} ${y.toFixed(2)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;

@@ -4,9 +4,9 @@
  */
 
 import { DOTS, distances, dotX, dotY, lineUnder, placeOf } from "./braille.js";
-import { fixed, html, put, ruler, short, svg } from "./drawing.js";
+import { Canvas, onSharpness } from "./canvas.js";
+import { fixed, html, ruler, short, svg } from "./drawing.js";
 import { STEPS, colours, onScheme, stepOf, steps } from "./palette.js";
-import { circle } from "./sheet.js";
 
 /** @typedef {import("./messages.js").State} State */
 /** @typedef {import("./messages.js").Frame} Frame */
@@ -53,19 +53,20 @@ export class Skin {
   #frame = null;
   #px_mm = 20;
   #times = 1;
-  /** @type {SVGRectElement[]} */
-  #marks = [];
   /** @type {SVGGElement[]} */
   #cells = [];
-  /** @type {number[]} */
-  #steps = [];
-  /** @type {{path: SVGPathElement, x: number, y: number, high: number, kind: string}[]} */
-  #bars = [];
-  /** What stands in the drawing, so that only what changes is touched: in 1/10000 and in pixels. */
-  #shown = new Int32Array(0);
-  #moved = new Int32Array(0);
+  /** Middle of each actuator's seat, in mm from the middle of the array. */
+  #seats = { x: new Float64Array(0), y: new Float64Array(0), wide: 0, high: 0 };
+  #slots = new Path2D();
+  #lines = new Path2D();
+  #corner = { x: 0, y: 0 }; // of the drawing, in mm
   #made = "";
   #dots = "";
+  #flat = new Path2D();
+  #raised = new Path2D();
+  #ink = { paper: "", edge: "", hair: "", beneath: "" };
+  #leaning = new Canvas(true);
+  #strained = new Canvas(true);
   chosen = { row: 0, column: 0 };
   #first = true;
   /** Called when another actuator is chosen. */
@@ -81,17 +82,19 @@ export class Skin {
     this.right = svg("svg", {
       class: "skin", role: "img", "aria-label": "Strain of the skin between neighbours, a bar for each; the same stands in a table below",
     });
+    this.ring = html("div", { class: "chosen", hidden: "" });
     this.legend = html("div", { class: "legend" });
     this.key = html("div", { class: "legend" });
     this.note = note;
-    leaning.append(this.left, html("figcaption", {}, this.legend));
-    strained.append(this.right, html("figcaption", {}, this.key));
-    this.beneath = svg("g", { class: "beneath" });
+    leaning.append(html("div", { class: "over" }, this.left, this.#leaning.element, this.ring), html("figcaption", {}, this.legend));
+    strained.append(html("div", { class: "over" }, this.right, this.#strained.element), html("figcaption", {}, this.key));
     this.figure = leaning;
     new ResizeObserver(() => this.#again()).observe(leaning);
     onScheme(() => this.#again());
-    this.left.addEventListener("keydown", (event) => this.#key(event));
-    this.left.addEventListener("focusin", (event) => this.#focused(event));
+    onSharpness(() => this.#again());
+    // Not of the drawing itself: that would make it a stop of the tabulator key.
+    leaning.addEventListener("keydown", (event) => this.#key(event));
+    leaning.addEventListener("focusin", (event) => this.#focused(event));
   }
 
   #again() {
@@ -141,8 +144,8 @@ export class Skin {
     const box = [-wide / 2 - LEFT_PX * px, -high / 2 - TOP_PX * px, wide + LEFT_PX * px, high + (TOP_PX + 2) * px];
     for (const drawing of [this.left, this.right]) {
       drawing.setAttribute("viewBox", box.map((value) => value.toFixed(3)).join(" "));
-      drawing.setAttribute("width", String(Math.round(box[2] * this.#px_mm)));
-      drawing.setAttribute("height", String(Math.round(box[3] * this.#px_mm)));
+      drawing.setAttribute("width", (box[2] * this.#px_mm).toFixed(3));
+      drawing.setAttribute("height", (box[3] * this.#px_mm).toFixed(3));
       drawing.setAttribute("font-size", String(11.5 * px));
       drawing.setAttribute("stroke-width", String(px));
     }
@@ -160,81 +163,62 @@ export class Skin {
       }
       return group;
     };
-    const clip = svg("clipPath", { id: "window" });
-    clip.append(svg("rect", { x: -wide / 2, y: -high / 2, width: wide, height: high }));
-    const window = svg("rect", { class: "window", x: -wide / 2, y: -high / 2, width: wide, height: high });
     const grid = svg("g", { role: "grid", "aria-labelledby": "touch-heading", class: "actuators" });
-    this.#marks = [];
+    const count = array.rows * array.columns;
     this.#cells = [];
-    this.#steps = [];
+    this.#seats = { x: new Float64Array(count), y: new Float64Array(count), wide: 0.36 * pitch, high: 0.62 * row_mm };
     this.#dots = "";
-    this.#shown = new Int32Array(array.rows * array.columns).fill(-1);
-    this.#moved = new Int32Array(array.rows * array.columns).fill(1 << 30);
+    this.#corner = { x: box[0], y: box[1] };
+    for (const canvas of [this.#leaning, this.#strained]) {
+      canvas.fit(-wide / 2, -high / 2, wide * this.#px_mm, high * this.#px_mm, this.#px_mm);
+    }
+    const style = getComputedStyle(this.figure);
+    const ink = (/** @type {string} */ name) => style.getPropertyValue(`--${name}`).trim();
+    this.#ink = { paper: ink("paper"), edge: ink("edge"), hair: ink("hair"), beneath: ink("beneath") };
     const slot = (array.swing_mm * this.#times) / 2;
-    const [w, h] = [0.36 * pitch, 0.62 * row_mm];
+    const h = this.#seats.high;
+    let slots = "";
     for (let row = 0; row < array.rows; row++) {
       const line = svg("g", { role: "row" });
       for (let column = 0; column < array.columns; column++) {
         const rest = x(column) + (array.rest_right ? slot : -slot);
-        const mark = svg("rect", {
-          class: "contactor", x: x(column) - w / 2, y: y(row) - h / 2, width: w, height: h,
-        });
+        this.#seats.x[this.#cells.length] = x(column);
+        this.#seats.y[this.#cells.length] = y(row);
+        slots += `M${x(column) - slot} ${y(row)}h${2 * slot}M${rest} ${y(row) - h / 2}v${h}`;
         const cell = svg("g", {
           role: "gridcell", class: "actuator", tabindex: -1, "data-row": row, "data-column": column,
           "aria-label": `row ${row + 1}, column ${column + 1}`,
         },
-        svg("rect", { class: "hit", x: x(column) - pitch / 2, y: y(row) - row_mm / 2, width: pitch, height: row_mm }),
-        svg("rect", {
-          class: "ring", x: x(column) - pitch / 2 + px, y: y(row) - row_mm / 2 + px, width: pitch - 2 * px,
-          height: row_mm - 2 * px, rx: 3 * px,
-        }),
-        svg("rect", {
-          class: "chosen", x: x(column) - pitch / 2 + 2 * px, y: y(row) - row_mm / 2 + 2 * px, width: pitch - 4 * px,
-          height: row_mm - 4 * px, rx: 2 * px, "stroke-width": 2 * px,
-        }),
-        svg("path", { class: "slot", d: `M${x(column) - slot} ${y(row)}h${2 * slot}M${rest} ${y(row) - h / 2}v${h}` }),
-        mark);
+        svg("rect", { class: "hit", x: x(column) - pitch / 2, y: y(row) - row_mm / 2, width: pitch, height: row_mm }));
         cell.addEventListener("click", () => this.choose(row, column, true));
-        this.#marks.push(mark);
         this.#cells.push(cell);
         line.append(cell);
       }
       grid.append(line);
     }
-    const clipped = svg("g", { "clip-path": "url(#window)", "aria-hidden": "true" }, this.beneath);
-    this.left.replaceChildren(clip, window, clipped, scales(), grid);
-    this.#strain(array, x, y, row_mm, scales(), wide);
+    this.#slots = new Path2D(slots);
+    this.left.replaceChildren(scales(), grid);
+    this.#strain(array, row_mm, scales(), wide);
     this.#words(array);
     const { row, column } = this.#first ? { row: 0, column: array.columns >> 1 } : this.chosen;
     this.#first = false;
     this.choose(Math.min(row, array.rows - 1), Math.min(column, array.columns - 1), false);
+    this.tell();
   }
 
   /**
    * @param {ArrayShown} array
-   * @param {(column: number) => number} x
-   * @param {(row: number) => number} y
    * @param {number} row_mm
    * @param {SVGGElement} scales
    * @param {number} wide
    */
-  #strain(array, x, y, row_mm, scales, wide) {
+  #strain(array, row_mm, scales, wide) {
     const most = array.swing_mm / array.column_pitch_mm || 1;
     this.unit = (0.44 * row_mm) / most; // mm on the drawing for a strain of 1
-    const bars = svg("g", { class: "bars" });
-    this.#bars = [];
-    for (let row = 0; row < array.rows; row++) {
-      bars.append(svg("path", { class: "slot", d: `M${-wide / 2} ${y(row)}h${wide}` }));
-      for (let column = 0; column < array.columns; column++) {
-        const seat = x(column) - 0.05 * array.column_pitch_mm;
-        bars.append(svg("rect", { class: "seat", x: seat, y: y(row) - 1 / this.#px_mm, width: 0.1 * array.column_pitch_mm, height: 2 / this.#px_mm }));
-        if (column + 1 === array.columns) continue;
-        const path = svg("path", { class: "bar" });
-        this.#bars.push({ path, x: x(column) + 0.19 * array.column_pitch_mm, y: y(row), high: NaN, kind: "" });
-        bars.append(path);
-      }
-    }
-    this.right.replaceChildren(scales, bars);
+    let lines = "";
+    for (let n = 0; n < this.#seats.y.length; n += array.columns) lines += `M${-wide / 2} ${this.#seats.y[n]}h${wide}`;
+    this.#lines = new Path2D(lines);
+    this.right.replaceChildren(scales);
   }
 
   /** @param {ArrayShown} array */
@@ -268,14 +252,14 @@ export class Skin {
   }
 
   /**
-   * Draws the dots that pass beneath the array; only those near it, which are few.
+   * Collects the dots that pass beneath the array; only those near it, which are few.
    * @param {State} state
    * @param {Frame} frame
    */
   #near(state, frame) {
     const d = distances(state);
     const array = state.array;
-    if (!d || !array || !Number.isFinite(frame.x_mm)) return;
+    if (!d || !array) return;
     const reach = Math.hypot(array.columns * array.column_pitch_mm, array.rows * this.#rowOf(array)) / 2 + d.width;
     const two = array.height_mm > 0;
     const near = (/** @type {import("./messages.js").LineShown} */ line) =>
@@ -286,19 +270,19 @@ export class Skin {
     const made = `${state.number} ${lines.map((line) => `${line.number}:${first(line.start_mm)}`).join()}`;
     if (made === this.#dots) return;
     this.#dots = made;
-    let raised = "";
-    let flat = "";
+    this.#flat = new Path2D();
+    this.#raised = new Path2D();
     for (const line of lines) {
       const from = Math.max(first(line.start_mm), 0);
       line.cells.slice(from, from + count).forEach((mask, n) => {
         DOTS.slice(0, mask > 0x3f ? 8 : 6).forEach(([column, row], dot) => {
-          const drawn = circle(dotX(d, line, from + n, column), dotY(d, line, row), d.width / 2);
-          if ((mask >> dot) & 1) raised += drawn;
-          else flat += drawn;
+          const path = (mask >> dot) & 1 ? this.#raised : this.#flat;
+          const [x, y] = [dotX(d, line, from + n, column), dotY(d, line, row)];
+          path.moveTo(x + d.width / 2, y);
+          path.arc(x, y, d.width / 2, 0, 2 * Math.PI);
         });
       });
     }
-    this.beneath.replaceChildren(svg("path", { class: "flat", d: flat }), svg("path", { class: "raised", d: raised }));
   }
 
   /**
@@ -309,53 +293,79 @@ export class Skin {
   move(state, frame) {
     this.#frame = frame;
     const array = state.array;
-    if (!array || frame.deflections.length !== this.#marks.length || state.blind) return;
+    if (!array || frame.deflections.length !== this.#cells.length || state.blind) return;
+    const pen = this.#leaning.begin(this.#ink.paper);
+    pen.lineWidth = 1 / this.#px_mm;
+    if (Number.isFinite(frame.x_mm) && (array.height_mm > 0 || lineUnder(state, frame))) this.#below(pen, state, frame);
+    pen.strokeStyle = this.#ink.edge;
+    pen.stroke(this.#slots);
     const palette = steps();
     const way = (array.rest_right ? -1 : 1) * array.swing_mm * this.#times;
-    const fine = 4 * this.#px_mm; // quarters of a pixel
-    for (let n = 0; n < this.#marks.length; n++) {
+    const { x, y, wide, high } = this.#seats;
+    for (let n = 0; n < x.length; n++) {
       const deflection = frame.deflections[n];
-      const exact = Math.round(deflection * 10_000);
-      if (this.#shown[n] === exact) continue;
-      this.#shown[n] = exact;
-      this.#cells[n].setAttribute("data-deflection", deflection.toFixed(4));
-      const moved = Math.round((deflection - 0.5) * way * fine);
-      if (this.#moved[n] !== moved) {
-        this.#moved[n] = moved;
-        this.#marks[n].setAttribute("transform", `translate(${(moved / fine).toFixed(3)})`);
-      }
-      const step = stepOf(deflection);
-      if (this.#steps[n] !== step) this.#marks[n].setAttribute("fill", palette[(this.#steps[n] = step)]);
+      const left = x[n] + (deflection - 0.5) * way - wide / 2;
+      pen.fillStyle = palette[stepOf(deflection)];
+      pen.fillRect(left, y[n] - high / 2, wide, high);
+      pen.strokeRect(left, y[n] - high / 2, wide, high);
     }
     this.#stretch(array, frame);
-    this.#near(state, frame);
-    if (!Number.isFinite(frame.x_mm)) return;
-    const { x, y, theta } = placeOf(state, frame);
-    const turn = theta ? `rotate(${((theta * 180) / Math.PI).toFixed(2)}) ` : "";
-    put(this.beneath, "transform", `${turn}translate(${(-x).toFixed(2)} ${(-y).toFixed(2)})`);
-    put(this.beneath, "visibility", lineUnder(state, frame) || array.height_mm > 0 ? "visible" : "hidden");
   }
 
   /**
+   * Draws the dots beneath the array.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {State} state
+   * @param {Frame} frame
+   */
+  #below(pen, state, frame) {
+    this.#near(state, frame);
+    const { x, y, theta } = placeOf(state, frame);
+    pen.save();
+    if (theta) pen.rotate(theta);
+    pen.translate(-x, -y);
+    pen.strokeStyle = this.#ink.hair;
+    pen.stroke(this.#flat);
+    pen.fillStyle = this.#ink.beneath;
+    pen.fill(this.#raised);
+    pen.strokeStyle = this.#ink.edge;
+    pen.stroke(this.#raised);
+    pen.restore();
+  }
+
+  /**
+   * Draws the strain: a bar between neighbours.
    * @param {ArrayShown} array
    * @param {Frame} frame
    */
   #stretch(array, frame) {
-    const unit = (this.unit ?? 1) * this.#px_mm * 2;
-    const wide = (0.62 * array.column_pitch_mm).toFixed(3);
-    const found = strains(array, frame.deflections);
-    for (let n = 0; n < found.length; n++) {
-      const bar = this.#bars[n];
-      const high = Math.round(found[n] * unit); // in halves of a pixel
-      if (bar.high === high) continue;
-      bar.high = high;
-      const tall = (-high / (2 * this.#px_mm)).toFixed(3);
-      bar.path.setAttribute("d", high ? `M${bar.x.toFixed(3)} ${bar.y.toFixed(3)}h${wide}v${tall}h-${wide}z` : "");
-      const kind = high > 0 ? "stretch" : "press";
-      if (bar.kind === kind) continue;
-      bar.kind = kind;
-      for (const [name, value] of Object.entries(this.#look(high > 0))) bar.path.setAttribute(name, String(value));
-    }
+    const pen = this.#strained.begin(this.#ink.paper);
+    pen.lineWidth = 1 / this.#px_mm;
+    const { stretch, press } = colours();
+    const unit = this.unit ?? 1;
+    const wide = 0.62 * array.column_pitch_mm;
+    const { x, y } = this.#seats;
+    pen.strokeStyle = this.#ink.hair;
+    pen.stroke(this.#lines);
+    pen.fillStyle = this.#ink.edge;
+    const [seat, thick] = [0.1 * array.column_pitch_mm, 2 / this.#px_mm];
+    for (let n = 0; n < x.length; n++) pen.fillRect(x[n] - seat / 2, y[n] - thick / 2, seat, thick);
+    pen.fillStyle = stretch;
+    pen.strokeStyle = press;
+    strains(array, frame.deflections).forEach((strain, bar) => {
+      const n = bar + Math.floor(bar / (array.columns - 1));
+      const [left, high] = [x[n] + 0.19 * array.column_pitch_mm, strain * unit];
+      if (Math.abs(high) * this.#px_mm < 0.25) return; // less than anybody sees
+      if (high > 0) pen.fillRect(left, y[n] - high, wide, high);
+      else pen.strokeRect(left, y[n], wide, -high);
+    });
+  }
+
+  /** Writes what is drawn into the elements, for whoever reads them; a few times a second. */
+  tell() {
+    const deflections = this.#frame?.deflections;
+    if (deflections?.length !== this.#cells.length) return;
+    this.#cells.forEach((cell, n) => cell.setAttribute("data-deflection", deflections[n].toFixed(4)));
   }
 
   /**
@@ -375,6 +385,12 @@ export class Skin {
       if (here) this.#name(cell, n);
       if (here && focus) cell.focus();
     });
+    const n = row * array.columns + column;
+    this.ring.hidden = false;
+    const [wide, high] = [array.column_pitch_mm, this.#rowOf(array)];
+    const corner = [this.#seats.x[n] - wide / 2 - this.#corner.x, this.#seats.y[n] - high / 2 - this.#corner.y];
+    const px = [...corner, wide, high].map((mm, at) => `${(mm * this.#px_mm + (at < 2 ? 1 : -2)).toFixed(2)}px`);
+    [this.ring.style.left, this.ring.style.top, this.ring.style.width, this.ring.style.height] = px;
     this.onchoose();
   }
 

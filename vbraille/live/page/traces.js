@@ -11,6 +11,7 @@ import { colours, onScheme } from "./palette.js";
 export const SPAN_S = 5;
 const GAP_S = 0.12; // wiped before the pen
 const BREAK_S = 0.25; // without a sample for so long, the line is broken
+const DRAW_MS = 60; // the pen goes by a hair's breadth meanwhile
 const HIGH_PX = 84;
 const LEFT_PX = 58;
 
@@ -146,6 +147,10 @@ class Trace {
 }
 
 export class Traces {
+  /** @type {Frame[]} */
+  #frames = [];
+  #drawn = -Infinity;
+
   /** @param {HTMLElement} parent */
   constructor(parent) {
     this.place = new Trace(parent, "position");
@@ -174,13 +179,27 @@ export class Traces {
     );
   }
 
-  /** @param {Frame} frame */
-  draw(frame) {
-    this.place.draw(frame, 1);
-    if (!this.actuator.figure.hidden) this.actuator.draw(frame, 2);
+  /**
+   * Takes a frame; it is drawn with those after it, a few at a time.
+   * @param {Frame} frame
+   */
+  take(frame) {
+    this.#frames.push(frame);
+    if (performance.now() - this.#drawn >= DRAW_MS) this.draw();
+  }
+
+  /** Draws what was taken. */
+  draw() {
+    for (const frame of this.#frames) {
+      this.place.draw(frame, 1);
+      if (!this.actuator.figure.hidden) this.actuator.draw(frame, 2);
+    }
+    this.#frames = [];
+    this.#drawn = performance.now();
   }
 
   wipe() {
+    this.#frames = [];
     this.place.wipe();
     this.actuator.wipe();
   }
