@@ -129,6 +129,12 @@ def analyse(parser: ArgumentParser) -> None:
         "its own: P01 of the folder berlin is berlin/P01.",
     )
     parser.add_argument(
+        "--mapping",
+        metavar="FILE.toml",
+        help="Read tables that another program wrote, such as PsychoPy, OpenSesame or jsPsych, by "
+        "this file: which of their columns is which of ours.",
+    )
+    parser.add_argument(
         "--factors",
         type=names,
         metavar="NAME,NAME",
