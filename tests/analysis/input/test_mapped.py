@@ -218,7 +218,7 @@ def test_json_that_is_no_table_is_refused(tmp_path, table, said):
          "nearest is from"),
         (('from = "typed"', "from = []"), "line 6.*from names no column; name one"),
         (('from = "typed"', 'from = "typed", always = 1'), "needs either from, a column, or"),
-        (('always = "all"', 'always = "all", times = 2'), "line 4.*times changes a column's values"),
+        (('always = "all"', 'always = "all", times = 2'), "line 4.*times changes a column's"),
         (('from = "typed"', 'from = "typed", pattern = "a"'), "line 6.*has 0 groups; put one"),
         (('from = "typed"', 'from = "typed", pattern = "("'), "line 6.*no regular expression"),
         (('from = "typed"', 'from = ["a", "b"], key = "c"'), "key is of one column; name one"),

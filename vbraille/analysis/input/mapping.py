@@ -17,7 +17,6 @@ from vbraille.toml.tomlfile import Table, TomlFile
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-
 _DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 _CHANGES = ("key", "pattern", "missing", "pick", "replace", "times", "plus")
 

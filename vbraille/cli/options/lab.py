@@ -226,4 +226,10 @@ def _conduct(parser: ArgumentParser) -> None:
         help="Choose how the participant hears signals; auto is tones if there is an audio "
         "output, otherwise the terminal's bell (default: auto).",
     )
+    parser.add_argument(
+        "--markers",
+        metavar="lsl[:NAME]|serial:PORT[:BAUD]",
+        help="Send a marker of each event to another recorder: to a stream of the Lab Streaming "
+        "Layer (pip install pylsl), or a byte to a serial port.",
+    )
     add_live_options(parser)
