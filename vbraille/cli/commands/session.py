@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
-from vbraille.errors import InputError, VbrailleError
-from vbraille.files import write_file
+from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.participants import nearly_same
 from vbraille.sessions.running.answers import Typed
 from vbraille.simulation.specs import refuse_hand
@@ -126,51 +123,9 @@ def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.record.anonymous import anonymous
-    from vbraille.sessions.record.export import Traces, encode, rows, to_csv
-    from vbraille.sessions.record.folder import whole_lines
-    from vbraille.sessions.record.notes import read_notes
+    from vbraille.cli.exporting import export
 
-    if arguments.bids and not arguments.out:
-        raise InputError("--bids needs a directory; give one with --out")
-    record = load(Path(arguments.folder), salvaged=arguments.salvage)
-    traces = Traces(record, salvaged=arguments.salvage)
-    if arguments.bids:
-        from vbraille.sessions.record.dataset import write
-
-        written = write(record, Path(arguments.out), traces, without_times=arguments.anonymous)
-        for path in written:
-            _say(f"written: {path}")
-    else:
-        exported = rows(record, traces)
-        table = to_csv(anonymous(record, exported) if arguments.anonymous else exported)
-        if arguments.out is None:
-            sys.stdout.write(table)
-        else:
-            write_file(Path(arguments.out), encode(table))
-            _say(f"written: {arguments.out}, {len(exported)} rows")
-    # Where the table is printed, nothing else may be between it and who reads it.
-    if arguments.anonymous and (notes := len(read_notes(record.told.events))):
-        what = "1 note" if notes == 1 else f"{notes} notes"
-        print(f"left out: {what}, since nobody knows what is in them", file=sys.stderr)
-    told = sys.stdout if arguments.out else sys.stderr
-    print(f"record: {journal.sum_of(whole_lines(record.folder))}", file=told, flush=True)
-    faults = list(traces.faults)
-    if record.told.bad:
-        faults.append(f"of {journal.NAME}, {_lines(record.told.bad)}")
-    elif record.told.damage is not None:
-        faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
-    if faults:
-        raise VbrailleError(f"exported is what is whole; {'; '.join(faults)}")
-    return 0
-
-
-def _lines(bad: tuple[int, ...]) -> str:
-    """Say which lines of a journal are not whole."""
-    from vbraille.sessions.record.export import spans
-
-    one = len(bad) == 1
-    return f"{'line' if one else 'lines'} {spans(bad)} {'is' if one else 'are'} not whole"
+    return export(arguments, _say)
 
 
 def _check(arguments: argparse.Namespace) -> int:

@@ -62,18 +62,43 @@ def session_resume(parser: ArgumentParser) -> None:
 
 def session_export(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille session export``."""
-    _folder(parser)
+    parser.add_argument(
+        "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
+    )
     parser.add_argument(
         "--out",
         metavar="FILE|DIR",
         help="Write the trials as CSV to this new file (default: print them); with --bids, the "
         "directory of the dataset.",
     )
-    parser.add_argument("--bids", action="store_true", help="Add the session to a BIDS dataset.")
+    parser.add_argument("--bids", action="store_true", help="Add the sessions to a BIDS dataset.")
+    parser.add_argument(
+        "--sites",
+        action="store_true",
+        help="Take each folder that sessions stand in for a site with participants of its own: "
+        "P01 of the folder berlin is berlin/P01.",
+    )
+    parser.add_argument(
+        "--session-by",
+        metavar="FIELD",
+        help="With --bids, name a participant's sessions by what the protocol asked as this field "
+        "(default: by number, in the order of time).",
+    )
     parser.add_argument(
         "--anonymous",
         action="store_true",
         help="Leave out times of day, paths and notes; elapsed times stay.",
+    )
+    parser.add_argument(
+        "--key",
+        metavar="FILE.csv",
+        help="With --anonymous, put codes drawn at random in place of pseudonyms; this file, which "
+        "is begun or added to, keeps which code is whose, and stays with you.",
+    )
+    parser.add_argument(
+        "--codebook",
+        metavar="FILE.csv",
+        help="Write what each column holds, its unit and its values to this new file.",
     )
     parser.add_argument(
         "--salvage",
