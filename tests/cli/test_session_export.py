@@ -154,3 +154,14 @@ def test_what_does_not_go_together_is_refused(call, words, said):
     assert found.code == 2
     assert said in found.err
     assert found.err.count("\n") == 1
+
+
+def test_methods_are_told_in_a_paragraph(room, call):
+    said = call("session", "methods", "a/s1", "a/s2")
+    assert (said.code, said.out.count("\n")) == (0, 1)
+    assert said.out.startswith("1 simulated participant read 4 strings of 1 cell each, in 2 sess")
+    (room / "t.csv").write_text("participant,condition,presented,answered\nA,x,ab,ab\n")
+    said = call("session", "methods", "t.csv")
+    assert (said.code, said.err) == (
+        2, "vbraille: tables do not tell what was done; give directories of sessions\n",
+    )  # fmt: skip

@@ -24,7 +24,7 @@ def codebook(results: Results, trials: str) -> str:
     trials
         Name of the file that has the trials.
     """
-    files = {} if results.trials is None else {trials: [entry_of(n) for n in results.trials]}
+    files = {} if results.trials is None else {trials: [entry_of(str(n)) for n in results.trials]}
     for table in results.result_tables():
         files[csv_name(table)] = [_entry(table, column) for column in table.columns]
     return to_codebook(files)

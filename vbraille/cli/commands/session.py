@@ -128,6 +128,18 @@ def _export(arguments: argparse.Namespace) -> int:
     return export(arguments, _say)
 
 
+def _methods(arguments: argparse.Namespace) -> int:
+    from vbraille.analysis.input.study import load_study
+    from vbraille.analysis.methods import methods
+
+    paths = [Path(name) for name in arguments.paths]
+    told = methods(load_study(paths, exclude=arguments.exclude))
+    if not told:
+        raise InputError("tables do not tell what was done; give directories of sessions")
+    _say(told)
+    return 0
+
+
 def _check(arguments: argparse.Namespace) -> int:
     from vbraille.sessions.record.check import check_folder
 
@@ -144,6 +156,7 @@ _ACTIONS = {
     "run": _run,
     "resume": _resume,
     "export": _export,
+    "methods": _methods,
     "check": _check,
 }
 

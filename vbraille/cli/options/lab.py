@@ -107,6 +107,20 @@ def session_export(parser: ArgumentParser) -> None:
     )
 
 
+def session_methods(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille session methods``."""
+    parser.add_argument(
+        "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
+    )
+    parser.add_argument(
+        "--exclude",
+        action=Pairs,
+        default={},
+        metavar="P07=REASON",
+        help="Leave a participant out, and say why; this may be given again.",
+    )
+
+
 def session_check(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille session check``."""
     _folder(parser)
