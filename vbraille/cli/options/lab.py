@@ -93,12 +93,13 @@ def session_export(parser: ArgumentParser) -> None:
         "--key",
         metavar="FILE.csv",
         help="With --anonymous, put codes drawn at random in place of pseudonyms; this file, which "
-        "is begun or added to, keeps which code is whose, and stays with you.",
+        "is begun or added to, keeps which code is whose, and stays with you (default: pseudonyms stay).",
     )
     parser.add_argument(
         "--codebook",
         metavar="FILE.csv",
-        help="Write what each column holds, its unit and its values to this new file.",
+        help="Write what each column holds, its unit and its values to this new file (default: "
+        "none).",
     )
     parser.add_argument(
         "--salvage",
@@ -171,7 +172,7 @@ def analyse(parser: ArgumentParser) -> None:
         "--mapping",
         metavar="FILE.toml",
         help="Read tables that another program wrote, such as PsychoPy, OpenSesame or jsPsych, by "
-        "this file: which of their columns is which of ours.",
+        "this file: which of their columns is which of ours (default: tables have our columns).",
     )
     parser.add_argument(
         "--factors",
@@ -269,6 +270,6 @@ def _conduct(parser: ArgumentParser) -> None:
         "--markers",
         metavar="lsl[:NAME]|serial:PORT[:BAUD]",
         help="Send a marker of each event to another recorder: to a stream of the Lab Streaming "
-        "Layer (pip install pylsl), or a byte to a serial port.",
+        "Layer (pip install pylsl), or a byte to a serial port (default: none).",
     )
     add_live_options(parser)
