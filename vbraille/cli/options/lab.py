@@ -93,7 +93,8 @@ def session_export(parser: ArgumentParser) -> None:
         "--key",
         metavar="FILE.csv",
         help="With --anonymous, put codes drawn at random in place of pseudonyms; this file, which "
-        "is begun or added to, keeps which code is whose, and stays with you (default: pseudonyms stay).",
+        "is begun or added to, keeps which code is whose, and stays with you (default: pseudonyms "
+        "stay).",
     )
     parser.add_argument(
         "--codebook",
