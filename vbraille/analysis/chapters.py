@@ -22,6 +22,7 @@ from vbraille.analysis.measures import (
     remarks,
     trialsmodel,
 )
+from vbraille.analysis.methods import methods
 from vbraille.analysis.results import Chapter, Results
 from vbraille.analysis.statistics.correction import METHODS
 
@@ -103,7 +104,9 @@ def analyse_study(study: Study, options: Options) -> Results:
     if any(sitting.notes for sitting in study.sittings):
         table = remarks.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
-    about = (*study.about, *_excluded(left_out), *options.told())
+    told = methods(study)
+    done = [("Methods", told)] if told else []
+    about = (*done, *study.about, *_excluded(left_out), *options.told())
     results = _told("Legibility sessions", about, study.warnings, chapters)
     trials = None if study.trials is None else written(study.trials)
     return replace(results, trials=trials, faults=study.faults)

@@ -138,6 +138,11 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
         lab.session_export,
         "vbraille session export P07-legibility-20261121-101500 --out trials.csv",
     ),
+    "methods": (
+        "Say in a paragraph what was done, made of the records of sessions.",
+        lab.session_methods,
+        "vbraille session methods P01-letters-* P02-letters-*",
+    ),
     "check": (
         "See whether every file of a session is whole, and nothing was changed.",
         lab.session_check,

@@ -51,6 +51,9 @@ class Conditions:
         How the participant hears signals: "auto", "tones", "bell" or "none".
     live
         Where a live view of the session is served; None for no live view.
+    markers
+        Other recorder that is sent a marker of each event: "lsl", "lsl:NAME", "serial:PORT" or
+        "serial:PORT:BAUD"; None for none.
 
     Raises
     ------
@@ -65,6 +68,7 @@ class Conditions:
     fast: bool = False
     sound: str = "auto"
     live: LiveAddress | None = None
+    markers: str | None = None
 
     def __post_init__(self) -> None:
         check_rate(self.rate_hz)

@@ -25,6 +25,7 @@ from vbraille.sessions.running.answers import (
     seed_of,
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
+from vbraille.sessions.running.markerports import parse_markers
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.sounds import Sound
@@ -119,6 +121,8 @@ class Session:
         if conditions.live is not None:
             _check_live(protocol, conditions, engine)
             self._pointer = Pointer() if has_hand(conditions.device) else None
+        if conditions.markers is not None:
+            parse_markers(conditions.markers)
         spec = device_spec(
             conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
         )
@@ -199,8 +203,8 @@ class Session:
             Function that makes the engine, as for `create`.
         changed
             Fields of the `Conditions` that differ from when the session began: device, hand,
-            answers, fast, sound or live. If the answers come from elsewhere now, the session is not
-            fast unless that is asked for again.
+            answers, fast, sound, live or markers. If the answers come from elsewhere now, the
+            session is not fast unless that is asked for again.
 
         Raises
         ------
@@ -333,7 +337,9 @@ class Session:
         if onlookers is not None:
             say = onlookers.beside(say)
             onlookers.begin(self._engine)
+        markers = None
         try:
+            markers = self._usual_markers()
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
@@ -349,6 +355,7 @@ class Session:
                 warn=warn,
                 before_rest=before_rest,
                 onlookers=onlookers,
+                markers=markers,
             )
             if begins:
                 sitting.open(self.protocol, self.plan)
@@ -371,7 +378,18 @@ class Session:
                 self._engine.close()
             if onlookers is not None:
                 onlookers.close()
+            if markers is not None:
+                for sentence in markers.close():
+                    say(sentence)
         return self
+
+    def _usual_markers(self) -> Markers | None:
+        """Open the other recorder that is wanted; None if none is."""
+        if self.conditions.markers is None:
+            return None
+        from vbraille.sessions.running.markers import Markers
+
+        return Markers(parse_markers(self.conditions.markers))
 
     def _usual_onlookers(self) -> Onlookers | None:
         """Make the pages of the live view that is wanted; None if none is."""

@@ -48,7 +48,7 @@ def test_all_files_are_there(report):
         for figure in RESULTS.figures()
         for kind in ("svg", "png", "pdf")
     ]
-    names = ["report.html", "report.md", "results.json", *EXTRA, *tables, *figures]
+    names = ["report.html", "report.md", "results.json", *EXTRA, "codebook.csv", *tables, *figures]
     assert [str(path.relative_to(folder)) for path in files] == names
     assert sorted(contents(folder)) == sorted(names)
     assert [path.name for path in folder.parent.iterdir()] == ["out"]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from dataclasses import dataclass
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vbraille.analysis.input.strokes import PATTERNS, read
 from vbraille.sessions.record import journal
+from vbraille.sessions.record.events import Answer
 from vbraille.sessions.record.export import Traces, walk
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.notes import read_notes
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.strokes import Reading
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
+    from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
 
@@ -99,6 +101,8 @@ class SessionTrials:
         Versions of the programs that ran the session, by name; several if its runs differ.
     notes
         What the experimenter wrote down, in order.
+    counts
+        Number of events of each kind, and of practice trials that were answered: "practice".
     """
 
     folder: Path
@@ -112,6 +116,7 @@ class SessionTrials:
     state: str
     versions: dict[str, str]
     notes: tuple[PlacedNote, ...] = ()
+    counts: Counter[str] = field(default_factory=Counter)
 
 
 def read_sitting(folder: Path) -> SessionTrials:
@@ -155,6 +160,7 @@ def read_sitting(folder: Path) -> SessionTrials:
         _state(progress),
         _versions(record, progress),
         tuple(read_notes(record.told.events)),
+        _counts(record.told.events),
     )
 
 
@@ -210,6 +216,18 @@ def _examples(examples: Iterable[tuple[float, Example]]) -> tuple[Example, ...]:
         for pattern in PATTERNS
         if of[pattern]
     )
+
+
+def _counts(events: Iterable[JournalEvent]) -> Counter[str]:
+    """Number of events of each kind, and of practice trials that were answered."""
+    counts: Counter[str] = Counter()
+    practised: set[int] = set()
+    for event in events:
+        counts[event.kind] += 1
+        if isinstance(event, Answer) and event.practice:
+            practised.add(event.trial)
+    counts["practice"] = len(practised)
+    return counts
 
 
 def _state(progress: Progress) -> str:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
+from vbraille.analysis.input.mapped import read_mapped
+from vbraille.analysis.input.mapping import load_mapping
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.scoretable import of_sheet
 from vbraille.analysis.input.sheets import from_rows, read_csv
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
+    from vbraille.analysis.input.mapping import TrialMapping
     from vbraille.analysis.input.scoretable import Scores
     from vbraille.analysis.input.sheets import Sheet
     from vbraille.analysis.input.sittings import SessionTrials
@@ -66,6 +69,7 @@ def load_study(
     exclude: Mapping[str, str] | None = None,
     protocol: str | None = None,
     sites: bool = False,
+    mapping: Path | None = None,
 ) -> Study:
     """Read sessions' directories and CSV files.
 
@@ -79,6 +83,9 @@ def load_study(
         Name of the protocol whose trials are taken; None takes those of all.
     sites
         Whether each folder that something stands in has participants of its own.
+    mapping
+        Mapping file by which the files, which another program wrote, are read; None if they have
+        our columns.
 
     Raises
     ------
@@ -88,12 +95,15 @@ def load_study(
         If a session has lost what it began with.
     """
     _check_paths(paths)
-    sittings, files = _read(paths, sites=sites)
+    theirs = None if mapping is None else load_mapping(mapping)
+    sittings, files, ruled_out = _read(paths, theirs, sites=sites)
+    if theirs is not None and not files:
+        raise InputError(f"{theirs.where} is for files of another program; give such files as well")
     sheets = list(files.values())
     sources = [*(from_rows(sitting.name, sitting.rows) for sitting in sittings), *sheets]
     apart = told_apart(sittings)
     parsed = parse(sources)
-    left_out = [*parsed.left_out]
+    left_out = [*ruled_out, *parsed.left_out]
     trials, comparisons = parsed.trials, parsed.comparisons
     for rule in _rules(exclude or {}, protocol):
         trials, comparisons, sittings = rule.apply(trials, comparisons, sittings)
@@ -107,6 +117,9 @@ def load_study(
         (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
         for path, sheet in files.items()
     ]
+    if theirs is not None and mapping is not None:
+        program = f"{theirs.program}; " if theirs.program else ""
+        about.append((f"Mapping {theirs.where}", f"{program}SHA-256 {_sum(mapping)}"))
     about += [(f"Session {sitting.name}", _describe_sitting(sitting)) for sitting in sittings]
     about += _versions(sittings)
     faults = tuple(f"{sitting.name}: {what}" for sitting in sittings for what in sitting.faults)
@@ -207,8 +220,10 @@ def _check_paths(paths: Sequence[Path]) -> None:
         seen.add(path.resolve())
 
 
-def _read(paths: Sequence[Path], *, sites: bool) -> tuple[list[SessionTrials], dict[Path, Sheet]]:
-    """Sessions and tables, each under a name that no other has."""
+def _read(
+    paths: Sequence[Path], mapping: TrialMapping | None, *, sites: bool
+) -> tuple[list[SessionTrials], dict[Path, Sheet], list[LeftOut]]:
+    """Sessions and tables, each under a name that no other has, and rows that are in none."""
     resolved = [path.resolve() for path in paths]
     names = dict(zip(paths, distinct_names(resolved), strict=True))
     homes = list(dict.fromkeys(path.parent for path in resolved)) if sites else []
@@ -220,12 +235,18 @@ def _read(paths: Sequence[Path], *, sites: bool) -> tuple[list[SessionTrials], d
     sittings.sort(key=lambda sitting: (natural(sitting.head["participant"]), natural(sitting.name)))
     check_copies(sittings)
     files: dict[Path, Sheet] = {}
+    left_out: list[LeftOut] = []
     for path in sorted(names, key=lambda path: names[path]):
         if path.is_dir():
             continue
-        sheet = replace(read_csv(path), name=names[path])
+        if mapping is None:
+            sheet = read_csv(path)
+        else:
+            sheet, without = read_mapped(path, mapping)
+            left_out += without
+        sheet = replace(sheet, name=names[path])
         files[path] = of_site(sheet, site[path]) if sites else sheet
-    return sittings, files
+    return sittings, files, left_out
 
 
 def _describe(trials: pd.DataFrame | None, comparisons: pd.DataFrame | None) -> str:

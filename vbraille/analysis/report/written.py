@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.analysis.report.codebook import codebook
 from vbraille.analysis.report.shown import KINDS, csv_name, figure_name
 from vbraille.analysis.report.tohtml import to_html
 from vbraille.analysis.report.tojson import to_json
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 PAGE, TEXT, NUMBERS = "report.html", "report.md", "results.json"
 TRIALS = "trials.csv"
+CODEBOOK = "codebook.csv"
 _DPI = 300  # dots per inch of the PNGs, as journals ask for
 
 
@@ -60,10 +62,11 @@ def _files(results: Results) -> dict[str, bytes]:
             drawn[figure_name(figure, kind)] = to_bytes(drawing, kind, _DPI)
         svgs[figure.name] = drawn[figure_name(figure, "svg")]
     return {
-        PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *trials))),
-        TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *trials))),
+        PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *trials, CODEBOOK))),
+        TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *trials, CODEBOOK))),
         NUMBERS: encode("".join(to_json(results))),
         **trials,
+        CODEBOOK: encode(codebook(results, TRIALS)),
         **{csv_name(table): encode(to_csv(table.frame)) for table in results.result_tables()},
         **drawn,
     }

@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
-from vbraille.errors import InputError, VbrailleError
-from vbraille.files import write_file
+from vbraille.errors import InputError
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
-from vbraille.sessions.record import journal
-from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.participants import nearly_same
 from vbraille.sessions.running.answers import Typed
 from vbraille.simulation.specs import refuse_hand
@@ -113,7 +110,7 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
     from vbraille.sessions.conditions import LiveAddress
 
-    names = ("device", "hand", "answers", "sound")
+    names = ("device", "hand", "answers", "sound", "markers")
     given = {name: getattr(arguments, name) for name in names}
     check_live_options(arguments)
     given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None
@@ -126,51 +123,21 @@ def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from vbraille.sessions.record.anonymous import anonymous
-    from vbraille.sessions.record.export import Traces, encode, rows, to_csv
-    from vbraille.sessions.record.folder import whole_lines
-    from vbraille.sessions.record.notes import read_notes
+    from vbraille.cli.exporting import export
 
-    if arguments.bids and not arguments.out:
-        raise InputError("--bids needs a directory; give one with --out")
-    record = load(Path(arguments.folder), salvaged=arguments.salvage)
-    traces = Traces(record, salvaged=arguments.salvage)
-    if arguments.bids:
-        from vbraille.sessions.record.dataset import write
+    return export(arguments, _say)
 
-        written = write(record, Path(arguments.out), traces, without_times=arguments.anonymous)
-        for path in written:
-            _say(f"written: {path}")
-    else:
-        exported = rows(record, traces)
-        table = to_csv(anonymous(record, exported) if arguments.anonymous else exported)
-        if arguments.out is None:
-            sys.stdout.write(table)
-        else:
-            write_file(Path(arguments.out), encode(table))
-            _say(f"written: {arguments.out}, {len(exported)} rows")
-    # Where the table is printed, nothing else may be between it and who reads it.
-    if arguments.anonymous and (notes := len(read_notes(record.told.events))):
-        what = "1 note" if notes == 1 else f"{notes} notes"
-        print(f"left out: {what}, since nobody knows what is in them", file=sys.stderr)
-    told = sys.stdout if arguments.out else sys.stderr
-    print(f"record: {journal.sum_of(whole_lines(record.folder))}", file=told, flush=True)
-    faults = list(traces.faults)
-    if record.told.bad:
-        faults.append(f"of {journal.NAME}, {_lines(record.told.bad)}")
-    elif record.told.damage is not None:
-        faults.append(f"{journal.NAME} is damaged, {record.told.damage}")
-    if faults:
-        raise VbrailleError(f"exported is what is whole; {'; '.join(faults)}")
+
+def _methods(arguments: argparse.Namespace) -> int:
+    from vbraille.analysis.input.study import load_study
+    from vbraille.analysis.methods import methods
+
+    paths = [Path(name) for name in arguments.paths]
+    told = methods(load_study(paths, exclude=arguments.exclude))
+    if not told:
+        raise InputError("tables do not tell what was done; give directories of sessions")
+    _say(told)
     return 0
-
-
-def _lines(bad: tuple[int, ...]) -> str:
-    """Say which lines of a journal are not whole."""
-    from vbraille.sessions.record.export import spans
-
-    one = len(bad) == 1
-    return f"{'line' if one else 'lines'} {spans(bad)} {'is' if one else 'are'} not whole"
 
 
 def _check(arguments: argparse.Namespace) -> int:
@@ -189,6 +156,7 @@ _ACTIONS = {
     "run": _run,
     "resume": _resume,
     "export": _export,
+    "methods": _methods,
     "check": _check,
 }
 

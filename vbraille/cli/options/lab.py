@@ -62,23 +62,64 @@ def session_resume(parser: ArgumentParser) -> None:
 
 def session_export(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille session export``."""
-    _folder(parser)
+    parser.add_argument(
+        "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
+    )
     parser.add_argument(
         "--out",
         metavar="FILE|DIR",
         help="Write the trials as CSV to this new file (default: print them); with --bids, the "
         "directory of the dataset.",
     )
-    parser.add_argument("--bids", action="store_true", help="Add the session to a BIDS dataset.")
+    parser.add_argument("--bids", action="store_true", help="Add the sessions to a BIDS dataset.")
+    parser.add_argument(
+        "--sites",
+        action="store_true",
+        help="Take each folder that sessions stand in for a site with participants of its own: "
+        "P01 of the folder berlin is berlin/P01.",
+    )
+    parser.add_argument(
+        "--session-by",
+        metavar="FIELD",
+        help="With --bids, name a participant's sessions by what the protocol asked as this field "
+        "(default: by number, in the order of time).",
+    )
     parser.add_argument(
         "--anonymous",
         action="store_true",
         help="Leave out times of day, paths and notes; elapsed times stay.",
     )
     parser.add_argument(
+        "--key",
+        metavar="FILE.csv",
+        help="With --anonymous, put codes drawn at random in place of pseudonyms; this file, which "
+        "is begun or added to, keeps which code is whose, and stays with you (default: pseudonyms "
+        "stay).",
+    )
+    parser.add_argument(
+        "--codebook",
+        metavar="FILE.csv",
+        help="Write what each column holds, its unit and its values to this new file (default: "
+        "none).",
+    )
+    parser.add_argument(
         "--salvage",
         action="store_true",
         help="Of a damaged session, export also what is whole after the damage.",
+    )
+
+
+def session_methods(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille session methods``."""
+    parser.add_argument(
+        "paths", nargs="+", metavar="DIR", help="Take the sessions in these directories."
+    )
+    parser.add_argument(
+        "--exclude",
+        action=Pairs,
+        default={},
+        metavar="P07=REASON",
+        help="Leave a participant out, and say why; this may be given again.",
     )
 
 
@@ -127,6 +168,12 @@ def analyse(parser: ArgumentParser) -> None:
         action="store_true",
         help="Take each folder that sessions or tables stand in for a site with participants of "
         "its own: P01 of the folder berlin is berlin/P01.",
+    )
+    parser.add_argument(
+        "--mapping",
+        metavar="FILE.toml",
+        help="Read tables that another program wrote, such as PsychoPy, OpenSesame or jsPsych, by "
+        "this file: which of their columns is which of ours (default: tables have our columns).",
     )
     parser.add_argument(
         "--factors",
@@ -219,5 +266,11 @@ def _conduct(parser: ArgumentParser) -> None:
         default="auto",
         help="Choose how the participant hears signals; auto is tones if there is an audio "
         "output, otherwise the terminal's bell (default: auto).",
+    )
+    parser.add_argument(
+        "--markers",
+        metavar="lsl[:NAME]|serial:PORT[:BAUD]",
+        help="Send a marker of each event to another recorder: to a stream of the Lab Streaming "
+        "Layer (pip install pylsl), or a byte to a serial port (default: none).",
     )
     add_live_options(parser)

@@ -16,7 +16,8 @@ import numpy as np
 
 from vbraille.sessions.record.anonymous import anonymous, number_of
 from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
-from vbraille.sessions.record.export import COLUMNS, Traces, encode, rows, to_csv
+from vbraille.sessions.record.codebook import entry_of
+from vbraille.sessions.record.export import Traces, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.record.traces import posed
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
 _ROWS = 1000  # number of rows that are formatted at once
 _LEVEL = 3  # level of gzip; higher ones take longer than all the rest
-_UNITS = {name: unit for name in COLUMNS for unit in ("s", "mm") if name.endswith(f"_{unit}")}
 SESSION = "SessionNumber"  # key that tells which session a file in a dataset is of
 _CHANGED = "What was exported before 22 November 2026 has the place of the left column"
 # Columns of a recording: field of the trace, format, unit and description.
@@ -43,7 +43,7 @@ _RECORDED = {
 }
 
 
-def stem_of(record: Record, session: str) -> str:
+def stem_of(record: Record, session: str, participant: str = "") -> str:
     """Path that all files of a session in a dataset begin with.
 
     Parameters
@@ -52,8 +52,10 @@ def stem_of(record: Record, session: str) -> str:
         The session.
     session
         Label of the session among those of the participant, such as "01".
+    participant
+        Name of the participant in the dataset; empty for the pseudonym.
     """
-    who, task = label_of(record.plan.participant), label_of(record.plan.protocol)
+    who, task = label_of(participant or record.plan.participant), label_of(record.plan.protocol)
     return f"sub-{who}/ses-{session}/beh/sub-{who}_ses-{session}_task-{task}"
 
 
@@ -63,6 +65,7 @@ def files(
     *,
     session: str = "01",
     without_times: bool = False,
+    participant: str = "",
 ) -> dict[str, bytes]:
     """Contents of the files of a session, by their paths in the dataset.
 
@@ -77,10 +80,13 @@ def files(
         Label of the session among those of the participant.
     without_times
         Whether times of day, paths and notes are left out.
+    participant
+        Name of the participant in the dataset; empty for the pseudonym.
     """
     traces = Traces(record) if traces is None else traces
-    stem = stem_of(record, session)
-    table = rows(record, traces)
+    stem = stem_of(record, session, participant)
+    who = {"participant": participant or record.plan.participant}
+    table = [row | who for row in rows(record, traces)]
     if without_times:
         table = anonymous(record, table)
     made = {
@@ -123,15 +129,8 @@ def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
         "TaskName": record.protocol.name,  # which the task in the files' names is made from
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
-    for name, what in COLUMNS.items():
-        if name not in columns:
-            continue
-        described[name] = {"Description": what}
-        if name in _UNITS:
-            described[name]["Units"] = _UNITS[name]
-    for field in record.protocol.fields:
-        described[f"field_{field.name}"] = {"Description": field.ask}
-    return described
+    asked = {field.name: field.ask for field in record.protocol.fields}
+    return described | {name: entry_of(name, asked).to_bids() for name in columns}
 
 
 def _recording(ticks: NDArray[np.void]) -> bytes:

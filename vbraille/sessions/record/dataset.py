@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.files import missing, write_file
 from vbraille.sessions.record.anonymous import number_of
 from vbraille.sessions.record.bids import SESSION, files
-from vbraille.sessions.record.export import encode, to_csv
+from vbraille.sessions.record.export import encode
 from vbraille.sessions.record.participants import alike, label_of
+from vbraille.sessions.record.people import PEOPLE, PEOPLE_COLUMNS, described, read_people
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
 
 _BIDS = "1.9.0"
 _ABOUT, _README = "dataset_description.json", "README"
-_PEOPLE, _PEOPLE_COLUMNS = "participants.tsv", "participants.json"
 _README_TEXT = """\
 Legibility sessions of vbraille, as behavioural data.
 
@@ -37,9 +35,6 @@ broken off and gone on with has several runs.
 included, and *_recording-carriage_physio.tsv.gz where the array was at each moment, with its speed.
 What each column holds is in the file of the same name that ends in .json.
 """
-_PEOPLE_TOLD = {
-    "pseudonym": {"Description": "as the laboratory has it; participant_id has letters and digits"}
-}
 
 
 def write(
@@ -48,6 +43,8 @@ def write(
     traces: Traces | None = None,
     *,
     without_times: bool = False,
+    site: str = "",
+    session: str | None = None,
 ) -> list[Path]:
     """Add a session to a dataset, which is begun if there is none, and return the files written.
 
@@ -57,6 +54,11 @@ def write(
         These are described at `vbraille.sessions.record.bids.files`.
     folder
         Directory of the dataset.
+    site
+        Where the participant took part, if the dataset has several sites: P01 of two sites are two
+        participants then.
+    session
+        Label of the session among those of the participant; None for the next number.
 
     Raises
     ------
@@ -66,46 +68,45 @@ def write(
     VbrailleError
         If the disk does not take the files. The dataset then is as it was before.
     """
-    people = _people(folder)
-    pseudonym, label = record.plan.participant, label_of(record.plan.participant)
-    _check_pseudonym(folder, people, pseudonym)
+    people = read_people(folder)
+    pseudonym = record.plan.participant
+    name = f"{site}/{pseudonym}" if site else pseudonym
+    label = label_of(name)
+    _check_pseudonym(folder, people.names(), name)
     _check_absent(folder, record)
-    session = _next_session(folder / f"sub-{label}")
-    made = files(record, traces, session=session, without_times=without_times)
-    new = {folder / name: content for name, content in made.items()}
-    for name, content in (
-        (_ABOUT, _json(_about(record))),
-        (_README, _README_TEXT.encode()),
-        (_PEOPLE_COLUMNS, _json(_PEOPLE_TOLD)),
-    ):
-        if not (folder / name).exists():
-            new[folder / name] = content
-    rows = [
-        {"participant_id": f"sub-{known}", "pseudonym": name}
-        for known, name in sorted({**people, label: pseudonym}.items())
-    ]
-    _write(folder, new, encode(to_csv(rows, "\t", "n/a")))
-    return [*new, folder / _PEOPLE]
-
-
-def _people(folder: Path) -> dict[str, str]:
-    """Pseudonyms of the participants of a dataset, by their labels."""
-    try:
-        told = list(
-            csv.DictReader(io.StringIO((folder / _PEOPLE).read_text("utf-8")), delimiter="\t")
-        )
-        known = {row["participant_id"].removeprefix("sub-"): row["pseudonym"] for row in told}
-    except (FileNotFoundError, NotADirectoryError):
-        known = {}  # a dataset that is no directory is refused when it is written
-    except OSError as error:
-        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
-    except (ValueError, KeyError, AttributeError):
+    if session is None:
+        session = _next_session(folder / f"sub-{label}")
+    elif not label_of(session):
         raise InputError(
-            f"{folder / _PEOPLE} cannot be read as a table of participant_id and pseudonym; "
-            f"give another directory with {setting('out')}"
-        ) from None
-    labels = [path.name.removeprefix("sub-") for path in folder.glob("sub-*")]
-    return {label: label for label in labels} | known
+            f"{record.folder} has no answer that could name its session; leave out "
+            f"{setting('session-by')}"
+        )
+    made = files(
+        record,
+        traces,
+        session=label_of(session),
+        without_times=without_times,
+        participant=name,
+    )
+    if there := next((path for path in made if (folder / path).exists()), None):
+        raise InputError(
+            f"{folder / there} is there already, of another session; leave out "
+            f"{setting('session-by')}, or give another directory with {setting('out')}"
+        )
+    new = {folder / path: content for path, content in made.items()}
+    for path, content in ((_ABOUT, _json(_about(record))), (_README, _README_TEXT.encode())):
+        if not (folder / path).exists():
+            new[folder / path] = content
+    after = people.add(label, pseudonym, site)
+    told = {PEOPLE: encode(after.to_tsv())}
+    if (columns := described(folder, after)) is not None:
+        path = folder / PEOPLE_COLUMNS
+        if path.exists():
+            told[PEOPLE_COLUMNS] = _json(columns)
+        else:
+            new[path] = _json(columns)
+    _write(folder, new, told)
+    return [*new, *(folder / name for name in reversed(told))]
 
 
 def _check_pseudonym(folder: Path, people: dict[str, str], pseudonym: str) -> None:
@@ -146,8 +147,10 @@ def _next_session(participant: Path) -> str:
     return f"{max(numbers, default=0) + 1:02}"
 
 
-def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
-    """Write new files, and then the table of participants; undo everything if one fails."""
+def _write(folder: Path, new: dict[Path, bytes], told: dict[str, bytes]) -> None:
+    """Write new files, and then those that tell of participants; undo everything if one fails."""
+    before = {name: _content(folder / name) for name in told}
+    replaced: list[str] = []
     written: list[Path] = []
     try:
         parents = {parent for path in new for parent in missing(path.parent)}
@@ -157,14 +160,29 @@ def _write(folder: Path, new: dict[Path, bytes], people: bytes) -> None:
         for path, content in new.items():
             write_file(path, content)
             written.append(path)
-        write_file(folder / _PEOPLE, people, replace=True, durable=True)
+        for name, content in reversed(told.items()):
+            replaced.append(name)
+            write_file(folder / name, content, replace=True, durable=True)
     except BaseException as fault:
+        for name in replaced:
+            with suppress(OSError, VbrailleError):
+                if (content := before[name]) is None:
+                    (folder / name).unlink(missing_ok=True)
+                else:
+                    write_file(folder / name, content, replace=True)
         for path in reversed(written):
             with suppress(OSError):  # a directory that somebody else has used meanwhile stays
                 path.rmdir() if path.is_dir() else path.unlink()
         if isinstance(fault, OSError):
             raise InputError(f"{folder} cannot be written: {fault.strerror}") from None
         raise
+
+
+def _content(path: Path) -> bytes | None:
+    try:
+        return path.read_bytes()
+    except OSError:
+        return None
 
 
 def _about(record: Record) -> dict[str, Any]:

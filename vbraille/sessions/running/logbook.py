@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.progress import Progress
 
 
+def _nobody(_event: JournalEvent, _ago_ns: int) -> None:
+    """Tell nobody of an event."""
+
+
 class Logbook:
     """Book in which the events of a run are written, and by which its progress is updated.
 
@@ -29,10 +33,14 @@ class Logbook:
     ----------
     script_line : int
         Number of the line of an answers file that is being done; the next event keeps it.
+    mark : Callable[[JournalEvent, int], None]
+        Function that is told each event once it is in the journal, and how many nanoseconds ago it
+        happened; it must not wait.
     """
 
     def __init__(self, journal: Journal, progress: Progress, now_ns: Callable[[], int]) -> None:
         self.script_line = 0
+        self.mark: Callable[[JournalEvent, int], None] = _nobody
         self._journal = journal
         self._progress = progress
         self._now_ns = now_ns
@@ -71,4 +79,6 @@ class Logbook:
             fields |= {"trial": trial.number, "practice": trial.practice}
         event = kind(script_line=self.script_line, **fields)
         self.script_line = 0
-        self._progress.take(self._journal.append(event))
+        written = self._journal.append(event)
+        self.mark(written, self._now_ns() - at_ns)
+        self._progress.take(written)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.simulation.steering import Steering
@@ -59,6 +60,8 @@ class Sitting:
         Function that is called just before the array is brought to rest.
     onlookers
         Live view of the session; None without one.
+    markers
+        Sender of markers to another recorder; None without one.
     """
 
     def __init__(
@@ -73,6 +76,7 @@ class Sitting:
         warn: Callable[[str], None],
         before_rest: Callable[[], None],
         onlookers: Onlookers | None = None,
+        markers: Markers | None = None,
     ) -> None:
         self._engine = engine
         self._answers = answers
@@ -83,6 +87,7 @@ class Sitting:
         self._warn = warn
         self._before_rest = before_rest
         self._watching = onlookers
+        self._markers = markers
         self._opened = False
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
@@ -124,6 +129,9 @@ class Sitting:
                 play=sound.play,
                 real=self._real,
             )
+            if self._markers is not None:
+                self._markers.begin(record.folder)
+                course.book.mark = self._markers.mark
             told = {"why": why, "torn_bytes": torn_bytes, "sound": sound.name}
             told |= self._since(book, progress)
             told |= {"spec": spec, "hand": hand, "answers": self._answers.name}
