@@ -203,7 +203,7 @@ class Console:
             course.withdraw()
         course.book.log(events.Answer, trial, **told)
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
-        if trial.practice:
+        if trial.practice and course.protocol.practice.feedback:
             self._tell(trial, answer)
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
         if correcting is None or course.trial is None or course.phase is Phase.LAST:
