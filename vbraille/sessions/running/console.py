@@ -360,7 +360,7 @@ def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
         line,
         places=stop - first,
         keys=protocol.keys,
-        shown_dots=protocol.mapping.shown_dots(),
+        shown_dots=protocol.mapping_of(trial.stimuli[0]).shown_dots(),
     )
 
 
