@@ -111,11 +111,11 @@ def _caught(rows: pd.DataFrame) -> pd.Series:
     """Whether each row is a catch trial, which belongs to no item."""
     if CATCH not in rows:
         return pd.Series(data=False, index=rows.index)
-    return rows[CATCH].str.strip().isin(_CATCHES)
+    return rows[CATCH].astype(str).str.strip().isin(_CATCHES)
 
 
 def _told_catch(sheet: Sheet, rows: pd.DataFrame) -> LeftOut:
-    right = sum(rows["correct"].str.strip() == "1") if "correct" in rows else 0
+    right = sum(rows["correct"].astype(str).str.strip() == "1") if "correct" in rows else 0
     what = f"{count(len(rows), 'catch trial')} of {sheet.name}"
     return LeftOut(what, f"they keep watch over the participant; {right} answered right")
 
