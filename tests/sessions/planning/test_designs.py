@@ -1,4 +1,4 @@
-"""Designs of labs: whatever is written, the plan obeys it, by counting that is not the program's."""
+"""Designs of labs: whatever is written, the plan obeys it, by a count of the tests' own."""
 
 import re
 from collections import Counter
@@ -36,7 +36,14 @@ LIST = '[design]\nkind = "list"\nstrings = ["ac", "ca", "cc", "aa"]\n'
 
 def parse(text, **files):
     named = {name.replace("_", "."): content for name, content in files.items()}
-    return parse_protocol(VBD_HEAD + text, "mine.toml", beside=named.__getitem__)
+    return parse_protocol(VBD_HEAD + text, "mine.toml", beside=lambda name: _beside(named, name))
+
+
+def _beside(named, name):
+    """Text of a file beside the protocol, as a folder would give it."""
+    if name not in named:
+        raise InputError(f"there is no file {name}; check the name")
+    return named[name]
 
 
 def planned(text, participant="P01", seed=1, **files):
@@ -132,8 +139,8 @@ class TestOrders:
     @given(
         st.integers(2, 6),
         st.sampled_from([TEXTURE, WIDTH, TEXTURE + WIDTH]),
-        st.integers(1, 4),
-        st.integers(1, 4),
+        st.integers(1, 2),
+        st.integers(1, 3),
         st.integers(2, 4),
         st.booleans(),
         st.booleans(),
@@ -149,7 +156,13 @@ class TestOrders:
             f"blocks = {blocks}\n{factors}[rules]\nnever_twice_running = {str(apart).lower()}\n"
             f"balanced_quarters = {str(quarters).lower()}\nat_most_running = {{ {name} = {most} }}"
         ).replace("'", '"')
-        plan = planned(text, seed=seed)
+        try:
+            plan = planned(text, seed=seed)
+        except InputError as refused:
+            # Two strings of which none comes twice running have two orders, and so on.
+            assert number < 4 or most < 3
+            assert "no order of its trials was found" in str(refused)  # noqa: PT017
+            return
         assert plan == planned(text, seed=seed)
         levels = [t.condition.split("-")[0] for t in plan.trials]
         assert longest_run(levels) <= most
@@ -240,7 +253,9 @@ class TestChoices:
     @pytest.mark.parametrize("name", ["texture", "contrast", "cell_gap_mm", "dot_spacing_mm"])
     def test_anything_is_compared(self, name):
         values = [0.5, 1.0] if name in ("texture", "contrast") else [3.0, 4.0]
-        text = f'[design]\nkind = "choice"\nparameter = "{name}"\nvalues = {values}\nstring = "cc"\n'
+        text = (
+            f'[design]\nkind = "choice"\nparameter = "{name}"\nvalues = {values}\nstring = "cc"\n'
+        )
         for trial in planned(text).trials:
             shown = [
                 getattr(s.tuning, name, None) or getattr(s.geometry, name, None)
@@ -274,7 +289,7 @@ FLAT_TWICE = TEXTURE.replace("1.0", "0.0")
 ORDER = '[order]\nkind = "table"\nfile = "o.csv"\n' + LIST + TEXTURE
 FROM_FILE = '[design]\nkind = "items"\n[items]\nfile = "i.csv"\n'
 REFUSED = [
-    (LIST + FLAT_TWICE, {}, "line 9: [[factors]] number 1: levels, number 2, shows what flat"),
+    (LIST + FLAT_TWICE, {}, "line 11: [[factors]] number 1 levels, number 2, shows what flat"),
     (LIST + TEXTURE.replace('{ name = "rough", texture = 1.0 }', ""), {}, "varies nothing"),
     (LIST + TEXTURE.replace("texture = 1", "txture = 1"), {}, "has no key 'txture'; the nearest"),
     (LIST + TEXTURE.replace("1.0", "1.5"), {}, "texture is 1.5; it must be 0 to 1"),

@@ -84,6 +84,7 @@ class TestPlans:
         }
         assert sums == {
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
+            "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
             "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",

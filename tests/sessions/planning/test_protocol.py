@@ -40,6 +40,7 @@ class TestBuiltIns:
     def test_names(self):
         assert builtin_names() == [
             "control",
+            "factors",
             "legibility",
             "letters",
             "tuning-spacing",

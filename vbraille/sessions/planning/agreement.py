@@ -144,7 +144,7 @@ def _check_trials(protocol: Protocol) -> None:
         raise ValueError(
             f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
         )
-    if design.catch is not None and not 1 <= catch < trials:
+    if design.catch is not None and not 1 <= catch <= trials:
         raise ValueError(
             f"[design] catch would be {catch} of {trials + catch} trials; make every smaller, or "
             f"the design larger"

@@ -77,7 +77,12 @@ def make_plan(
     order = choose_order(protocol, participant, order)
     drawn = f"{protocol.name} {seed} {participant}"
     chance = Chance(drawn)
-    blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
+    if protocol.rules.searched:
+        blocks = arranged(protocol, lambda: _blocks(protocol, conditions, order, chance), chance)
+        if blocks is None:
+            raise InputError(_unfound(protocol))
+    else:
+        blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
     trials = [
         _trial(protocol, item, condition, block)
         for block, shown in enumerate(blocks, 1)
@@ -135,7 +140,9 @@ def _blocks(
     # Items are dealt to the blocks like cards, and each condition goes on where the one before it
     # ended. So two blocks never differ by more than one item, of one condition or of all.
     dealt = cycle(blocks)
-    for condition, shown in zip(conditions, items, strict=True):
+    pairs = list(zip(conditions, items, strict=True))
+    # Where an order is searched for, each deal is to be another.
+    for condition, shown in chance.shuffled(pairs) if protocol.rules.searched else pairs:
         for item in chance.shuffled(shown):
             next(dealt).append((item, condition))
     return blocks
@@ -143,11 +150,6 @@ def _blocks(
 
 def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> list[list[_Shown]]:
     """Items and conditions of each block, in the order in which they are shown."""
-    if protocol.rules.searched:
-        found = arranged(protocol, blocks, chance)
-        if found is None:
-            raise InputError(_unfound(protocol))
-        return found
     if not protocol.rules.never_twice_running:
         return [chance.shuffled(block) for block in blocks]
 
@@ -224,9 +226,7 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
         (next(orders[item]) if reorders else item, condition)
         for item, condition in zip(deck[: practice.trials], cycle(conditions), strict=False)
     ]
-    # Of the rules on the order, practice keeps only that on neighbours.
-    usual = structs.replace(protocol.rules, at_most_running={}, balanced_quarters=False)
-    (shown,) = _ordered(structs.replace(protocol, rules=usual), [drawn], chance)
+    (shown,) = _ordered(protocol, [drawn], chance)
     return [_trial(protocol, item, condition, 0) for item, condition in shown]
 
 

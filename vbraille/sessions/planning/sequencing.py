@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 QUARTERS = 4
 CONDITION = "condition"
-_STARTS, _PASSES, _PARTNERS, _DRAWS = 8, 60, 60, 40
+# Bounds of the search: fresh starts, exchanges tried in all, and random draws before a full look.
+_STARTS, _EXCHANGES, _PARTNERS, _DRAWS = 40, 30_000, 25, 40
 
 
 def limited(protocol: Protocol) -> dict[str, Callable[[Shown], str]]:
@@ -155,20 +156,31 @@ class _Search:
             return list(range(len(self)))
         return found
 
-    def mend(self, chance: Chance) -> bool:
-        """Exchange places while that breaks fewer rules; True if none is broken at the end."""
-        for _ in range(_PASSES):
+    def mend(self, chance: Chance, most: int) -> bool:
+        """Exchange places while that breaks no more rules; True if none is broken at the end.
+
+        At most so many exchanges are tried.
+        """
+        tried = 0
+        while tried < most:
             faults = self.faults()
             if not faults:
                 return True
             for place in chance.shuffled(faults):
+                tried += _PARTNERS
                 self._mend_at(place, chance)
         return not self.faults()
 
     def _mend_at(self, place: int, chance: Chance) -> None:
         first, stop = self.blocks[self.block_of[place]]
         for _ in range(_PARTNERS):
-            other = first + chance.below(stop - first)
+            if chance.below(2):
+                other = first + chance.below(stop - first)
+            else:
+                # Trials of other blocks change places if both blocks keep their conditions.
+                other = chance.below(len(self))
+                if self.names[other] != self.names[place]:
+                    continue
             if other == place:
                 continue
             before = self.cost((place, other))
@@ -199,29 +211,36 @@ def share_bounds(times: int, cuts: Sequence[int]) -> list[tuple[int, int]]:
 
 
 def arranged(
-    protocol: Protocol, blocks: list[list[Shown]], chance: Chance
+    protocol: Protocol, deal: Callable[[], list[list[Shown]]], chance: Chance
 ) -> list[list[Shown]] | None:
     """Trials of each block in an order that keeps all rules; None if none was found.
 
-    The search is bounded, and the same for the same chance.
+    Parameters
+    ----------
+    protocol
+        The protocol, which has the rules.
+    deal
+        Function that deals the trials to the blocks anew.
+    chance
+        What is drawn at random. The search is bounded, and the same for the same chance.
     """
     rules, kinds = protocol.rules, limited(protocol)
     named = [(kinds[name], most) for name, most in rules.at_most_running.items()]
     if rules.never_twice_running:
         named.append((lambda shown: str(protocol.design.content(shown[0])), 1))
-    ends = list(accumulate(map(len, blocks)))
-    spans = list(zip([0, *ends], ends, strict=False))
-    number = ends[-1]
-    cuts = [part * number // QUARTERS for part in range(1, QUARTERS + 1)]
-    cuts = cuts if rules.balanced_quarters else []
     for _ in range(_STARTS):
+        blocks = deal()
+        ends = list(accumulate(map(len, blocks)))
+        spans = list(zip([0, *ends], ends, strict=False))
+        cuts = [part * ends[-1] // QUARTERS for part in range(1, QUARTERS + 1)]
+        cuts = cuts if rules.balanced_quarters else []
         sequence: list[Shown] = []
         for block in blocks:
             for part in _parts(block, len(sequence), cuts, chance):
                 _append(sequence, part, named, chance)
         limits = [_Limit([kind(shown) for shown in sequence], most) for kind, most in named]
         search = _Search(sequence, spans, limits, cuts)
-        if search.mend(chance):
+        if search.mend(chance, _EXCHANGES // _STARTS + 50 * len(sequence) // 4):
             return [search.sequence[first:stop] for first, stop in spans]
     return None
 
