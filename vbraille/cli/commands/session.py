@@ -61,6 +61,8 @@ def _plan(arguments: argparse.Namespace) -> int:
         f"protocol: {protocol.name}, {len(plan.trials)} trials, "
         f"participant {plan.participant}, seed {plan.seed}"
     )
+    if plan.group:
+        _say(f"group: {plan.group}")
     if protocol.adaptive:
         from vbraille.sessions.planning.choosing import describe
 
