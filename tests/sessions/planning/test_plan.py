@@ -14,11 +14,11 @@ from msgspec import structs
 from tests.sessions.planning.rulebook import broken_rules
 from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
-from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
 from vbraille.sessions.planning.rules import check_plan
+from vbraille.sessions.planning.ruletable import Rules
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
@@ -84,6 +84,7 @@ class TestPlans:
         }
         assert sums == {
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
+            "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
             "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",

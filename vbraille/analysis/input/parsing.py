@@ -40,6 +40,7 @@ _UNTIMED = {
     "paused_s": "the trial was paused meanwhile",
     "early": "it was answered before it was read to its end",
 }
+CATCH, _CATCHES = "catch", ("blank", "repeat")
 ALL = "all"  # name of the condition in a protocol that compares none
 
 
@@ -81,6 +82,10 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         unanswered = len(sheet) - len(answered)
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
+        caught = _caught(answered)
+        if caught.any():
+            left_out.append(_told_catch(sheet, answered[caught]))
+            answered = answered[~caught]
         paired = answered["presented"].map(is_pair).astype(bool)
         if "parameter" in answered:
             paired |= answered["parameter"].str.strip() != ""
@@ -100,6 +105,19 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
             _check_once(whole, sheets)
         joined.append(whole)
     return Parsed(_trials(joined[0]), _comparisons(joined[1]), tuple(left_out), tuple(warnings))
+
+
+def _caught(rows: pd.DataFrame) -> pd.Series:
+    """Whether each row is a catch trial, which belongs to no item."""
+    if CATCH not in rows:
+        return pd.Series(data=False, index=rows.index)
+    return rows[CATCH].astype(str).str.strip().isin(_CATCHES)
+
+
+def _told_catch(sheet: Sheet, rows: pd.DataFrame) -> LeftOut:
+    right = sum(rows["correct"].astype(str).str.strip() == "1") if "correct" in rows else 0
+    what = f"{count(len(rows), 'catch trial')} of {sheet.name}"
+    return LeftOut(what, f"they keep watch over the participant; {right} answered right")
 
 
 def _strings(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:

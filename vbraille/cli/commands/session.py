@@ -58,6 +58,8 @@ def _plan(arguments: argparse.Namespace) -> int:
         f"protocol: {protocol.name}, {len(plan.trials)} trials, "
         f"participant {plan.participant}, seed {plan.seed}"
     )
+    if plan.group:
+        _say(f"group: {plan.group}")
     if protocol.adaptive:
         from vbraille.sessions.planning.choosing import describe
 
@@ -119,7 +121,9 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
     """Seed of a plan, and the values in place of the display's own tuning."""
-    return {name: getattr(arguments, name) for name in ("seed", "order", "texture", "contrast")}
+    return {
+        name: getattr(arguments, name) for name in ("seed", "order", "group", "texture", "contrast")
+    }
 
 
 def _export(arguments: argparse.Namespace) -> int:

@@ -17,7 +17,7 @@ import numpy as np
 from vbraille.sessions.record.anonymous import anonymous, number_of
 from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
 from vbraille.sessions.record.codebook import entry_of
-from vbraille.sessions.record.export import Traces, encode, rows, to_csv
+from vbraille.sessions.record.export import Traces, describe_design, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.record.traces import posed
 
@@ -130,7 +130,10 @@ def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
         "TaskDescription": f"{record.protocol.title} ({record.protocol.source})",
     }
     asked = {field.name: field.ask for field in record.protocol.fields}
-    return described | {name: entry_of(name, asked).to_bids() for name in columns}
+    described |= {name: entry_of(name, asked).to_bids() for name in columns}
+    for name, what in describe_design(record.protocol).items():
+        described[name] = {"Description": what}
+    return described
 
 
 def _recording(ticks: NDArray[np.void]) -> bytes:

@@ -88,8 +88,20 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
         question = (asked or {}).get(name.removeprefix(FIELD))
         meaning = question or "answer to a question of the protocol about the participant"
         return CodebookEntry(name, meaning)
-    meaning = COLUMNS.get(name, "as it was given")
+    meaning = COLUMNS.get(name) or _designed(name) or "as it was given"
     return CodebookEntry(name, meaning, unit_of(name), _VALUES.get(name, {}))
+
+
+def _designed(name: str) -> str:
+    """What a column of a lab's own design holds; empty if it is no such column."""
+    if name == "group":
+        return "name of the participant's group"
+    if name == "catch":
+        return "blank or repeat for a trial that only keeps watch; else empty"
+    for prefix, what in (("factor_", "level of the factor"), ("item_", "column of the items:")):
+        if name.startswith(prefix):
+            return f"{what} {name.removeprefix(prefix)}"
+    return ""
 
 
 def to_codebook(files: Mapping[str, Iterable[CodebookEntry]]) -> str:

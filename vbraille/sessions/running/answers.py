@@ -20,6 +20,7 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
+    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Trial
@@ -203,8 +204,18 @@ class Simulated:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
         self.name = f"simulated:{noise:g}"
         model: Model = protocol.model
-        style = replace(model.style, mapping=protocol.mapping, geometry=protocol.geometry)
-        self._observer = Observer(model.display, style, noise=noise)
+        if protocol.parameter and protocol.parameter not in _COMPARED:
+            raise InputError(
+                f"{protocol.name} compares {protocol.parameter}, which the simulated reader "
+                f"cannot; type the answers, or give a file of them"
+            )
+
+        def told(condition: Condition) -> Observer:
+            style = protocol.style_of(condition)
+            style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
+            return Observer(model.display, style, noise=noise)
+
+        self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
@@ -218,11 +229,12 @@ class Simulated:
         """Answer to a trial, by what was felt of it."""
         drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
         random = np.random.default_rng(seed_of(drawn))
+        observer = self._observers[trial.condition]
         if self._compared is not None:
             first, second = felt
-            return str(self._observer.compare(first, second, self._compared, random)), 0
+            return str(observer.compare(first, second, self._compared, random)), 0
         places = self._lead_cells + len(trial.stimuli[0].masks)
-        masks = self._observer.read(felt[0], places, random)
+        masks = observer.read(felt[0], places, random)
         asked = slice(*(self._lead_cells + place for place in trial.asked))
         return to_answer(masks[asked]), 0
 

@@ -203,7 +203,7 @@ class Console:
             course.withdraw()
         course.book.log(events.Answer, trial, **told)
         self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
-        if trial.practice:
+        if trial.practice and course.protocol.practice.feedback:
             self._tell(trial, answer)
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
         if correcting is None or course.trial is None or course.phase is Phase.LAST:
@@ -360,7 +360,7 @@ def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
         line,
         places=stop - first,
         keys=protocol.keys,
-        shown_dots=protocol.mapping.shown_dots(),
+        shown_dots=protocol.mapping_of(trial.stimuli[0]).shown_dots(),
     )
 
 
