@@ -93,7 +93,7 @@ def test_when_the_host_dies_pages_are_told_and_see_the_next_one(text):
             terminal.type(" ")
             terminal.until("reading")
             page.until(lambda _, state: state["device"] == "reading")
-            header = page.until(lambda now, _: now["tick"] > 0 and now["x_mm"] > 29)
+            header = page.until(lambda now, _: now["line"] > 0 and now["x_mm"] > 29)
             assert header["line"] == 1  # what was asked for meanwhile was not done
             page.ask(ask="press", command="LNDN")
             terminal.until("line: 2|hand: moved")

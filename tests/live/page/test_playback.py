@@ -65,7 +65,7 @@ def test_a_map_is_shown_and_saved(opens):
     page, _ = opens(Scene("still"), steers=False)
     page.get_by_role("button", name="Draw the map").click()
     until(page, "document.querySelector('#map-figure img')?.naturalWidth > 0")
-    assert "mm" in page.locator("#map-figure img").get_attribute("alt")
+    assert "to scale" in page.locator("#map-figure img").get_attribute("alt")
     for form in ("PNG", "SVG"):
         with page.expect_download() as saved:
             page.get_by_role("button", name=f"Save as {form}").click()
