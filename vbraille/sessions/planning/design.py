@@ -198,6 +198,8 @@ class Choice(_Design, frozen=True, tag="choice"):
         Values of the parameter in mm; each is compared with each other one.
     string
         Dot masks of the string that is shown at both values.
+    same
+        How often each value is compared with itself, in each of the repeats.
 
     Raises
     ------
@@ -209,9 +211,11 @@ class Choice(_Design, frozen=True, tag="choice"):
     parameter: Literal["dot_width_mm", "dot_gap_mm"]
     values: tuple[float, ...]
     string: Masks
+    same: int = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_range("same", self.same, 0, MOST_TRIALS)
         if len(self.values) < 2:
             raise ValueError(f"values are {len(self.values)}; give two or more to compare")
         _check_distinct("values have", (f"{value:.15g}" for value in self.values))
@@ -226,7 +230,7 @@ class Choice(_Design, frozen=True, tag="choice"):
     @property
     def trials(self) -> int:
         """Number of trials in each condition."""
-        return len(self.values) * (len(self.values) - 1) * self.repeats
+        return len(self.values) * (len(self.values) - 1 + self.same) * self.repeats
 
     @property
     def cells(self) -> int:
@@ -240,7 +244,12 @@ class Choice(_Design, frozen=True, tag="choice"):
 
     def items(self) -> Sequence[Item]:
         """Values of the first and the second stimulus in the trials of a condition."""
-        return list(permutations(self.values, 2)) * self.repeats
+        return self.pairs() * self.repeats
+
+    def pairs(self) -> list[Item]:
+        """Pairs of values that are compared in each of the repeats."""
+        alike = [(value, value) for value in self.values]
+        return [*permutations(self.values, 2), *alike * self.same]
 
 
 Design = Combinations | StringList | Choice

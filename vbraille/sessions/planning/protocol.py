@@ -32,6 +32,7 @@ from vbraille.sessions.planning.design import (
 )
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
+from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys
 from vbraille.toml.tomlfile import Table, which
 
@@ -59,6 +60,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
+    question: AnyQuestion | None = None
     practice: Practice = Practice()
     trial: TrialPace = TrialPace()
     session: SessionPace = SessionPace()
@@ -93,6 +95,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Rules that the finished plan is checked for, beside its design.
     procedure
         Which trial comes next, and when enough was asked.
+    question
+        What is asked of each trial; None to identify a string, or to choose one of two.
     practice
         Practice before the first block.
     trial, session
@@ -166,6 +170,16 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
+    def asks(self) -> AnyQuestion:
+        """Question that is asked of each trial."""
+        return self.question or usual_question(2 if self.task == "choice" else 1)
+
+    @property
+    def cell_spelling(self) -> CellSpelling:
+        """How cells may be typed in answers."""
+        return CellSpelling(self.keys, self.mapping.shown_dots())
+
+    @property
     def adaptive(self) -> bool:
         """Whether it depends on the answers which trials there are."""
         return not isinstance(self.procedure, FixedProcedure)
@@ -225,6 +239,7 @@ def _check_agreement(protocol: Protocol) -> None:
                 )
     _check_tuning(protocol)
     _check_procedure(protocol)
+    _check_question(protocol)
     problem = protocol.practice.problem(protocol.design)
     if problem:
         raise ValueError(f"[practice] {problem}")
@@ -267,6 +282,20 @@ def _check_procedure(protocol: Protocol) -> None:
                 f"[procedure] parameter is {own!r}, which the condition {condition.name} sets "
                 f"itself; leave it out there"
             )
+
+
+def _check_question(protocol: Protocol) -> None:
+    stimuli = 2 if protocol.task == "choice" else 1
+    problem = protocol.asks.problem(stimuli, adaptive=protocol.adaptive)
+    if problem:
+        raise ValueError(f"[question] {problem}")
+    same = isinstance(protocol.design, Choice) and protocol.design.same
+    if same and (protocol.asks.name != "same-different" or protocol.adaptive):
+        raise ValueError(
+            "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
+        )
+    if protocol.trial.end is not None and protocol.medium == "paper":
+        raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
 
 
 def _check_trials(protocol: Protocol) -> None:
