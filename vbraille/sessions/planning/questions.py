@@ -149,11 +149,15 @@ class _Question(Table, frozen=True, kw_only=True, tag_field="kind"):
 
     def positive(self, trial: Trial, answer: str) -> bool:
         """Whether an answer counts as a positive one for a procedure."""
-        return self.outcome(trial, answer) in GOOD
+        return self.good(trial, answer)
 
     def outcome(self, _trial: Trial, _answer: str) -> str:
         """How an answer is scored, such as "right" or "hit"; empty if it is not."""
         return ""
+
+    def good(self, trial: Trial, answer: str) -> bool:
+        """Whether an answer is right."""
+        return self.outcome(trial, answer) in GOOD
 
     def was(self, _trial: Trial, _keys: Mapping[str, int]) -> str:
         """Words for what is right, for practice; empty if nothing is."""

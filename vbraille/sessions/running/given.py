@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.answers import PROGRAM, ScriptedAnswers
-from vbraille.sessions.running.console import find_order, read_line
+from vbraille.sessions.running.console import find_order
+from vbraille.sessions.running.inquiry import read_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
