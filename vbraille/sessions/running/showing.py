@@ -304,7 +304,7 @@ class OnDevice:
         for event in told:
             if isinstance(event, Button) and event.pressed and event.number == self._button:
                 by = {"by": f"button:{event.number}"}
-                # A button that was pressed before the stimulus came is not counted as early as that.
+                # A press from before the stimulus came is told now, and counts from now on.
                 at_ns = event.at_ns if event.at_ns and event.at_ns > self._shown_ns else None
                 return [Happened(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
         return []
