@@ -254,12 +254,13 @@ class WhichQuestion(_Question, frozen=True, kw_only=True, tag="which"):
         values = [stimulus.value for stimulus in trial.stimuli]
         if self.right is None or None in values:
             return ""
-        first, second = (self._worth(value or 0.0) for value in values)
+        first, second = (self.worth(value or 0.0) for value in values)
         if first == second:
             return ""
         return "1" if first > second else "2"
 
-    def _worth(self, value: float) -> float:
+    def worth(self, value: float) -> float:
+        """Number that is the higher, the more right a value is."""
         if self.right == "nearest":
             return -abs(value - (self.reference or 0.0))
         return value if self.right == "more" else -value

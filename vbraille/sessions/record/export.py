@@ -271,9 +271,8 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     else:
         row["answered"] = told.answer or ""
         row["first_answer"] = told.first_answer or ""
-    if len(trial.stimuli) == 1:
-        if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
-            row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
+    if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
+        row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
 
 
