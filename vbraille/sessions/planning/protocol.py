@@ -15,6 +15,7 @@ from msgspec import field
 from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.render import MODELS
 from vbraille.sessions.planning.appearance import Appearance, Condition
+from vbraille.sessions.planning.asking import CellSpelling
 from vbraille.sessions.planning.conduct import (
     FaultRules,
     Question,
@@ -32,7 +33,7 @@ from vbraille.sessions.planning.design import (
 )
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
-from vbraille.sessions.planning.questions import AnyQuestion, CellSpelling, usual_question
+from vbraille.sessions.planning.questions import AnyQuestion, usual_question
 from vbraille.sessions.planning.spellings import SpellingKeys
 from vbraille.toml.tomlfile import Table, which
 

@@ -1,184 +1,42 @@
-"""The table ``[question]`` of a protocol: what is asked of a trial, and how an answer is spelled.
+"""The table ``[question]`` of a protocol: what is asked of a trial, a class for each kind.
 
-Without the table, a string is to be identified, and of two stimuli one is to be chosen. An answer
-is kept in one spelling, whichever of several was typed.
+Without the table, a string is to be identified, and of two stimuli one is to be chosen.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
 from vbraille.errors import check_range
+from vbraille.sessions.planning.asking import (
+    FALSE_ALARM,
+    HIT,
+    LARGEST,
+    MISS,
+    REJECTION,
+    RIGHT,
+    WRONG,
+    QuestionTable,
+    check_scale,
+    is_whole,
+    quoted,
+    read_step,
+)
 from vbraille.sessions.planning.conduct import LONGEST_LINE, check_line
-from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from vbraille.sessions.planning.asking import CellSpelling
     from vbraille.sessions.planning.stimuli import Trial
 
-RIGHT, WRONG = "right", "wrong"
-HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejection"
-GOOD = frozenset((RIGHT, HIT, REJECTION))  # outcomes of right answers
 YES, NO = "yes", "no"
 SAME, DIFFERENT = "same", "different"
-_MOST_STEPS = 101
-_LARGEST = 1e9
 
 
-@dataclass(frozen=True, slots=True)
-class CellSpelling:
-    """How cells may be typed in answers.
-
-    Parameters
-    ----------
-    keys
-        Dot mask of each key of the protocol.
-    shown_dots
-        Mask of the dots that the display shows.
-    """
-
-    keys: dict[str, int]
-    shown_dots: int
-
-
-class ConfidenceScale(Table, frozen=True, kw_only=True):
-    """The scale on which somebody says how sure an answer is.
-
-    Parameters
-    ----------
-    least, most
-        Ends of the scale, in whole numbers: least sure and most sure.
-
-    Raises
-    ------
-    ValueError
-        If the scale is read backwards, or is too long.
-    """
-
-    least: int
-    most: int
-
-    def __post_init__(self) -> None:
-        _check_scale(self.least, self.most)
-
-    @property
-    def typed(self) -> str:
-        """What may be typed, in words for people."""
-        return f"{self.least} to {self.most}"
-
-    def parse(self, text: str) -> int:
-        """Read a confidence.
-
-        Raises
-        ------
-        ValueError
-            If the text is no whole number of the scale.
-        """
-        return _step(text, self.least, self.most)
-
-    def split(self, line: str, spelling: CellSpelling) -> tuple[str, int | None]:
-        """Part a line into an answer and the confidence after a semicolon; None if it has none."""
-        answer, semicolon, rest = line.rpartition(";")
-        if not semicolon or ";" in spelling.keys or not _is_whole(rest.strip()):
-            return line, None
-        return answer.strip(), self.parse(rest)
-
-
-class _Question(Table, frozen=True, kw_only=True, tag_field="kind"):
-    """What questions of every kind have in common.
-
-    Parameters
-    ----------
-    ask
-        The question in words, for the experimenter to say; may be empty.
-    confidence
-        Scale on which it is asked how sure the answer is; None if it is not asked.
-
-    Raises
-    ------
-    ValueError
-        If the words are too long.
-    """
-
-    name: ClassVar[str]  # name of the kind in tables
-    stimuli: ClassVar[tuple[int, ...]] = (1, 2)  # how many stimuli a trial may have
-
-    ask: str = ""
-    confidence: ConfidenceScale | None = None
-
-    def __post_init__(self) -> None:
-        if self.ask:
-            check_line("ask", self.ask)
-
-    @property
-    def typed(self) -> str:
-        """What may be typed as an answer, in words for people."""
-        return "the answer"
-
-    def problem(self, stimuli: int, *, adaptive: bool) -> str:
-        """Say why this question cannot be asked of trials; empty if it can.
-
-        Parameters
-        ----------
-        stimuli
-            Number of stimuli in a trial, 1 or 2.
-        adaptive
-            Whether the answers choose what is shown.
-        """
-        if stimuli not in self.stimuli:
-            wanted, given = ("two stimuli", "one") if stimuli == 1 else ("one stimulus", "two")
-            return (
-                f"kind is {self.name!r}, which is asked of {wanted}, and each trial of [design] "
-                f"has {given}; choose another kind of question or of design"
-            )
-        if adaptive and not self.positive_known:
-            return (
-                f"kind is {self.name!r}, whose answers cannot choose what is shown next; leave "
-                f"[procedure] out, or ask something else"
-            )
-        return ""
-
-    @property
-    def positive_known(self) -> bool:
-        """Whether a procedure can go by the answers."""
-        return False
-
-    def positive(self, trial: Trial, answer: str) -> bool:
-        """Whether an answer counts as a positive one for a procedure."""
-        return self.good(trial, answer)
-
-    def outcome(self, _trial: Trial, _answer: str) -> str:
-        """How an answer is scored, such as "right" or "hit"; empty if it is not."""
-        return ""
-
-    def good(self, trial: Trial, answer: str) -> bool:
-        """Whether an answer is right."""
-        return self.outcome(trial, answer) in GOOD
-
-    def was(self, _trial: Trial, _keys: Mapping[str, int]) -> str:
-        """Words for what is right, for practice; empty if nothing is."""
-        return ""
-
-    def parse(self, text: str, trial: Trial, spelling: CellSpelling) -> str:
-        """Read an answer, and bring it into the spelling in which it is kept.
-
-        Raises
-        ------
-        ValueError
-            If the text is no answer to the question.
-        """
-        raise NotImplementedError
-
-    def said(self, answer: str, _keys: dict[str, int]) -> str:
-        """Words for an answer."""
-        return answer
-
-
-class IdentifyQuestion(_Question, frozen=True, kw_only=True, tag="identify"):
+class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify"):
     """The question which cells were shown."""
 
     name: ClassVar[str] = "identify"
@@ -189,27 +47,27 @@ class IdentifyQuestion(_Question, frozen=True, kw_only=True, tag="identify"):
         """Whether a procedure can go by the answers: it can, they are right or wrong."""
         return True
 
-    def outcome(self, trial: Trial, answer: str) -> str:
+    def outcome(self, trial: Trial, answer: str, /) -> str:
         """Right if all cells are."""
         return RIGHT if answer == trial.presented else WRONG
 
-    def was(self, trial: Trial, keys: Mapping[str, int]) -> str:
+    def was(self, trial: Trial, keys: Mapping[str, int], /) -> str:
         """Words for the cells."""
         return self.said(trial.presented, dict(keys))
 
-    def parse(self, text: str, trial: Trial, spelling: CellSpelling) -> str:
+    def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
         """Read cells; see `vbraille.braille.spelling.parse_answer`."""
         first, stop = trial.asked
         return parse_answer(
             text, places=stop - first, keys=spelling.keys, shown_dots=spelling.shown_dots
         )
 
-    def said(self, answer: str, keys: dict[str, int]) -> str:
+    def said(self, answer: str, keys: dict[str, int], /) -> str:
         """Words for the cells."""
         return say_cells(answer, keys)
 
 
-class WhichQuestion(_Question, frozen=True, kw_only=True, tag="which"):
+class WhichQuestion(QuestionTable, frozen=True, kw_only=True, tag="which"):
     """The question which of two stimuli it was: the one with more, or the one nearer to something.
 
     Parameters
@@ -233,7 +91,7 @@ class WhichQuestion(_Question, frozen=True, kw_only=True, tag="which"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_range("reference", self.reference, -_LARGEST, _LARGEST)
+        check_range("reference", self.reference, -LARGEST, LARGEST)
         if (self.right == "nearest") != (self.reference is not None):
             raise ValueError(
                 "right = 'nearest' and reference go together; give both, or neither of them"
@@ -265,26 +123,26 @@ class WhichQuestion(_Question, frozen=True, kw_only=True, tag="which"):
             return -abs(value - (self.reference or 0.0))
         return value if self.right == "more" else -value
 
-    def outcome(self, trial: Trial, answer: str) -> str:
+    def outcome(self, trial: Trial, answer: str, /) -> str:
         """Right or wrong, if one of the two is right."""
         right = self.right_one(trial)
         return "" if not right else RIGHT if answer == right else WRONG
 
-    def was(self, trial: Trial, _keys: Mapping[str, int]) -> str:
+    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
         """Words for the right one of two."""
         right = self.right_one(trial)
         return self.said(right, {}) if right else ""
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling) -> str:
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a choice; see `vbraille.braille.spelling.parse_choice`."""
         return parse_choice(text)
 
-    def said(self, answer: str, _keys: dict[str, int]) -> str:
+    def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for the one that was chosen."""
         return "first" if answer == "1" else "second"
 
 
-class _OneOfTwo(_Question, frozen=True, kw_only=True):
+class _OneOfTwo(QuestionTable, frozen=True, kw_only=True):
     """A question that is answered by one of two words, of which the first is what is looked for."""
 
     words: ClassVar[tuple[str, str]]
@@ -299,20 +157,20 @@ class _OneOfTwo(_Question, frozen=True, kw_only=True):
         """Whether the trial has what is looked for."""
         raise NotImplementedError
 
-    def outcome(self, trial: Trial, answer: str) -> str:
+    def outcome(self, trial: Trial, answer: str, /) -> str:
         """Hit or miss, or without what is looked for, false alarm or correct rejection."""
         said = answer == self.words[0]
         if self.looked_for(trial):
             return HIT if said else MISS
         return FALSE_ALARM if said else REJECTION
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling) -> str:
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read one of the two words, in either case, or its first letter."""
         word = text.strip().lower()
         for known in self.words:
             if word in (known, known[0]):
                 return known
-        raise ValueError(f"{_quoted(text)}type {self.words[0]} or {self.words[1]}")
+        raise ValueError(f"{quoted(text)}type {self.words[0]} or {self.words[1]}")
 
 
 class SameQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
@@ -326,7 +184,7 @@ class SameQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
         """Whether the two differ in anything."""
         return trial.stimuli[0] != trial.stimuli[1]
 
-    def was(self, trial: Trial, _keys: Mapping[str, int]) -> str:
+    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
         """Words for what the two were."""
         return DIFFERENT if self.looked_for(trial) else SAME
 
@@ -343,7 +201,7 @@ class DetectQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="detect"):
         """Whether a procedure can go by the answers: it goes by "yes"."""
         return True
 
-    def positive(self, _trial: Trial, answer: str) -> bool:
+    def positive(self, _trial: Trial, answer: str, /) -> bool:
         """Whether the answer is yes."""
         return answer == YES
 
@@ -352,12 +210,12 @@ class DetectQuestion(_OneOfTwo, frozen=True, kw_only=True, tag="detect"):
         (stimulus,) = trial.stimuli
         return stimulus.tuning.contrast > 0 and any(stimulus.masks[slice(*trial.asked)])
 
-    def was(self, trial: Trial, _keys: Mapping[str, int]) -> str:
+    def was(self, trial: Trial, _keys: Mapping[str, int], /) -> str:
         """Words for what there was."""
         return "something" if self.looked_for(trial) else "nothing"
 
 
-class RatingQuestion(_Question, frozen=True, kw_only=True, tag="rating"):
+class RatingQuestion(QuestionTable, frozen=True, kw_only=True, tag="rating"):
     """The question where on a scale of whole numbers something is.
 
     Parameters
@@ -386,7 +244,7 @@ class RatingQuestion(_Question, frozen=True, kw_only=True, tag="rating"):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_line("scale", self.scale)
-        _check_scale(self.least, self.most)
+        check_scale(self.least, self.most)
         steps = self.most - self.least + 1
         if len(self.labels) not in (0, 2, steps):
             raise ValueError(
@@ -398,7 +256,7 @@ class RatingQuestion(_Question, frozen=True, kw_only=True, tag="rating"):
             check_line("labels: one", label)
             if label.strip().lower() in known:
                 raise ValueError(f"labels have {label!r} twice; give each step its own")
-            if _is_whole(label.strip()):
+            if is_whole(label.strip()):
                 raise ValueError(f"labels have {label!r}, which is a number; give words")
             known.add(label.strip().lower())
 
@@ -418,20 +276,20 @@ class RatingQuestion(_Question, frozen=True, kw_only=True, tag="rating"):
         ends = f"{self.least} is {named[self.least]}, {self.most} is {named[self.most]}"
         return f"{self.least} to {self.most} for {self.scale}: {ends}"
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling) -> str:
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a step of the scale: its number, or its label."""
         for step, label in self.named.items():
             if text.strip().lower() == label.strip().lower():
                 return str(step)
-        return str(_step(text, self.least, self.most))
+        return str(read_step(text, self.least, self.most))
 
-    def said(self, answer: str, _keys: dict[str, int]) -> str:
+    def said(self, answer: str, _keys: dict[str, int], /) -> str:
         """Words for a step: its number, and its label if it has one."""
         label = self.named.get(int(answer), "")
         return f"{answer}, {label}" if label else answer
 
 
-class MagnitudeQuestion(_Question, frozen=True, kw_only=True, tag="magnitude"):
+class MagnitudeQuestion(QuestionTable, frozen=True, kw_only=True, tag="magnitude"):
     """The question how strong something is, as a positive number.
 
     Parameters
@@ -452,7 +310,7 @@ class MagnitudeQuestion(_Question, frozen=True, kw_only=True, tag="magnitude"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.modulus is not None and not 0 < self.modulus <= _LARGEST:
+        if self.modulus is not None and not 0 < self.modulus <= LARGEST:
             raise ValueError(f"modulus is {self.modulus:g}; it must be a number above 0")
 
     @property
@@ -461,18 +319,18 @@ class MagnitudeQuestion(_Question, frozen=True, kw_only=True, tag="magnitude"):
         told = "" if self.modulus is None else f"; the standard is {self.modulus:g}"
         return f"a number above 0{told}"
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling) -> str:
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read a positive number, with a point or a comma in it."""
         try:
             number = float(text.strip().replace(",", "."))
         except ValueError:
             number = math.nan
-        if not 0 < number <= _LARGEST:
-            raise ValueError(f"{_quoted(text)}type a number above 0, such as 12 or 0.5")
+        if not 0 < number <= LARGEST:
+            raise ValueError(f"{quoted(text)}type a number above 0, such as 12 or 0.5")
         return f"{number:.15g}"
 
 
-class FreeQuestion(_Question, frozen=True, kw_only=True, tag="free"):
+class FreeQuestion(QuestionTable, frozen=True, kw_only=True, tag="free"):
     """A question that is answered in words, which nobody scores."""
 
     name: ClassVar[str] = "free"
@@ -482,7 +340,7 @@ class FreeQuestion(_Question, frozen=True, kw_only=True, tag="free"):
         """What may be typed: any words."""
         return "the answer in words"
 
-    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling) -> str:
+    def parse(self, text: str, _trial: Trial, _spelling: CellSpelling, /) -> str:
         """Read any line of text that is not empty."""
         answer = text.strip()
         if not answer or not answer.isprintable():
@@ -506,31 +364,3 @@ AnyQuestion = (
 def usual_question(stimuli: int) -> AnyQuestion:
     """Question of a protocol without the table, for trials with one stimulus or two."""
     return WhichQuestion() if stimuli == 2 else IdentifyQuestion()
-
-
-def _check_scale(least: int, most: int) -> None:
-    if least >= most:
-        raise ValueError(
-            f"least is {least} and most is {most}, so that the scale is read backwards; "
-            f"make most larger than least"
-        )
-    if most - least + 1 > _MOST_STEPS:
-        raise ValueError(f"the scale has more than {_MOST_STEPS} steps; make it shorter")
-
-
-def _step(text: str, least: int, most: int) -> int:
-    word = text.strip()
-    if not _is_whole(word) or not least <= int(word) <= most:
-        raise ValueError(f"{_quoted(text)}type a whole number, {least} to {most}")
-    return int(word)
-
-
-def _is_whole(word: str) -> bool:
-    return len(word) < 10 and word.removeprefix("-").isdecimal()
-
-
-def _quoted(text: str) -> str:
-    word = text.strip()
-    if not word:
-        return "nothing was typed; "
-    return f"{word if len(word) <= 20 else word[:20] + '…'!r} is not an answer; "

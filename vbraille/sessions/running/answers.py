@@ -249,7 +249,8 @@ class Simulated:
     def _answer(self, trial: Trial, felt: list[Exploration], random: np.random.Generator) -> str:
         question, noise = self._question, self._observer.noise
         if isinstance(question, WhichQuestion) and question.right is None and self._compared:
-            return str(self._observer.compare(*felt[:2], self._compared, random))
+            first, second = felt
+            return str(self._observer.compare(first, second, self._compared, random))
         if self._compares:
             one, two, unit = self._felt_of_two(trial, felt)
             if isinstance(question, SameQuestion):

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
+    from vbraille.sessions.running.halfanswer import HalfAnswer
     from vbraille.sessions.running.happened import Happened
-    from vbraille.sessions.running.inquiry import HalfAnswer
     from vbraille.sessions.running.showing import OnDevice
 
 POLL_S = 0.02

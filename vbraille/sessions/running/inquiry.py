@@ -7,11 +7,11 @@ again, and both are asked again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.sessions.record import events
+from vbraille.sessions.running.halfanswer import HalfAnswer
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
@@ -20,25 +20,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.course import Course
-
-
-@dataclass(frozen=True, slots=True)
-class HalfAnswer:
-    """An answer whose confidence is waited for.
-
-    Parameters
-    ----------
-    trial
-        Trial that was answered.
-    told
-        Fields of the journal's event.
-    at_s
-        Seconds of the session at the answer.
-    """
-
-    trial: Trial
-    told: dict[str, Any]
-    at_s: float
 
 
 class Inquiry:
