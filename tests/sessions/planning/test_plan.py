@@ -83,6 +83,9 @@ class TestPlans:
             for name in builtin_names()
         }
         assert sums == {
+            "detection": "b33780ebf393716186db642c659a2c04c01ad3d908ffc5ce775429175d493f3d",
+            "rating": "b8387601c14d75b147ac908f23ea74df85d89f05184210c6422bb062f44ef855",
+            "same-different": "51ae08f138274dc9c295a6c243dfb6594a8b1fb25996086a820bf3bba1402294",
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
