@@ -166,7 +166,8 @@ class Traced:
         trial, showing = self._pictures.shown[scene]
         told = self._progress.told(trial)
         stimulus = showing.stimulus_of(trial)
-        style = replace(protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry)
+        mapping = protocol.mapping_of(stimulus)
+        style = replace(protocol.model.style, mapping=mapping, geometry=stimulus.geometry)
         facts = [
             *plain.facts,
             ("trial", _name(trial)),

@@ -29,6 +29,7 @@ def plan_session(
     order: int | None = None,
     texture: float | None = None,
     contrast: float | None = None,
+    group: str | None = None,
 ) -> tuple[Protocol, Plan]:
     """Make the protocol and the plan of a session; a seed is drawn if none is given.
 
@@ -38,8 +39,10 @@ def plan_session(
         protocol = load_protocol(str(protocol))
     if seed is None:
         seed = secrets.randbelow(_MOST_DRAWN)
-    plan = make_plan(protocol, participant, seed, order, texture=texture, contrast=contrast)
-    return protocol, plan
+    plan = make_plan(
+        protocol, participant, seed, order, group=group, texture=texture, contrast=contrast
+    )
+    return protocol.assigned(plan.group), plan
 
 
 def told_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:
@@ -84,12 +87,14 @@ def head_of(
         Answers to the protocol's questions about the participant.
     """
     display = protocol.model.display
+    group = {"group": plan.group} if plan.group else {}
     return {
         "format": FORMAT,
         "protocol": protocol.name,
         "participant": plan.participant,
         "seed": plan.seed,
         "order": plan.order,
+        **group,
         "model": protocol.model.name,
         "array": {
             name: getattr(display, name)

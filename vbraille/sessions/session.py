@@ -142,6 +142,7 @@ class Session:
         order: int | None = None,
         texture: float | None = None,
         contrast: float | None = None,
+        group: str | None = None,
         fields: Mapping[str, str] | None = None,
         conditions: Conditions = USUAL,
         engine: MakeEngine | None = None,
@@ -158,7 +159,7 @@ class Session:
             New directory for the session; PARTICIPANT-PROTOCOL-TIME if none is given.
         seed
             Number that all random choices of the plan follow from; one is drawn if none is given.
-        order, texture, contrast
+        order, texture, contrast, group
             These are described at `vbraille.sessions.planning.making.make_plan`.
         fields
             Answers to the protocol's questions about the participant, by the names of the
@@ -175,7 +176,7 @@ class Session:
         InputError
             If an argument cannot be used, or the directory exists already.
         """
-        planned, plan = plan_session(protocol, participant, seed, order, texture, contrast)
+        planned, plan = plan_session(protocol, participant, seed, order, texture, contrast, group)
         name = f"{plan.participant}-{plan.protocol}-{datetime.now():%Y%m%d-%H%M%S}"
         place = Path(name if folder is None else folder)
         progress = Progress(plan, procedure=procedure_of(planned, plan))

@@ -90,7 +90,7 @@ BAD_DESIGNS = [
     (
         10,
         PAIRS + "reorder = true",
-        "reorder is of kind = 'list'; leave it out…",
+        "reorder is of kind = 'list' or 'items'; leave it out…",
     ),
     (10, PAIRS + "repeats = 0", "repeats is 0; it must be 1 to 10000"),
     (10, PAIRS + "repeats = 1.5", "repeats is 1.5; it must be a whole number"),
@@ -187,7 +187,7 @@ BAD_DESIGNS = [
     (
         7,
         '[design]\nkind = "pairs"\nwords = 3\nstrings = ["ab"]',
-        "kind is 'pairs'; the nearest is …, and there is choice, combinations, list",
+        "kind is 'pairs'; the nearest is …, and there is choice, combinations, items, list",
     ),
     (7, "[design]\nkind = 3\nwords = 3", "kind is 3; it must be a string, in quotation marks"),
     (10, GAPS.replace('"c"', '"a"'), "string has no cell with a gap; give one with a left and…"),

@@ -14,11 +14,11 @@ from msgspec import structs
 from tests.sessions.planning.rulebook import broken_rules
 from vbraille.braille.spelling import LETTERS
 from vbraille.errors import InputError
-from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocolfiles import builtin_names, load_protocol, parse_protocol
 from vbraille.sessions.planning.rules import check_plan
+from vbraille.sessions.planning.ruletable import Rules
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")
@@ -83,10 +83,11 @@ class TestPlans:
             for name in builtin_names()
         }
         assert sums == {
-            "detection": "b33780ebf393716186db642c659a2c04c01ad3d908ffc5ce775429175d493f3d",
-            "rating": "b8387601c14d75b147ac908f23ea74df85d89f05184210c6422bb062f44ef855",
-            "same-different": "51ae08f138274dc9c295a6c243dfb6594a8b1fb25996086a820bf3bba1402294",
+            "detection": "d398970fcfd35b1b592af17dce04443d8ac57d8958fda26a28a77be7a6f3201b",
+            "rating": "843b5035ef8f6c29eb5a43a84af01409173cb79217123122510bd2991bfb6918",
+            "same-different": "9fbeaa18c812abb1ddce99e887fe42b8a2bbc9ad3152a5461f04870822452c3c",
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
+            "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",
             "tuning-spacing": "4a5b1ed88a95202731d735744f3758a157faef4be2811b5f2590074a1953991c",

@@ -40,6 +40,7 @@ class TestBuiltIns:
     def test_names(self):
         assert builtin_names() == [
             "control",
+            "factors",
             "legibility",
             "letters",
             "tuning-spacing",
@@ -226,11 +227,11 @@ class TestParsing:
         ("value", "width_mm", "spacing_mm"), [(None, 2.0, 4.0), (1.5, 2.0, 3.5), (0.0, 2.0, 2.0)]
     )
     def test_a_gap_is_from_edge_to_edge(self, value, width_mm, spacing_mm):
-        geometry = parse(VBD_HEAD + GAPS).geometry_at(value)
+        geometry = _geometry(parse(VBD_HEAD + GAPS), value)
         assert (geometry.dot_width_mm, geometry.dot_spacing_mm) == (width_mm, spacing_mm)
 
     def test_a_width_leaves_the_centres_where_they_are(self):
-        geometry = parse(VBD_HEAD + WIDTHS).geometry_at(1.0)
+        geometry = _geometry(parse(VBD_HEAD + WIDTHS), 1.0)
         assert (geometry.dot_width_mm, geometry.dot_spacing_mm) == (1.0, 4.0)
 
     @given(st.text(max_size=200) | st.text("[]={}\"'.#\n a1", max_size=60))
@@ -281,3 +282,8 @@ class TestLoading:
         text = (VBD_HEAD + PAIRS).replace("\n", "\r\n")
         path.write_bytes(b"\xef\xbb\xbf" + text.encode())
         assert load_protocol(str(path)).text == text
+
+
+def _geometry(protocol, value):
+    """Distances at a value of what is compared."""
+    return protocol.shown(protocol.conditions[0], (1,), value).geometry

@@ -7,10 +7,10 @@ import pytest
 from msgspec import structs
 
 from vbraille.errors import InputError
-from vbraille.sessions.planning.design import Rules
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import builtin_text, load_protocol, parse_protocol
 from vbraille.sessions.planning.rules import check_plan
+from vbraille.sessions.planning.ruletable import Rules
 
 HEAD = 'format = 1\nname = "mine"\ntitle = "Mine"\nsource = "Here"\nmodel = "stress2"\n'
 ABC = "".join(f'[[conditions]]\nname = "{name}"\n' for name in "ABC")

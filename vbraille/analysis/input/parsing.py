@@ -41,6 +41,7 @@ _UNTIMED = {
     "paused_s": "the trial was paused meanwhile",
     "early": "it was answered before it was read to its end",
 }
+CATCH, _CATCHES = "catch", ("blank", "repeat")
 ALL = "all"  # name of the condition in a protocol that compares none
 
 
@@ -86,6 +87,11 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         unanswered = len(sheet) - len(answered)
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
+        detected = answered.get("question", pd.Series("", answered.index)).eq("detect")
+        caught = _caught(answered) & ~detected  # blank ones are what detection needs
+        if caught.any():
+            left_out.append(_told_catch(sheet, answered[caught]))
+            answered = answered[~caught]
         told = read_judgements(sheet, answered, _who(sheet, answered))
         if told is not None:
             judgements[number] = told
@@ -117,6 +123,19 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         tuple(dict.fromkeys(warnings)),
         None if joined[2] is None else _sorted(joined[2].assign(condition=_conditions(joined[2]))),
     )
+
+
+def _caught(rows: pd.DataFrame) -> pd.Series:
+    """Whether each row is a catch trial, which belongs to no item."""
+    if CATCH not in rows:
+        return pd.Series(data=False, index=rows.index)
+    return rows[CATCH].astype(str).str.strip().isin(_CATCHES)
+
+
+def _told_catch(sheet: Sheet, rows: pd.DataFrame) -> LeftOut:
+    right = sum(rows["correct"].astype(str).str.strip() == "1") if "correct" in rows else 0
+    what = f"{count(len(rows), 'catch trial')} of {sheet.name}"
+    return LeftOut(what, f"they keep watch over the participant; {right} answered right")
 
 
 def _strings(sheet: Sheet, rows: pd.DataFrame) -> pd.DataFrame:

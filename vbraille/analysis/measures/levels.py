@@ -11,9 +11,10 @@ import numpy as np
 from vbraille.analysis.input.trials import LeftOut, natural
 from vbraille.analysis.measures.averages import mean_or_none
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
-from vbraille.analysis.statistics.anova import anova
+from vbraille.analysis.statistics.anova import Anova, anova
 from vbraille.analysis.statistics.correction import adjust
 from vbraille.analysis.statistics.intervals import Interval, mean_duration, mean_interval
+from vbraille.analysis.statistics.mixedanova import MixedAnova, mixed_anova
 from vbraille.analysis.statistics.paired import PairedTest, paired_t
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.unanswerable import Unanswerable
@@ -57,6 +58,7 @@ OWN = Schema(
         Column("mean", "mean", "in the measure's unit", Kind.NUMBER),
     ),
 )
+_MIXED = "beside a factor between participants: no test of sphericity, no interval"
 T_TESTS = Schema(
     "t_tests",
     "Paired t-tests",
@@ -87,7 +89,8 @@ T_TESTS = Schema(
 ANOVA = Schema(
     "anova",
     "Repeated-measures analysis of variance",
-    "Every factor is within participants. Corrected is by Greenhouse and Geisser's epsilon, which "
+    "A factor of which every participant has one level is between participants, beside others that "
+    "are within. Corrected is by Greenhouse and Geisser's epsilon, which "
     "is too careful with few participants, or by Huynh and Feldt's. Mauchly's test is of "
     "sphericity; where its two p differ, participants are too few for the expansion, and the exact "
     "one holds. The interval of partial eta² is by noncentral F. A participant with a missing cell "
@@ -202,7 +205,7 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
     left_out: list[LeftOut] = []
     for scores in measures:
         try:
-            found = anova(scores.participants, scores.factors, scores.scores)
+            found = _variance(scores)
         except ValueError as reason:  # Unanswerable, or more factors than can be compared
             notes.append(f"{scores.measure}: {reason}")
             continue
@@ -211,7 +214,8 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
             left_out.append(
                 LeftOut(f"participant {who}, of the analysis of {scores.measure}", f"no {missing}")
             )
-        if found.averaged:
+        mixed = isinstance(found, MixedAnova)
+        if isinstance(found, Anova) and found.averaged:
             who = ", ".join(name for name, _ in found.averaged)
             notes.append(f"{scores.measure}: repeated scores were averaged first, of {who}")
         rows += [
@@ -219,11 +223,43 @@ def analyses(measures: Sequence[Scores]) -> tuple[ResultTable, list[LeftOut]]:
                 "measure": scores.measure,
                 "effect": effect.name,
                 "participants": len(found.participants),
-                **{column.name: getattr(effect, column.name) for column in ANOVA.columns[3:]},
+                **{c.name: getattr(effect, c.name, None) for c in ANOVA.columns[3:]},
+                "note": "; ".join(filter(None, [effect.note, _MIXED if mixed else ""])),
             }
             for effect in found.effects
         ]
     return ANOVA.fill(rows, notes if rows or notes else [NOTHING]), left_out
+
+
+def _variance(scores: Scores) -> Anova | MixedAnova:
+    """Analysis of variance, with the factors that groups of participants differ in between them.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to compare, or more factors than can be compared.
+    """
+    apart = _between(scores)
+    if not apart:
+        return anova(scores.participants, scores.factors, scores.scores)
+    # Nobody has a score in a group of others; who misses one in the own group is left out whole.
+    known = [at for at, score in enumerate(scores.scores) if not math.isnan(score)]
+    factors = {name: [of[at] for at in known] for name, of in scores.factors.items()}
+    between = {name: of for name, of in factors.items() if name in apart}
+    within = {name: of for name, of in factors.items() if name not in apart}
+    who = [scores.participants[at] for at in known]
+    return mixed_anova(who, between, within, [scores.scores[at] for at in known])
+
+
+def _between(scores: Scores) -> set[str]:
+    """Factors of which every participant has one level, beside others of which they have more."""
+    found: set[str] = set()
+    for name, column in scores.factors.items():
+        rows = zip(scores.participants, column, scores.scores, strict=True)
+        own = {(who, level) for who, level, score in rows if not math.isnan(score)}
+        if len(own) == len({who for who, _ in own}) and len({level for _, level in own}) > 1:
+            found.add(name)
+    return found if len(found) < len(scores.factors) else set()
 
 
 def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
@@ -233,7 +269,8 @@ def _means(scores: Scores, factor: str) -> dict[str, dict[str, float]]:
     than the others' means.
     """
     cells: dict[tuple[str, str, tuple[str, ...]], list[float]] = {}
-    others = [column for name, column in scores.factors.items() if name != factor]
+    apart = _between(scores)
+    others = [of for name, of in scores.factors.items() if name != factor and name not in apart]
     cell_of = zip(*others, strict=True) if others else ((),) * len(scores.scores)
     columns = (scores.participants, scores.factors[factor], cell_of, scores.scores)
     for who, level, cell, score in zip(*columns, strict=True):

@@ -122,7 +122,9 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _chances(arguments: argparse.Namespace) -> dict[str, Any]:
     """Seed of a plan, and the values in place of the display's own tuning."""
-    return {name: getattr(arguments, name) for name in ("seed", "order", "texture", "contrast")}
+    return {
+        name: getattr(arguments, name) for name in ("seed", "order", "group", "texture", "contrast")
+    }
 
 
 def _export(arguments: argparse.Namespace) -> int:

@@ -180,6 +180,11 @@ def _plan(parser: ArgumentParser) -> None:
         help="Take this one of the balanced orders (default: by the number in the pseudonym).",
     )
     parser.add_argument(
+        "--group",
+        metavar="NAME",
+        help="Put the participant into this group (default: by the number in the pseudonym).",
+    )
+    parser.add_argument(
         "--texture",
         type=number,
         metavar="0…1",

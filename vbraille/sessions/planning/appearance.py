@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from vbraille.render import BrailleStyle, Mapping, Model
 
 MOST_LEAD = 20
+# Lengths that conditions may differ in; the travel is the device's, and the same for all.
+LENGTHS = tuple(name for name in BOUNDS_MM if name != "travel_mm")
+TUNED = ("texture", "contrast", "cycles")
+LOOKS = (*TUNED, "dot_row", "mapping", *LENGTHS)
 
 
 class Tuned(Table, frozen=True, kw_only=True):
@@ -44,7 +48,7 @@ class Tuned(Table, frozen=True, kw_only=True):
     @property
     def given(self) -> dict[str, Any]:
         """Values that the file gives, by their names in `Tuning`."""
-        return _given(self, ("texture", "contrast", "cycles"))
+        return _given(self, TUNED)
 
     def tune(self, model: Model, tuning: Tuning) -> Tuning:
         """Tuning in which the values given here take the place of its own.
@@ -62,8 +66,69 @@ class Tuned(Table, frozen=True, kw_only=True):
         return replace(tuning, **self.given)
 
 
-class Condition(Tuned, frozen=True):
-    """One condition of a protocol: the display's tuning, but for the values given here.
+class Look(Tuned, frozen=True, kw_only=True):
+    """Any part of the way in which strings are shown; a value that is left out is None.
+
+    Parameters
+    ----------
+    dot_row
+        Row of dots that the VBD shows, from 1.
+    mapping
+        Name of the mapping that the STReSS² uses.
+    dot_width_mm, dot_spacing_mm, cell_gap_mm, row_spacing_mm, line_pitch_mm
+        These are described at `Geometry`.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    dot_row: int | None = None
+    mapping: str | None = None
+    dot_width_mm: float | None = None
+    dot_spacing_mm: float | None = None
+    cell_gap_mm: float | None = None
+    row_spacing_mm: float | None = None
+    line_pitch_mm: float | None = None
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """All values that the file gives, by their names as attributes."""
+        return _given(self, LOOKS)
+
+    def over(self, model: Model, style: BrailleStyle) -> BrailleStyle:
+        """Style in which the values given here take the place of its own.
+
+        Raises
+        ------
+        ValueError
+            If values contradict each other, or the model has no use for them.
+        """
+        geometry = replace(style.geometry, **_given(self, LENGTHS))
+        mapping = self._mapping(model) or style.mapping
+        return replace(
+            style, mapping=mapping, geometry=geometry, tuning=self.tune(model, style.tuning)
+        )
+
+    def _mapping(self, model: Model) -> Mapping | None:
+        """Mapping that the file gives; None if it gives none."""
+        one_row = model.style.mapping.rows == 1
+        if self.dot_row is not None and not one_row:
+            raise ValueError(f"dot_row is of the VBD; the {model.title} shows all, leave it out")
+        if self.mapping is not None and one_row:
+            raise ValueError(f"mapping is of the STReSS²; for the {model.title} give dot_row")
+        if self.dot_row is not None:
+            return single_row(self.dot_row)
+        if self.mapping is None:
+            return None
+        if self.mapping not in MAPPINGS:
+            raise ValueError(f"mapping is {self.mapping!r}{which(self.mapping, MAPPINGS)}")
+        return MAPPINGS[self.mapping]
+
+
+class Condition(Look, frozen=True):
+    """One condition of a protocol: the display's style, but for the values given here.
 
     Parameters
     ----------
@@ -83,19 +148,15 @@ class Condition(Tuned, frozen=True):
         super().__post_init__()
 
 
-class Appearance(Tuned, frozen=True, kw_only=True):
+class Appearance(Look, frozen=True, kw_only=True):
     """The table ``[display]``. A value that is left out is None, and the model's own is used.
 
     Parameters
     ----------
-    dot_row
-        Row of dots that the VBD shows, from 1.
-    mapping
-        Name of the mapping that the STReSS² uses.
     lead_cells
         Number of blank cells before each string.
-    dot_width_mm, dot_spacing_mm, cell_gap_mm, row_spacing_mm, line_pitch_mm, travel_mm
-        These are described at `Geometry`.
+    travel_mm
+        Length of the carriage's travel.
 
     Raises
     ------
@@ -103,15 +164,8 @@ class Appearance(Tuned, frozen=True, kw_only=True):
         If a value is out of range.
     """
 
-    dot_row: int | None = None
-    mapping: str | None = None
     # With one cell, the array's right column is well before the first dot at the left stop.
     lead_cells: int = 1
-    dot_width_mm: float | None = None
-    dot_spacing_mm: float | None = None
-    cell_gap_mm: float | None = None
-    row_spacing_mm: float | None = None
-    line_pitch_mm: float | None = None
     travel_mm: float | None = None
 
     def __post_init__(self) -> None:
@@ -127,23 +181,24 @@ class Appearance(Tuned, frozen=True, kw_only=True):
         ValueError
             If values contradict each other, or the model has no use for them.
         """
-        geometry = replace(model.style.geometry, **_given(self, BOUNDS_MM))
-        tuning = self.tune(model, model.style.tuning)
-        return replace(model.style, mapping=self._mapping(model), geometry=geometry, tuning=tuning)
+        geometry = replace(model.style.geometry, **_given(self, ("travel_mm",)))
+        return self.over(model, replace(model.style, geometry=geometry))
 
-    def _mapping(self, model: Model) -> Mapping:
-        one_row = model.style.mapping.rows == 1
-        if self.dot_row is not None and not one_row:
-            raise ValueError(f"dot_row is of the VBD; the {model.title} shows all, leave it out")
-        if self.mapping is not None and one_row:
-            raise ValueError(f"mapping is of the STReSS²; for the {model.title} give dot_row")
-        if self.dot_row is not None:
-            return single_row(self.dot_row)
-        if self.mapping is None:
-            return model.style.mapping
-        if self.mapping not in MAPPINGS:
-            raise ValueError(f"mapping is {self.mapping!r}{which(self.mapping, MAPPINGS)}")
-        return MAPPINGS[self.mapping]
+
+def mapping_named(name: str) -> Mapping:
+    """Mapping of a name, as plans have it: one of `MAPPINGS`, or ``dot-row-1`` to ``dot-row-3``.
+
+    Raises
+    ------
+    ValueError
+        If there is no such mapping.
+    """
+    rows = {single_row(number).name: number for number in (1, 2, 3)}
+    if name in rows:
+        return single_row(rows[name])
+    if name not in MAPPINGS:
+        raise ValueError(f"mapping is {name!r}{which(name, MAPPINGS)}")
+    return MAPPINGS[name]
 
 
 def _given(values: object, names: Iterable[str]) -> dict[str, Any]:

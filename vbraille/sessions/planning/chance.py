@@ -28,11 +28,15 @@ class Chance:
     def __init__(self, seed: str) -> None:
         self._random = random.Random(int.from_bytes(sha256(seed.encode()).digest(), "big")).random
 
+    def below(self, number: int) -> int:
+        """Whole number from 0 to one less than the given one, all equally likely."""
+        return int(self._random() * number)
+
     def shuffled(self, items: Iterable[_Item]) -> list[_Item]:
         """Items in random order, in which every order is equally likely (Fisher and Yates)."""
         order = list(items)
         for last in range(len(order) - 1, 0, -1):
-            other = int(self._random() * (last + 1))
+            other = self.below(last + 1)
             order[last], order[other] = order[other], order[last]
         return order
 
@@ -71,7 +75,7 @@ class Chance:
             if must is not None and must == before:
                 raise ValueError("something is in more than half of them")
             while True:
-                at = int(self._random() * len(left))
+                at = self.below(len(left))
                 kind, item = left[at]
                 if kind == must if must is not None else kind != before:
                     break

@@ -16,6 +16,7 @@ from msgspec import structs
 from vbraille.errors import VbrailleError
 from vbraille.sessions.adaptive.stopping import Asked
 from vbraille.sessions.planning.design import Choice
+from vbraille.sessions.planning.knobs import KNOBS, value_at, with_value
 from vbraille.sessions.planning.procedure import FixedOrder
 from vbraille.sessions.planning.procedures import (
     PREFERRED,
@@ -37,14 +38,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.questions import AnyQuestion
     from vbraille.sessions.planning.stimuli import Trial
-
-# Words for parameters, and their units.
-_WORDS = {
-    "dot_width_mm": ("dot width", " mm"),
-    "dot_gap_mm": ("gap between dots", " mm"),
-    "texture": ("texture", ""),
-    "contrast": ("contrast", ""),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +179,8 @@ class ByAnswers:
 
     def found(self, history: Sequence[Answered], /) -> tuple[str, ...]:
         """Sentences on what was found in each condition that has answers."""
-        what, unit = _WORDS.get(self.parameter, (self.parameter, ""))
+        knob = KNOBS[self.parameter]
+        what, unit = knob.words, knob.unit
         sentences: list[str] = []
         for name, own in self.asked(history).items():
             if own and len(self.choosers) > 1:
@@ -239,7 +233,8 @@ def varied(protocol: Protocol) -> str:
 def describe(protocol: Protocol) -> str:
     """Say which trials a session asks, for a protocol whose trials depend on the answers."""
     table, design = protocol.procedure, protocol.design
-    what, unit = _WORDS.get(varied(protocol), (varied(protocol), ""))
+    knob = KNOBS[varied(protocol)]
+    what, unit = knob.words, knob.unit
     values = table.values(design)
     ends = f"{values[0]:g} to {values[-1]:g}{unit}"
     if isinstance(table, QuestProcedure):
@@ -251,7 +246,7 @@ def _asked(answered: Answered, parameter: str, question: AnyQuestion) -> Asked:
     """Question and outcome of an answered trial; of two values, the lower stands first."""
     trial, t_s = answered.trial, answered.t_s
     if len(trial.stimuli) == 1:
-        value = getattr(trial.stimuli[0].tuning, parameter)
+        value = value_at(trial.stimuli[0], parameter)
         return Asked((value,), int(question.positive(trial, answered.answer)), t_s)
     first, second = values_of(trial)
     chosen = (first, second)[int(answered.answer) - 1]
@@ -261,14 +256,14 @@ def _asked(answered: Answered, parameter: str, question: AnyQuestion) -> Asked:
 
 def _at(protocol: Protocol, stimuli: Stimuli, chosen: tuple[float, ...]) -> Stimuli:
     """Stimuli of a trial of the deck, shown with the values that were chosen."""
+    knob = varied(protocol)
     if len(stimuli) == 1:
         (stimulus,), (value,) = stimuli, chosen
-        tuning = replace(stimulus.tuning, **{varied(protocol): value})
-        return Stimuli((replace(stimulus, tuning=tuning),))
+        return Stimuli((with_value(stimulus, knob, value),))
     first, second = (stimulus.value or 0.0 for stimulus in stimuli)
     ordered = chosen if first < second else chosen[::-1]
     return Stimuli(
-        replace(stimulus, value=value, geometry=protocol.geometry_at(value))
+        with_value(replace(stimulus, value=value), knob, value)
         for stimulus, value in zip(stimuli, ordered, strict=True)
     )
 

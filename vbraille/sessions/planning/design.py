@@ -6,13 +6,17 @@ from collections import Counter
 from itertools import permutations, product
 from typing import TYPE_CHECKING, Literal
 
-from vbraille.braille.spelling import LETTERS, name_dots
+from vbraille.braille.spelling import name_dots
 from vbraille.errors import check_range
+from vbraille.sessions.planning.knobs import KNOBS, KnobName
+from vbraille.sessions.planning.ordering import Catch
 from vbraille.sessions.planning.spellings import Mask, Masks
 from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from vbraille.sessions.planning.knobs import Knob
 
 MOST_TRIALS = 10_000
 
@@ -34,6 +38,8 @@ class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
     order
         Order of the blocks of conditions: "balanced" over participants, "listed" or "shuffled";
         None if the file does not say it.
+    catch
+        Trials that keep watch over the participant; None for none.
 
     Raises
     ------
@@ -44,6 +50,7 @@ class _Design(Table, frozen=True, kw_only=True, tag_field="kind"):
     repeats: int = 1
     blocks: int | Literal["conditions"] = "conditions"
     order: Literal["balanced", "listed", "shuffled"] | None = None
+    catch: Catch | None = None
 
     def __post_init__(self) -> None:
         check_range("repeats", self.repeats, 1, MOST_TRIALS)
@@ -192,45 +199,64 @@ class Choice(_Design, frozen=True, tag="choice"):
     Parameters
     ----------
     parameter
-        Length that is compared; ``dot_gap_mm`` is the gap between the two dots of a cell, from
-        edge to edge.
+        What is compared, one of `KNOBS`; ``dot_gap_mm`` is the gap between the two dots of a cell,
+        from edge to edge.
     values
-        Values of the parameter in mm; each is compared with each other one.
+        Values of the parameter, in mm if it is a length; each is compared with each other one.
     string
         Dot masks of the string that is shown at both values.
+    reference
+        Value that each of the values is compared with, in both orders, instead of with each
+        other; None if there is none.
     same
         How often each value is compared with itself, in each of the repeats.
 
     Raises
     ------
     ValueError
-        If a number is out of range, there are fewer than two values, a value is given twice, or
-        the parameter cannot be felt in the string.
+        If a number is out of range, there are too few values, a value is given twice, or the
+        parameter cannot be felt in the string.
     """
 
-    parameter: Literal["dot_width_mm", "dot_gap_mm"]
+    parameter: KnobName
     values: tuple[float, ...]
     string: Masks
+    reference: float | None = None
     same: int = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_range("same", self.same, 0, MOST_TRIALS)
-        if len(self.values) < 2:
+        if len(self.values) < 2 and self.reference is None:
             raise ValueError(f"values are {len(self.values)}; give two or more to compare")
+        if not self.values:
+            raise ValueError("values are none; give one or more to compare with the reference")
         _check_distinct("values have", (f"{value:.15g}" for value in self.values))
+        knob = KNOBS[self.parameter]
         for value in self.values:
-            check_range("values: one", value, 0, 50, " mm")
+            check_range("values: one", value, *_bounds(knob), knob.unit)
+        check_range("reference", self.reference, *_bounds(knob), knob.unit)
+        if self.reference in self.values:
+            raise ValueError(
+                f"reference is {self.reference:g}, which is one of values; leave it out there"
+            )
         if not any(self.string):
             raise ValueError("string has no dots; give one with some")
         both = any(mask & _LEFT_DOTS and mask & _RIGHT_DOTS for mask in self.string)
-        if self.parameter == "dot_gap_mm" and not both:
+        if self.parameter in ("dot_gap_mm", "dot_spacing_mm") and not both:
             raise ValueError("string has no cell with a gap; give one with a left and a right dot")
+        if self.parameter == "cell_gap_mm" and sum(map(bool, self.string)) < 2:
+            raise ValueError("string has no gap between cells; give two cells with dots or more")
+        if self.parameter in ("row_spacing_mm", "line_pitch_mm"):
+            raise ValueError(
+                f"parameter is {self.parameter!r}, which no actuator shows in a line of its own; "
+                f"give another"
+            )
 
     @property
     def trials(self) -> int:
         """Number of trials in each condition."""
-        return len(self.values) * (len(self.values) - 1 + self.same) * self.repeats
+        return len(self.items())
 
     @property
     def cells(self) -> int:
@@ -248,54 +274,37 @@ class Choice(_Design, frozen=True, tag="choice"):
 
     def pairs(self) -> list[Item]:
         """Pairs of values that are compared in each of the repeats."""
-        alike = [(value, value) for value in self.values]
-        return [*permutations(self.values, 2), *alike * self.same]
+        alike = [(value, value) for value in self.values] * self.same
+        if self.reference is None:
+            return [*permutations(self.values, 2), *alike]
+        compared = [(self.reference, value) for value in self.values]
+        return [*compared, *(pair[::-1] for pair in compared), *alike]
 
 
-Design = Combinations | StringList | Choice
-
-
-class Rules(Table, frozen=True):
-    """Rules that a plan must follow beside its design.
+class ItemList(_Design, frozen=True, tag="items"):
+    """A design that shows the items of the table ``[items]``, which `strings_of` puts in.
 
     Parameters
     ----------
-    each_letter
-        Exact number of times that each letter of the alphabet is shown in each condition; None
-        for any number.
-    each_letter_at_least
-        Least number of times that each letter is shown in each condition; None for any number.
-    never_twice_running
-        Whether no two neighbouring trials may show the same. Two trials show the same if they
-        have the same string, the same cells in any order where cells are reordered, or the same
-        two values in the same order.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
+    reorder
+        Whether the cells of an item are shown in another order each time.
     """
 
-    each_letter: int | None = None
-    each_letter_at_least: int | None = None
-    never_twice_running: bool = False
+    reorder: bool = False
 
-    def __post_init__(self) -> None:
-        check_range("each_letter", self.each_letter, 1, MOST_TRIALS)
-        check_range("each_letter_at_least", self.each_letter_at_least, 1, MOST_TRIALS)
+    def strings_of(self, strings: tuple[Masks, ...]) -> StringList:
+        """Design that shows some strings as this one shows its items."""
+        return StringList(
+            repeats=self.repeats,
+            blocks=self.blocks,
+            order=self.order,
+            catch=self.catch,
+            strings=strings,
+            reorder=self.reorder,
+        )
 
-    def problem(self, lines: Iterable[tuple[int, ...]]) -> str:
-        """Sentence about a letter that is shown too often or too seldom; empty if all is right."""
-        shown = Counter(mask for masks in lines for mask in masks)
-        for letter, mask in LETTERS.items():
-            if self.each_letter not in (None, shown[mask]):
-                return f"{letter} is shown {_times(shown[mask])}; each_letter is {self.each_letter}"
-            if shown[mask] < (self.each_letter_at_least or 0):
-                return (
-                    f"{letter} is shown {_times(shown[mask])}; "
-                    f"each_letter_at_least is {self.each_letter_at_least}"
-                )
-        return ""
+
+Design = Combinations | StringList | Choice
 
 
 def _check_distinct(what: str, names: Iterable[str]) -> None:
@@ -304,5 +313,6 @@ def _check_distinct(what: str, names: Iterable[str]) -> None:
             raise ValueError(f"{what} {name} twice; leave one out")
 
 
-def _times(number: int) -> str:
-    return "once" if number == 1 else f"{number} times"
+def _bounds(knob: Knob) -> tuple[float, float]:
+    """Bounds of the values compared; geometry itself says which lengths go together."""
+    return (0, max(50, knob.high)) if knob.unit else (knob.low, knob.high)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from itertools import cycle
 from typing import TYPE_CHECKING
 
 from msgspec import structs
 
 from vbraille.errors import InputError
+from vbraille.sessions.planning.allotting import choose_group, choose_order
+from vbraille.sessions.planning.catching import with_catch
 from vbraille.sessions.planning.chance import Chance, balanced_orders
 from vbraille.sessions.planning.choosing import varied
 from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.rules import check_plan, is_balanced
+from vbraille.sessions.planning.rules import check_plan
+from vbraille.sessions.planning.sequencing import arranged
 from vbraille.sessions.planning.stimuli import (
     Stimuli,
-    Stimulus,
     Trial,
     check_participant,
     check_seed,
@@ -38,6 +39,7 @@ def make_plan(
     seed: int,
     order: int | None = None,
     *,
+    group: str | None = None,
     texture: float | None = None,
     contrast: float | None = None,
 ) -> Plan:
@@ -54,6 +56,9 @@ def make_plan(
     order
         Number of the balanced order, from 1, if the participant's number should not choose it. A
         number beyond the last order starts again from the first.
+    group
+        Name of the participant's group, if neither the table of orders nor the participant's
+        number should choose it; None or the protocol's own if that has been chosen.
     texture, contrast
         Values that replace the display's own, in conditions that do not give a value.
 
@@ -65,18 +70,26 @@ def make_plan(
     try:
         check_participant(participant)
         check_seed(seed)
+        protocol = protocol.assigned(choose_group(protocol, participant, group))
         conditions = _tuned(protocol, {"texture": texture, "contrast": contrast})
     except ValueError as error:
         raise InputError(str(error)) from None
-    order = _choose_order(protocol, participant, order)
+    order = choose_order(protocol, participant, order)
     drawn = f"{protocol.name} {seed} {participant}"
     chance = Chance(drawn)
-    blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
+    if protocol.rules.searched:
+        blocks = arranged(protocol, lambda: _blocks(protocol, conditions, order, chance), chance)
+        if blocks is None:
+            raise InputError(_unfound(protocol))
+    else:
+        blocks = _ordered(protocol, _blocks(protocol, conditions, order, chance), chance)
     trials = [
         _trial(protocol, item, condition, block)
         for block, shown in enumerate(blocks, 1)
         for item, condition in shown
     ]
+    if protocol.design.catch is not None:
+        trials = with_catch(trials, protocol.design.catch, Chance(f"{drawn} catch"))
     # Practice is shuffled separately, so that the number of its trials does not change the others.
     practice = _practice(protocol, conditions, Chance(f"{drawn} practice"))
     plan = Plan(
@@ -84,6 +97,7 @@ def make_plan(
         participant=participant,
         seed=seed,
         order=order,
+        group=protocol.group,
         practice=_numbered(practice),
         trials=_numbered(trials),
     )
@@ -96,35 +110,15 @@ def _tuned(protocol: Protocol, given: dict[str, float | None]) -> list[Condition
     given = {name: float(value) for name, value in given.items() if value is not None}
     for name in given:
         if name == varied(protocol):
+            what = "procedure" if protocol.adaptive else "design"
             raise ValueError(
-                f"the procedure of {protocol.name} chooses {name}; leave {setting(name)} out"
+                f"the {what} of {protocol.name} chooses {name}; leave {setting(name)} out"
             )
         if all(name in condition.given for condition in protocol.conditions):
             raise ValueError(
                 f"every condition of {protocol.name} has its own {name}; leave {setting(name)} out"
             )
     return [structs.replace(c, **(given | c.given)) for c in protocol.conditions]
-
-
-def _choose_order(protocol: Protocol, participant: str, order: int | None) -> int:
-    """Number of the balanced order, from 1; 0 if there is nothing to balance."""
-    if not is_balanced(protocol):
-        if order is not None:
-            raise InputError(
-                f"{protocol.name} has no balanced orders; leave {setting('order')} out"
-            )
-        return 0
-    if order is None:
-        numbers = re.findall("[0-9]+", participant)
-        if not numbers:
-            raise InputError(
-                f"the order of the conditions goes by the participant's number, and {participant} "
-                f"has none; give {setting('order')} N, or a participant such as P07"
-            )
-        order = int(numbers[-1])
-    elif order < 1:
-        raise InputError(f"order is {order}; it must be 1 or more")
-    return (order - 1) % len(balanced_orders(len(protocol.conditions))) + 1
 
 
 def _blocks(
@@ -134,16 +128,21 @@ def _blocks(
     items = _items(protocol, chance)
     if protocol.design.blocks == "conditions":
         places = list(range(len(conditions)))
-        if order:
+        if protocol.order_rows:
+            names = [condition.name for condition in conditions]
+            places = [names.index(name) for name in protocol.order_rows[order - 1].conditions]
+        elif order:
             places = list(balanced_orders(len(conditions))[order - 1])
-        elif protocol.design.order == "shuffled":
+        elif protocol.block_order == "shuffled":
             places = chance.shuffled(places)
         return [[(item, conditions[place]) for item in items[place]] for place in places]
     blocks: list[list[_Shown]] = [[] for _ in range(protocol.design.blocks)]
     # Items are dealt to the blocks like cards, and each condition goes on where the one before it
     # ended. So two blocks never differ by more than one item, of one condition or of all.
     dealt = cycle(blocks)
-    for condition, shown in zip(conditions, items, strict=True):
+    pairs = list(zip(conditions, items, strict=True))
+    # Where an order is searched for, each deal is to be another.
+    for condition, shown in chance.shuffled(pairs) if protocol.rules.searched else pairs:
         for item in chance.shuffled(shown):
             next(dealt).append((item, condition))
     return blocks
@@ -170,6 +169,18 @@ def _ordered(protocol: Protocol, blocks: list[list[_Shown]], chance: Chance) -> 
         if block:
             before = shows(ordered[-1][-1])
     return ordered
+
+
+def _unfound(protocol: Protocol) -> str:
+    """Sentence that says which rules no order was found for."""
+    rules = protocol.rules
+    said = [f"at_most_running {name} = {most}" for name, most in rules.at_most_running.items()]
+    said += ["balanced_quarters"] if rules.balanced_quarters else []
+    said += ["never_twice_running"] if rules.never_twice_running else []
+    return (
+        f"{protocol.name} cannot keep {' with '.join(said)}: no order of its trials was found that "
+        f"does; make the rules weaker, or show more different items"
+    )
 
 
 def _items(protocol: Protocol, chance: Chance) -> list[list[Item]]:
@@ -221,7 +232,7 @@ def _practice(protocol: Protocol, conditions: list[Condition], chance: Chance) -
 
 def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> Trial:
     """Make a trial that shows an item of the design; the trial gets its number later."""
-    design, tuning = protocol.design, protocol.tuning(condition)
+    design = protocol.design
     if isinstance(design, Choice):
         shown = [(design.string, value) for value in item]
         asked = (0, len(design.string))
@@ -229,9 +240,7 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         before, after = design.around
         shown = [((*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
-    stimuli = Stimuli(
-        Stimulus(masks, tuning, protocol.geometry_at(value), value) for masks, value in shown
-    )
+    stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
     return Trial(1, block, condition.name, asked, stimuli)
 
 

@@ -24,7 +24,10 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     seed
         Number that all random choices followed from.
     order
-        Number of the balanced order of conditions, from 1; 0 if there is only one order.
+        Number of the balanced order of conditions, or the row of the table of orders, from 1; 0 if
+        there is only one order.
+    group
+        Name of the participant's group; empty if there are no groups.
     practice, trials
         Practice trials and trials of the test, each in the order in which they are shown.
 
@@ -39,6 +42,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     participant: str
     seed: int
     order: int
+    group: str = ""
     practice: tuple[Trial, ...]
     trials: tuple[Trial, ...]
 
@@ -58,6 +62,8 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
         head = {"format": self.version}
         head |= {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
+        if self.group:
+            head["group"] = self.group
         return planfile.encode(head, {"practice": self.practice, "trials": self.trials})
 
     @classmethod

@@ -12,6 +12,7 @@ from vbraille.braille.geometry import Geometry
 from vbraille.braille.spelling import spell, to_braille
 from vbraille.errors import InputError
 from vbraille.render import Tuning
+from vbraille.sessions.planning.appearance import mapping_named
 from vbraille.sessions.planning.stimuli import Stimuli, Stimulus
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ _Plan = TypeVar("_Plan")
 
 VERSIONS = (1, 2)  # rules that plans were made by; the file's layout is the same for both
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
+_MAPPING = "mapping"  # left out where the display's mapping is used, as in all older plans
 
 
 class _Version(msgspec.Struct):
@@ -64,12 +66,13 @@ def decode(text: str, kind: type[_Plan]) -> _Plan:
 
 def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
     """Describe a stimulus completely by strings, numbers and None, as in plan.json."""
-    return {
+    written = {
         "cells": to_braille(stimulus.masks),
         "value_mm": stimulus.value,
         **asdict(stimulus.tuning),
         **asdict(stimulus.geometry),
     }
+    return written if stimulus.mapping is None else written | {_MAPPING: stimulus.mapping}
 
 
 def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
@@ -80,19 +83,26 @@ def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
     ValueError
         If a value is missing, has the wrong type or is out of range.
     """
-    if set(written) != _OF_STIMULUS:
+    if set(written) - {_MAPPING} != _OF_STIMULUS:
         raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
+    mapping = msgspec.convert(written.get(_MAPPING), str | None)
+    if mapping is not None:
+        mapping_named(mapping)
     return Stimulus(
         spell(msgspec.convert(written["cells"], str), {}),
         msgspec.convert(written, Tuning),
         msgspec.convert(written, Geometry),
         msgspec.convert(written["value_mm"], float | None),
+        mapping,
     )
 
 
 def _trial(trial: Trial) -> str:
     stimuli = list(map(stimulus_to_json, trial.stimuli))
-    return _json(msgspec.structs.asdict(trial) | {"stimuli": stimuli})
+    written = msgspec.structs.asdict(trial) | {"stimuli": stimuli}
+    if not trial.catch:
+        del written["catch"]
+    return _json(written)
 
 
 def _read_stimuli(_kind: type, written: list[dict[str, Any]]) -> Stimuli:

@@ -6,7 +6,9 @@ from itertools import permutations
 
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import check_range
+from vbraille.sessions.planning.besides import check_file_name
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Combinations, Design, Item
+from vbraille.sessions.planning.knobs import KNOBS
 from vbraille.sessions.planning.spellings import Masks
 from vbraille.toml.tomlfile import Table
 
@@ -22,6 +24,11 @@ class Practice(Table, frozen=True):
         Items that practice shows: dot masks of the cells asked for, or values that are compared.
         Both are empty if there is no practice, and in protocols of version 0.1, whose practice
         was drawn from the test.
+    file
+        Name of a file beside the protocol that has the strings, as for ``[items]``; None if they
+        are given here.
+    feedback
+        Whether it is said after each trial of practice whether the answer was right.
 
     Raises
     ------
@@ -32,8 +39,14 @@ class Practice(Table, frozen=True):
     trials: int = 0
     strings: tuple[Masks, ...] = ()
     values: tuple[float, ...] = ()
+    file: str | None = None
+    feedback: bool = True
 
     def __post_init__(self) -> None:
+        if self.file is not None:
+            check_file_name(self.file, "file")
+            if self.strings or self.values:
+                raise ValueError("file has the strings; leave strings and values out")
         check_range("trials", self.trials, 0, MOST_TRIALS)
 
     @property
@@ -53,9 +66,10 @@ class Practice(Table, frozen=True):
             given, wanted = ("strings", "values") if compares else ("values", "strings")
             return f"{given} are not of this kind of design; give {wanted} instead"
         if compares:
-            shared = set(self.values) & set(design.values)
+            shared = set(self.values) & {*design.values, design.reference}
             if shared:
-                return f"values have {min(shared):g} mm, which the test compares; give another"
+                unit = KNOBS[design.parameter].unit
+                return f"values have {min(shared):g}{unit}, which the test compares; give another"
             return ""
         for string, line in zip(self.strings, self.lines(design), strict=True):
             if not any(line):

@@ -17,12 +17,12 @@ from vbraille.sessions.adaptive.questplus import (
 from vbraille.sessions.adaptive.staircase import StaircaseRule, Staircases
 from vbraille.sessions.adaptive.stopping import StopRule
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice
+from vbraille.sessions.planning.knobs import KNOBS, KnobName
 from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
     from vbraille.sessions.planning.design import Design
 
-Knob = Literal["texture", "contrast"]
 THRESHOLD, PREFERRED = "threshold", "preferred"
 _MOST_VALUES = 1000
 
@@ -56,7 +56,7 @@ class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
         Seconds of the session after which no further trial is chosen; None for no limit.
     """
 
-    parameter: Knob | None = None
+    parameter: KnobName | None = None
     least: float | None = None
     most: float | None = None
     harder: Literal["less", "more"] = "less"
@@ -66,8 +66,10 @@ class _ByAnswersTable(Table, frozen=True, kw_only=True, tag_field="kind"):
     def __post_init__(self) -> None:
         check_range("trials", self.trials, 1, MOST_TRIALS)
         check_range("seconds", self.seconds, 1, 86_400, " s")
-        check_range("least", self.least, 0, 1)
-        check_range("most", self.most, 0, 1)
+        knob = KNOBS.get(self.parameter or "contrast")
+        assert knob is not None, "the names are those of the knobs"
+        check_range("least", self.least, knob.low, knob.high, knob.unit)
+        check_range("most", self.most, knob.low, knob.high, knob.unit)
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -156,6 +158,8 @@ class QuestProcedure(_ByAnswersTable, frozen=True, kw_only=True, tag="quest"):
     def problem(self, design: Design) -> str:
         """Say why this procedure does not go with a design; empty if it does."""
         if isinstance(design, Choice):
+            if design.reference is not None:
+                return "chooses both values of a pair; leave reference out of [design]"
             if self.parameter is not None or self.least is not None or self.most is not None:
                 return "parameter, least and most are those of [design]; leave them out"
         elif lacks := self._lacks():

@@ -23,7 +23,10 @@ def render(
     is given.
     """
     style = replace(
-        protocol.model.style, mapping=protocol.mapping, geometry=stimulus.geometry, tuning=tuning
+        protocol.model.style,
+        mapping=protocol.mapping_of(stimulus),
+        geometry=stimulus.geometry,
+        tuning=tuning,
     )
     masks = np.array(protocol.line(stimulus.masks), np.uint8)
     program = style.render(masks, protocol.model.display)

@@ -6,16 +6,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from msgspec import field
+from msgspec import field, structs
 
-from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.render import MODELS
-from vbraille.sessions.planning.appearance import Appearance, Condition
+from vbraille.sessions.planning.appearance import Appearance, Condition, mapping_named
 from vbraille.sessions.planning.asking import CellSpelling
+from vbraille.sessions.planning.besides import ItemRow, OrderRow
 from vbraille.sessions.planning.conduct import (
     FaultRules,
     Question,
@@ -25,16 +24,32 @@ from vbraille.sessions.planning.conduct import (
     check_line,
 )
 from vbraille.sessions.planning.design import (
-    MOST_TRIALS,
     Choice,
     Combinations,
-    Rules,
+    Design,
+    Item,
+    ItemList,
     StringList,
 )
+from vbraille.sessions.planning.factors import (
+    Cross,
+    Factor,
+    between,
+    combined,
+    condition,
+    crossed,
+    groups,
+    within,
+)
+from vbraille.sessions.planning.items import Items
+from vbraille.sessions.planning.knobs import with_value
+from vbraille.sessions.planning.ordering import Order
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, usual_question
+from vbraille.sessions.planning.ruletable import Rules
 from vbraille.sessions.planning.spellings import SpellingKeys
+from vbraille.sessions.planning.stimuli import Stimulus
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
@@ -57,8 +72,12 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     medium: Literal["device", "paper"] = "device"
     display: Appearance = Appearance()
     keys: SpellingKeys = field(default_factory=SpellingKeys)
-    design: Combinations | StringList | Choice
+    design: Combinations | StringList | Choice | ItemList
+    items: Items | None = None
     listed: tuple[Condition, ...] = field(name="conditions", default=())
+    factors: tuple[Factor, ...] = ()
+    cross: Cross = "all"
+    order: Order | None = None
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
     question: AnyQuestion | None = None
@@ -92,6 +111,12 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         What is shown in each condition.
     listed
         Conditions that the file lists; empty if there is only one, which has no name there.
+    items
+        Where the strings come from; None if the design has them.
+    factors, cross
+        Factors that conditions and groups are named from, and which combinations are shown.
+    order
+        Order of the blocks of conditions; None if the design says it.
     rules
         Rules that the finished plan is checked for, beside its design.
     procedure
@@ -110,14 +135,26 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Questions about the participant.
     text
         The file's TOML text, as it was read.
+    files
+        Texts of the files that stand beside it, by name.
+    item_rows, order_rows
+        What these files hold: items, and orders of participants; empty without such files.
+    group
+        Group whose share of the protocol this is; empty for the protocol of all.
 
     Raises
     ------
     ValueError
-        If values are out of range or contradict each other.
+        If values are out of range. `vbraille.sessions.planning.agreement` checks whether the
+        tables agree.
     """
 
+    design: Design
     text: str
+    files: dict[str, str] = {}  # noqa: RUF012  (msgspec copies an empty default)
+    item_rows: tuple[ItemRow, ...] = ()
+    order_rows: tuple[OrderRow, ...] = ()
+    group: str = ""
 
     def __post_init__(self) -> None:
         if not _NAME.fullmatch(self.name):
@@ -128,7 +165,6 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         check_line("source", self.source)
         if self.model_name not in MODELS:
             raise ValueError(f"model is {self.model_name!r}{which(self.model_name, MODELS)}")
-        _check_agreement(self)
 
     @property
     def model(self) -> Model:
@@ -150,10 +186,64 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Distances between the dots of a line, and the length of the carriage's travel."""
         return self.style.geometry
 
-    @property
+    @cached_property
     def conditions(self) -> tuple[Condition, ...]:
         """Conditions of the protocol, at least one."""
+        own = within(self.factors)
+        made = crossed(self.factors, self.cross)
+        if made:
+            return tuple(condition(name, combined(own, levels)) for name, levels in made.items())
         return self.listed or (Condition(name=ONLY_CONDITION),)
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the groups of participants; none if all take part in the same."""
+        return tuple(groups(self.factors))
+
+    def assigned(self, group: str) -> Protocol:
+        """Protocol as a group has it: with the display changed by the levels of the group.
+
+        Parameters
+        ----------
+        group
+            Name of the group; empty if there are none.
+
+        Raises
+        ------
+        ValueError
+            If there is no such group, or values contradict each other.
+        """
+        if group not in (self.groups or ("",)):
+            names = self.groups
+            raise ValueError(
+                f"group is {group!r}{which(group, names)}"
+                if names
+                else f"group is {group!r}, and {self.name} has no groups; leave it out"
+            )
+        if not group or group == self.group:
+            return self
+        changes = combined(between(self.factors), groups(self.factors)[group])
+        return structs.replace(self, group=group, display=structs.replace(self.display, **changes))
+
+    def levels(self, name: str) -> dict[str, str]:
+        """Level of each factor in a condition of this group, by the factors' names.
+
+        A factor between participants has an empty level if no group is chosen.
+        """
+        found = dict.fromkeys((factor.name for factor in self.factors), "")
+        for factors, levels in (
+            (within(self.factors), crossed(self.factors, self.cross).get(name, ())),
+            (between(self.factors), groups(self.factors).get(self.group, ())),
+        ):
+            found |= dict(zip([factor.name for factor in factors], levels, strict=False))
+        return found
+
+    @property
+    def block_order(self) -> str | None:
+        """Order of the blocks of conditions: "balanced", "listed", "shuffled", "table" or None."""
+        if self.order is None:
+            return self.design.order
+        return "table" if self.order.kind == "table" else self.order.of_blocks
 
     @property
     def repeat_faults(self) -> bool:
@@ -167,7 +257,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def parameter(self) -> str | None:
-        """Length that is compared, "dot_width_mm" or "dot_gap_mm"; None if strings are read."""
+        """What is compared, such as "dot_width_mm" or "contrast"; None if strings are read."""
         return self.design.parameter if isinstance(self.design, Choice) else None
 
     @property
@@ -175,10 +265,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Question that is asked of each trial."""
         return self.question or usual_question(2 if self.task == "choice" else 1)
 
-    @property
-    def cell_spelling(self) -> CellSpelling:
-        """How cells may be typed in answers."""
-        return CellSpelling(self.keys, self.mapping.shown_dots())
+    def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
+        """How cells may be typed in answers about a stimulus."""
+        return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
     @property
     def adaptive(self) -> bool:
@@ -187,12 +276,13 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     @property
     def trials(self) -> int:
-        """Number of trials in all conditions, practice left out; the most if answers decide."""
+        """Number of trials, practice left out; the most if answers decide."""
         table = self.procedure
         most = None if isinstance(table, FixedProcedure) else table.trials
         if most is not None:
             return min(most, self.design.trials) * len(self.conditions)
-        return self.design.trials * len(self.conditions)
+        catch, trials = self.design.catch, self.design.trials * len(self.conditions)
+        return trials if catch is None else trials + catch.number(trials)
 
     @property
     def lead_cells(self) -> int:
@@ -203,163 +293,66 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Tuning that a condition is shown with."""
         return condition.tune(self.model, self.style.tuning)
 
-    def line(self, masks: tuple[int, ...]) -> tuple[int, ...]:
-        """Cells of the line on which a string is shown, with the blank ones before it."""
-        return (0,) * self.lead_cells + masks
-
-    def geometry_at(self, value: float | None) -> Geometry:
-        """Geometry at a value of the parameter compared; that of the display if the value is None.
+    def style_of(self, condition: Condition) -> BrailleStyle:
+        """How strings are shown in a condition.
 
         Raises
         ------
         ValueError
-            If the value gives a length out of bounds.
+            If values contradict each other, or the model has no use for them.
         """
-        if value is None or not isinstance(self.design, Choice):
-            return self.geometry
-        if self.design.parameter == "dot_width_mm":
-            return replace(self.geometry, dot_width_mm=value)
-        # The gap is from edge to edge; the centres of the dots are a dot's width further apart.
-        return replace(self.geometry, dot_spacing_mm=self.geometry.dot_width_mm + value)
+        style = self._styles.get(condition)
+        if style is None:
+            style = self._styles[condition] = condition.over(self.model, self.style)
+        return style
 
+    @cached_property
+    def _styles(self) -> dict[Condition, BrailleStyle]:
+        """Styles of the conditions that were asked for."""
+        return {}
 
-def _check_agreement(protocol: Protocol) -> None:
-    """Check that the tables of a protocol agree with each other.
+    def shown(
+        self, condition: Condition, masks: tuple[int, ...], value: float | None = None
+    ) -> Stimulus:
+        """Stimulus that shows some cells in a condition.
 
-    Raises
-    ------
-    ValueError
-        If values contradict each other.
-    """
-    for table, named in (("conditions", protocol.conditions), ("fields", protocol.fields)):
-        names = [value.name for value in named]
-        for number, name in enumerate(names, 1):
-            if name in names[: number - 1]:
-                raise ValueError(
-                    f"[[{table}]] number {number} name is {name!r} again; give each its own"
-                )
-    _check_tuning(protocol)
-    _check_procedure(protocol)
-    _check_question(protocol)
-    problem = protocol.practice.problem(protocol.design)
-    if problem:
-        raise ValueError(f"[practice] {problem}")
-    _check_trials(protocol)
-    _check_cells(protocol)
-    _check_lines(protocol)
-    _check_letters(protocol)
+        Parameters
+        ----------
+        condition, masks
+            The condition, and the dot masks of all cells with their delimiters.
+        value
+            Value of the parameter that is compared; None if none is.
 
+        Raises
+        ------
+        ValueError
+            If the value gives a number out of bounds.
+        """
+        style = self.style_of(condition)
+        own = condition.mapping is not None or condition.dot_row is not None
+        mapping = style.mapping.name if own else None
+        stimulus = Stimulus(masks, style.tuning, style.geometry, value, mapping)
+        if value is None or self.parameter is None:
+            return stimulus
+        return with_value(stimulus, self.parameter, value)
 
-def _check_tuning(protocol: Protocol) -> None:
-    table = "[display]"
-    try:
-        protocol.style  # noqa: B018
-        for number, condition in enumerate(protocol.listed, 1):
-            table = f"[[conditions]] number {number}"
-            protocol.tuning(condition)
-    except ValueError as error:
-        raise ValueError(f"{table} {error}") from None
+    def mapping_of(self, stimulus: Stimulus) -> Mapping:
+        """Which dots the rows of the array show while a stimulus is felt."""
+        return self.mapping if stimulus.mapping is None else mapping_named(stimulus.mapping)
 
+    def told(self, masks: tuple[int, ...]) -> dict[str, str]:
+        """What the file of items tells of the item that these cells show, by column."""
+        return self._told.get(self.design.content(masks), dict.fromkeys(self.item_columns, ""))
 
-def _check_procedure(protocol: Protocol) -> None:
-    problem = protocol.procedure.problem(protocol.design)
-    if problem:
-        raise ValueError(f"[procedure] {problem}")
-    if not protocol.adaptive:
-        return
-    if protocol.medium == "paper":
-        raise ValueError(
-            "[procedure] varies what a device shows; with medium = 'paper' leave it out"
-        )
-    if protocol.task == "choice" and protocol.rules.never_twice_running:
-        raise ValueError(
-            "[rules] never_twice_running is of a fixed order of values; leave it out, since "
-            "[procedure] chooses them"
-        )
-    own = getattr(protocol.procedure, "parameter", None)
-    for condition in protocol.conditions if own else ():
-        if own in condition.given:
-            raise ValueError(
-                f"[procedure] parameter is {own!r}, which the condition {condition.name} sets "
-                f"itself; leave it out there"
-            )
+    @cached_property
+    def item_columns(self) -> tuple[str, ...]:
+        """Columns that the file of items has beside the strings."""
+        return tuple(self.item_rows[0].told) if self.item_rows else ()
 
+    @cached_property
+    def _told(self) -> dict[Item, dict[str, str]]:
+        return {self.design.content(row.masks): dict(row.told) for row in self.item_rows}
 
-def _check_question(protocol: Protocol) -> None:
-    stimuli = 2 if protocol.task == "choice" else 1
-    problem = protocol.asks.problem(stimuli, adaptive=protocol.adaptive)
-    if problem:
-        raise ValueError(f"[question] {problem}")
-    same = isinstance(protocol.design, Choice) and protocol.design.same
-    if same and (protocol.asks.name != "same-different" or protocol.adaptive):
-        raise ValueError(
-            "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
-        )
-    if protocol.trial.end is not None and protocol.medium == "paper":
-        raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
-
-
-def _check_trials(protocol: Protocol) -> None:
-    trials, blocks = protocol.design.trials * len(protocol.conditions), protocol.design.blocks
-    if trials + protocol.practice.trials > MOST_TRIALS:
-        raise ValueError(
-            f"[design] makes a session of more than {MOST_TRIALS} trials; make it smaller"
-        )
-    if blocks != "conditions" and not 1 <= blocks <= trials:
-        raise ValueError(
-            f"[design] blocks is {blocks}; it must be 1 to {trials}, "
-            f"since there are {trials} trials"
-        )
-
-
-def _check_cells(protocol: Protocol) -> None:
-    """Check that the display can show every dot of every cell used."""
-    model, mapping, design = protocol.model, protocol.mapping, protocol.design
-    shown = mapping.shown_dots()
-    how = (
-        f"'s row {mapping.left[0] + 1}"
-        if mapping.rows == 1
-        else f" with the mapping {mapping.name}"
-    )
-    only = f"the {model.title}{how} shows {name_dots(shown)} only"
-    practised = {mask for line in protocol.practice.lines(design) for mask in line}
-    for table, masks in (("[design]", design.masks), ("[practice]", practised)):
-        for mask in sorted(masks):
-            if mask & ~shown:
-                cell = f"{to_braille((mask,))} ({name_dots(mask)})"
-                raise ValueError(f"{table} has the cell {cell}, and {only}; leave the cell out")
-    for key, mask in protocol.keys.items():
-        if mask & ~shown:
-            raise ValueError(f"[keys] {key} is {name_dots(mask)}, and {only}; leave the key out")
-
-
-def _check_lines(protocol: Protocol) -> None:
-    """Check that the display has room for the longest line, at each value that is compared."""
-    model, design, practice = protocol.model, protocol.design, protocol.practice
-    values = (None,)
-    if isinstance(design, Choice):
-        values = tuple(dict.fromkeys((*design.values, *protocol.procedure.values(design))))
-    longest = max((design.cells, *map(len, practice.lines(design))))
-    whose = "[design]" if longest == design.cells else "[practice]"
-    for value in (*values, *sorted(set(practice.values))):
-        at = "" if value is None else f" at a value of {value:g} mm"
-        try:
-            room = protocol.geometry_at(value).cells_per_line(model.display.span_mm)
-        except ValueError as error:
-            raise ValueError(f"[design]{at}: {error}") from None
-        cells = protocol.lead_cells + longest
-        if cells > room:
-            raise ValueError(
-                f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
-                f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
-            )
-
-
-def _check_letters(protocol: Protocol) -> None:
-    rules = protocol.rules
-    if isinstance(protocol.design, StringList):
-        problem = rules.problem(protocol.design.items())
-        if problem:
-            raise ValueError(f"[rules] {problem}; change the strings or the rule")
-    elif (rules.each_letter, rules.each_letter_at_least) != (None, None):
-        raise ValueError("[rules] count the letters of kind = 'list'; leave them out")
+    def line(self, masks: tuple[int, ...]) -> tuple[int, ...]:
+        """Cells of the line on which a string is shown, with the blank ones before it."""
+        return (0,) * self.lead_cells + masks

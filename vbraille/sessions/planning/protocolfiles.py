@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 from msgspec import field
 
 from vbraille.errors import InputError
+from vbraille.sessions.planning.agreement import check_agreement
+from vbraille.sessions.planning.besides import read_items, read_orders, read_words
+from vbraille.sessions.planning.design import ItemList
+from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.protocol import FORMAT, Protocol, ProtocolFile
 from vbraille.sessions.planning.spellings import SpellingKeys, read_keys, spelled
 from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile, which
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 _FOLDER = resources.files("vbraille.sessions.planning").joinpath("protocols")
 
@@ -54,11 +63,26 @@ def load_protocol(spec: str) -> Protocol:
         If there is no such protocol, or it cannot be used.
     """
     if spec.endswith(".toml") or "/" in spec:
-        return parse_protocol(read_text(spec, "protocol"), spec)
-    return parse_protocol(builtin_text(spec), f"{spec}.toml")
+        folder = Path(spec).parent
+
+        def beside(name: str) -> str:
+            return read_text(str(folder / name), "file beside the protocol")
+
+        return parse_protocol(read_text(spec, "protocol"), spec, beside=beside)
+
+    def shipped(name: str) -> str:
+        return _FOLDER.joinpath(name).read_bytes().decode("utf-8")
+
+    return parse_protocol(builtin_text(spec), f"{spec}.toml", beside=shipped)
 
 
-def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
+def parse_protocol(
+    text: str,
+    where: str,
+    *,
+    planned: bool = False,
+    beside: Callable[[str], str] | None = None,
+) -> Protocol:
     """Make a protocol from the text of its file, and check it.
 
     Parameters
@@ -71,6 +95,9 @@ def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
         Whether the protocol belongs to a session, whose plan has been made. If so, what version
         0.1 allowed is still allowed: blanks and dot numbers in strings, and practice with the
         test's items.
+    beside
+        Function that reads a file which stands beside the protocol, by its name; None if there is
+        none.
 
     Raises
     ------
@@ -81,14 +108,84 @@ def parse_protocol(text: str, where: str, *, planned: bool = False) -> Protocol:
     file.read(_Format)  # this comes first, since another format may have other keys
     keys = file.read(_Keyed, read_keys).keys
     tables = file.read(ProtocolFile, spelled(keys, planned=planned))
+    files = _files(file, tables, beside)
     with file.checking():
-        protocol = Protocol(**msgspec.structs.asdict(tables), text=text)
+        protocol = _resolved(tables, text, files, keys)
+        check_agreement(protocol)
         if protocol.practice.trials and not protocol.practice.items and not planned:
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
                 f"give {'values' if protocol.parameter else 'strings'} that the test does not "
                 f"have, or trials = 0"
             )
+    return protocol
+
+
+def _files(
+    file: TomlFile, tables: ProtocolFile, beside: Callable[[str], str] | None
+) -> dict[str, str]:
+    """Texts of all files that a protocol names, by their names."""
+    texts: dict[str, str] = {}
+    for table in ("items", "practice", "order"):
+        name = getattr(getattr(tables, table), "file", None)
+        if name is None or name in texts:
+            continue
+        if beside is None:
+            file.fail((table, "file"), f"is {name!r}, and nothing stands beside this protocol")
+        try:
+            texts[name] = beside(name)
+        except (InputError, FileNotFoundError) as error:
+            why = error if isinstance(error, InputError) else "there is no such file"
+            file.fail((table, "file"), f"is {name!r}, which cannot be read: {why}")
+    return texts
+
+
+def _resolved(
+    tables: ProtocolFile, text: str, files: dict[str, str], keys: SpellingKeys
+) -> Protocol:
+    """Protocol with the items and orders of its files.
+
+    Raises
+    ------
+    ValueError
+        If tables do not go together.
+    InputError
+        If a file cannot be used.
+    """
+    design, items, practice, rows, orders = tables.design, tables.items, tables.practice, (), ()
+    if isinstance(design, ItemList) != (items is not None):
+        raise ValueError(
+            "[items] is of kind = 'items' in [design]; give that, or leave it out"
+            if items is not None
+            else "[design] kind is 'items', and there is no table [items]; add it"
+        )
+    if isinstance(design, ItemList) and items is not None:
+        if items.rule is None:
+            assert items.file is not None
+            rows = read_items(files[items.file], items.file, keys)
+            strings = tuple(row.masks for row in rows)
+        else:
+            words = () if items.file is None else read_words(files[items.file], items.file, keys)
+            try:
+                strings = items.draw(words)
+            except ValueError as error:
+                raise ValueError(f"[items] {error}") from None
+        design = design.strings_of(strings)
+    assert not isinstance(design, ItemList)
+    if practice.file is not None:
+        practised = read_items(files[practice.file], practice.file, keys)
+        own = tuple(row.masks for row in practised)
+        practice = msgspec.structs.replace(practice, file=None, strings=own)
+    said = problem(tables.factors, tables.cross, listed=bool(tables.listed))
+    if said:
+        raise ValueError(said)
+    fields = msgspec.structs.asdict(tables) | {"design": design, "practice": practice}
+    protocol = Protocol(**fields, text=text, files=files, item_rows=rows)
+    if tables.order is not None and tables.order.file is not None:
+        names = [condition.name for condition in protocol.conditions]
+        file = tables.order.file
+        orders = read_orders(files[file], file, names, protocol.groups)
+        protocol = msgspec.structs.replace(protocol, order_rows=orders)
     return protocol
 
 

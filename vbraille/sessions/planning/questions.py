@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
+from vbraille.braille.spelling import UNREAD, parse_answer, parse_choice, say_cells, to_braille
 from vbraille.errors import check_range
 from vbraille.sessions.planning.asking import (
     FALSE_ALARM,
@@ -48,7 +48,9 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
         return True
 
     def outcome(self, trial: Trial, answer: str, /) -> str:
-        """Right if all cells are."""
+        """Right if all cells are; of a blank catch trial, if no dot was felt."""
+        if trial.catch == "blank":
+            return RIGHT if set(answer) <= {UNREAD, to_braille((0,))} else WRONG
         return RIGHT if answer == trial.presented else WRONG
 
     def was(self, trial: Trial, keys: Mapping[str, int], /) -> str:

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
+from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.design import Choice, Combinations, Item
+from vbraille.sessions.planning.knobs import KNOBS
+from vbraille.sessions.planning.orderrules import check_catch, check_running
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 def is_balanced(protocol: Protocol) -> bool:
     """Whether participants differ in the order of the conditions."""
     design = protocol.design
-    balanced = design.blocks == "conditions" and design.order in ("balanced", None)
+    balanced = design.blocks == "conditions" and protocol.block_order in ("balanced", None)
     return balanced and len(protocol.conditions) > 1
 
 
@@ -38,6 +41,8 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
     try:
         if plan.protocol != protocol.name:
             raise ValueError(f"it is of the protocol {plan.protocol}")
+        protocol = protocol.assigned(plan.group)
+        tested = [trial for trial in plan.trials if not trial.catch]
         practised = _practised(protocol) if plan.version > 1 else set(wanted)
         if len(plan.practice) != protocol.practice.trials:
             raise ValueError(
@@ -48,16 +53,19 @@ def check_plan(protocol: Protocol, plan: Plan) -> None:
                 about = f"trial {number} of {'practice' if trials is plan.practice else 'all'}"
                 if trial.number != number:
                     raise ValueError(f"{about} has the number {trial.number}")
-                problem = _problem_of_trial(protocol, trial, shows)
+                problem = "" if trial.catch else _problem_of_trial(protocol, trial, shows)
                 if problem:
                     raise ValueError(f"{about} {problem}")
         if plan.version > 1:
             _check_practice(protocol, plan)
-        _check_counts(protocol, plan, wanted)
+        _check_counts(protocol, tested, wanted)
         _check_tuning(protocol, plan)
-        _check_blocks(protocol, plan)
+        _check_blocks(protocol, plan, tested)
         if protocol.rules.never_twice_running:
-            _check_neighbours(protocol, plan)
+            _check_neighbours(protocol, plan.practice)
+            _check_neighbours(protocol, tested)
+        check_catch(protocol, plan.trials)
+        check_running(protocol, tested)
     except ValueError as error:
         raise InputError(
             f"the plan of {plan.participant} for {protocol.name} breaks a rule: {error}; "
@@ -72,21 +80,20 @@ def _practised(protocol: Protocol) -> set[Item]:
 
 def _check_practice(protocol: Protocol, plan: Plan) -> None:
     """Check that practice shows no item of the test."""
-    shown = {_content(protocol, trial) for trial in plan.trials}
+    shown = {_content(protocol, trial) for trial in plan.trials if not trial.catch}
     for trial in plan.practice:
         if _content(protocol, trial) in shown:
             raise ValueError(f"practice trial {trial.number} shows what the test shows")
 
 
-def _check_neighbours(protocol: Protocol, plan: Plan) -> None:
+def _check_neighbours(protocol: Protocol, trials: Sequence[Trial]) -> None:
     """Check that no two neighbouring trials show the same."""
-    for trials in (plan.practice, plan.trials):
-        for trial, following in pairwise(trials):
-            if _content(protocol, trial) == _content(protocol, following):
-                raise ValueError(
-                    f"{'practice ' if trial.practice else ''}trials {trial.number} and "
-                    f"{following.number} show the same"
-                )
+    for trial, following in pairwise(trials):
+        if _content(protocol, trial) == _content(protocol, following):
+            raise ValueError(
+                f"{'practice ' if trial.practice else ''}trials {trial.number} and "
+                f"{following.number} show the same"
+            )
 
 
 def _wanted(protocol: Protocol) -> Counter[Item]:
@@ -124,30 +131,42 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
             return "shows another string than the design's"
     if _content(protocol, trial) not in shows:
         return "shows what is not in the design"
-    for stimulus in trial.stimuli:
-        if stimulus.geometry != protocol.geometry_at(stimulus.value):
+    condition = next((c for c in protocol.conditions if c.name == trial.condition), None)
+    for stimulus in trial.stimuli if condition is not None else ():
+        planned = protocol.shown(condition, stimulus.masks, stimulus.value)
+        if stimulus.geometry != planned.geometry:
             return "has other distances than the protocol's"
+        if stimulus.mapping != planned.mapping:
+            return "has another mapping than the protocol's"
     return ""
 
 
 def _check_tuning(protocol: Protocol, plan: Plan) -> None:
-    """Check that each condition has one tuning, which has the values that the protocol gives."""
-    tunings = {condition.name: set() for condition in protocol.conditions}
+    """Check that each condition has one tuning, which has the values that the protocol gives.
+
+    What two stimuli are compared by has its own values.
+    """
+    compared = "cycles" if protocol.parameter == "texture_cycles" else protocol.parameter
+    tunings = {condition.name: set[tuple[float, ...]]() for condition in protocol.conditions}
+    names = [name for name in TUNED if name != compared]
     for trial in (*plan.practice, *plan.trials):
         if trial.condition not in tunings:
             raise ValueError(f"trial {trial.number} is of a condition {trial.condition!r}")
-        tunings[trial.condition].update(stimulus.tuning for stimulus in trial.stimuli)
+        for stimulus in trial.stimuli:
+            tunings[trial.condition].add(tuple(getattr(stimulus.tuning, n) for n in names))
+            if compared in TUNED and getattr(stimulus.tuning, compared) != stimulus.value:
+                raise ValueError(f"trial {trial.number} has another {protocol.parameter}")
     for condition in protocol.conditions:
         if len(tunings[condition.name]) != 1:
             raise ValueError(f"condition {condition.name} has not one texture and contrast")
         (tuning,) = tunings[condition.name]
-        planned = protocol.tuning(condition)
-        for name in (*condition.given, "cycles"):
-            if getattr(tuning, name) != getattr(planned, name):
+        planned = protocol.style_of(condition).tuning
+        for name, value in zip(names, tuning, strict=True):
+            if name in (*condition.given, "cycles") and value != getattr(planned, name):
                 raise ValueError(f"condition {condition.name} has another {name}")
 
 
-def _check_blocks(protocol: Protocol, plan: Plan) -> None:
+def _check_blocks(protocol: Protocol, plan: Plan, tested: Sequence[Trial]) -> None:
     blocks = [block for block, _ in groupby(plan.trials, key=lambda trial: trial.block)]
     planned = protocol.design.blocks
     wanted = len(protocol.conditions) if planned == "conditions" else planned
@@ -155,14 +174,14 @@ def _check_blocks(protocol: Protocol, plan: Plan) -> None:
         raise ValueError(f"its blocks are not 1 to {wanted}")
     if any(not trial.practice for trial in plan.practice):
         raise ValueError("a practice trial is in a block")
-    if plan.order and not is_balanced(protocol):
+    if plan.order and not (is_balanced(protocol) or protocol.order_rows):
         raise ValueError(f"it has the balanced order {plan.order}, and there is none")
     if planned == "conditions":
         _check_order(protocol, plan)
         return
     for name in (*(condition.name for condition in protocol.conditions), None):
         shares = [
-            sum(trial.block == block and name in (trial.condition, None) for trial in plan.trials)
+            sum(trial.block == block and name in (trial.condition, None) for trial in tested)
             for block in blocks
         ]
         if max(shares) - min(shares) > 1:
@@ -175,7 +194,12 @@ def _check_order(protocol: Protocol, plan: Plan) -> None:
     shown = [name for _, name in dict.fromkeys((t.block, t.condition) for t in plan.trials)]
     if sorted(shown) != sorted(listed):
         raise ValueError("its blocks are not of one condition each")
-    if protocol.design.order == "listed" and shown != listed:
+    if protocol.order_rows:
+        if not 1 <= plan.order <= len(protocol.order_rows):
+            raise ValueError(f"it has the order {plan.order} of {len(protocol.order_rows)}")
+        if tuple(shown) != protocol.order_rows[plan.order - 1].conditions:
+            raise ValueError(f"its conditions are not in the order of the table's row {plan.order}")
+    if protocol.block_order == "listed" and shown != listed:
         raise ValueError("its conditions are not in the order listed")
     if not is_balanced(protocol):
         return
@@ -205,10 +229,10 @@ def check_balance(orders: list[tuple[int, ...]]) -> None:
         raise ValueError("a condition does not follow each other one equally often")
 
 
-def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Item]) -> None:
+def _check_counts(protocol: Protocol, tested: Sequence[Trial], wanted: Counter[Item]) -> None:
     """Check how often each condition shows each item and each letter."""
     for condition in protocol.conditions:
-        trials = [trial for trial in plan.trials if trial.condition == condition.name]
+        trials = [trial for trial in tested if trial.condition == condition.name]
         shown = Counter(_content(protocol, trial) for trial in trials)
         for item, times in wanted.items():
             if shown[item] != times:
@@ -223,5 +247,5 @@ def _check_counts(protocol: Protocol, plan: Plan, wanted: Counter[Item]) -> None
 
 def _name(protocol: Protocol, item: Item) -> str:
     if isinstance(protocol.design, Choice):
-        return " and ".join(f"{value:g} mm" for value in item)
+        return " and ".join(f"{v:g}{KNOBS[protocol.design.parameter].unit}" for v in item)
     return to_braille(tuple(map(int, item)))

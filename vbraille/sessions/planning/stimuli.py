@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from msgspec import Struct
 
@@ -57,7 +57,9 @@ class Stimulus:
     tuning, geometry
         Tuning and distances that the cells are shown with.
     value
-        Value in mm of the parameter that is compared; None if none is compared.
+        Value of the parameter that is compared, in mm if it is a length; None if none is compared.
+    mapping
+        Name of the mapping, where conditions differ in it; None for the display's.
 
     Raises
     ------
@@ -69,6 +71,7 @@ class Stimulus:
     tuning: Tuning
     geometry: Geometry
     value: float | None = None
+    mapping: str | None = None
 
     def __post_init__(self) -> None:
         if not self.masks:
@@ -100,6 +103,9 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
         last.
     stimuli
         One stimulus to read, or two to compare.
+    catch
+        Empty; or, for a trial that only keeps watch over the participant, what it shows: "blank"
+        for cells without dots, "repeat" for what the trial before it has shown.
 
     Raises
     ------
@@ -112,6 +118,7 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
     condition: str
     asked: tuple[int, int]
     stimuli: Stimuli
+    catch: Literal["", "blank", "repeat"] = ""
 
     def __post_init__(self) -> None:
         if self.number < 1:

@@ -16,7 +16,7 @@ import numpy as np
 
 from vbraille.sessions.record.anonymous import anonymous, number_of
 from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
-from vbraille.sessions.record.export import COLUMNS, Traces, encode, rows, to_csv
+from vbraille.sessions.record.export import COLUMNS, Traces, describe_design, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.record.traces import posed
 
@@ -129,6 +129,8 @@ def _beh(record: Record, columns: Iterable[str]) -> dict[str, Any]:
         described[name] = {"Description": what}
         if name in _UNITS:
             described[name]["Units"] = _UNITS[name]
+    for name, what in describe_design(record.protocol).items():
+        described[name] = {"Description": what}
     for field in record.protocol.fields:
         described[f"field_{field.name}"] = {"Description": field.ask}
     return described

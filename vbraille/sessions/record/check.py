@@ -70,7 +70,7 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
     """
     told = read_journal(folder, salvaged=True)
     faults: list[Finding] = []
-    for name in FILES:
+    for name in told.session.sha256:
         try:
             read_file(folder, name, told)
         except VbrailleError as error:
@@ -91,7 +91,8 @@ def check_folder(folder: Path, expected: str | None = None) -> Iterator[Finding]
 def check(record: Record) -> Iterator[Finding]:
     """Check every file of a session whose first three files are whole."""
     told = record.told
-    yield Finding("session.json, plan.json, protocol.toml: as they were when the session began")
+    names = ", ".join([*FILES, *record.protocol.files])
+    yield Finding(f"{names}: as they were when the session began")
     try:
         check_plan(record.protocol, record.plan)
         deck = " to choose the values of" if record.protocol.adaptive else ""

@@ -13,6 +13,7 @@ import numpy as np
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
+from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
+    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
@@ -57,7 +59,8 @@ COLUMNS = {
     "row_spacing_mm": "between neighbouring dot rows",
     "line_pitch_mm": "between lines",
     "travel_mm": "of the carriage",
-    "parameter": "what two stimuli were compared by, in mm; empty where strings are read",
+    "parameter": "what two stimuli were compared by, in mm if its name says so; empty where "
+    "strings are read",
     "presented": "Unicode braille of the cells asked for; two values, the first one first",
     "string_set": "Unicode braille of the protocol's string, if its cells come in another order "
     "at each showing; else empty",
@@ -218,6 +221,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     tuning = trial.stimuli[0].tuning
     protocol, geometries = record.protocol, [stimulus.geometry for stimulus in trial.stimuli]
     row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
+    row |= designed(protocol, trial)
     row |= {
         "session": record.folder.resolve().name,
         "participant": record.plan.participant,
@@ -229,7 +233,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "contrast": told.tuning.get("contrast", tuning.contrast),
         "texture_cycles": tuning.cycles if protocol.model.name == "stress2" else "",
         "model": protocol.model.name,
-        "mapping": protocol.mapping.name,
+        "mapping": protocol.mapping_of(trial.stimuli[0]).name,
         **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
         "moved_by": told.moved_by,
@@ -261,6 +265,7 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
     if len(trial.stimuli) == 2:
         row["parameter"] = record.protocol.parameter
+        row |= _compared(trial, record.protocol.parameter)
         row["presented"] = " ".join(values)
     else:
         row["presented"] = trial.presented
@@ -274,6 +279,47 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
         row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
+
+
+def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
+    """Cells of a trial's row for the design: its group, factors, item and catch.
+
+    A protocol without one of these has no column for it.
+    """
+    cells: dict[str, str] = {}
+    if protocol.groups:
+        cells["group"] = protocol.group
+    for name, level in protocol.levels(trial.condition).items():
+        cells[f"factor_{name}"] = level
+    if protocol.item_columns:
+        own = protocol.told(trial.stimuli[0].masks[slice(*trial.asked)])
+        cells |= {f"item_{name}": value for name, value in own.items()}
+    if protocol.design.catch is not None:
+        cells["catch"] = trial.catch
+    return cells
+
+
+def describe_design(protocol: Protocol) -> dict[str, str]:
+    """What the columns of `designed` hold, by their names."""
+    told: dict[str, str] = {}
+    if protocol.groups:
+        told["group"] = "name of the participant's group"
+    for factor in protocol.factors:
+        whose = "the participant's" if factor.between else "the condition's"
+        told[f"factor_{factor.name}"] = f"{whose} level of the factor {factor.name}"
+    for name in protocol.item_columns:
+        told[f"item_{name}"] = f"column {name} of the protocol's file of items"
+    if protocol.design.catch is not None:
+        told["catch"] = "blank or repeat for a trial that only keeps watch; else empty"
+    return told
+
+
+def _compared(trial: Trial, parameter: str | None) -> dict[str, str]:
+    """Cells for what two stimuli are compared by, where that is of their tuning."""
+    name = "cycles" if parameter == "texture_cycles" else parameter
+    if parameter is None or name not in TUNED:
+        return {}
+    return {parameter: " ".join(f"{getattr(s.tuning, name):g}" for s in trial.stimuli)}
 
 
 def _string_set(record: Record, trial: Trial) -> str:
@@ -320,7 +366,7 @@ def _trajectory(
     """Trajectory of the last attempt at a trial, or the reason why there is none."""
     protocol, stimulus = record.protocol, trial.stimuli[0]
     line = protocol.line(stimulus.masks)
-    edges = edges_mm(line, protocol.mapping, stimulus.geometry)
+    edges = edges_mm(line, protocol.mapping_of(stimulus), stimulus.geometry)
     trace = told.showings[-1].trace if told.showings else None
     if not trace:
         return "it has no trace"

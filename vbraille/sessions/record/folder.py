@@ -90,6 +90,7 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
         PROTOCOL: protocol.text.encode(),
         PLAN: plan.to_json().encode(),
         # A lone surrogate, which a file's name may have, becomes an escape of JSON.
+        **{name: text.encode() for name, text in protocol.files.items()},
         HEAD: (json.dumps(head, ensure_ascii=False, indent=2) + "\n").encode(
             "utf-8", "backslashreplace"
         ),
@@ -97,7 +98,8 @@ def create(folder: Path, protocol: Protocol, plan: Plan, head: dict[str, Any]) -
     sums = {name: sha256(content).hexdigest() for name, content in files.items()}
     # The others' checksums are in the journal, as its first event.
     files[journal.NAME] = journal.first_lines(Session(format=FORMAT, sha256=sums, t_s=0.0))
-    write_folder(folder, files, durable=True, clear=_clear)
+    names = tuple(files)
+    write_folder(folder, files, durable=True, clear=lambda partial: _clear(partial, names))
 
 
 def read_journal(folder: Path, *, salvaged: bool = False) -> JournalContents:
@@ -186,7 +188,18 @@ def load(folder: Path, *, salvaged: bool = False) -> Record:
     told = read_journal(folder, salvaged=salvaged)
     contents = {name: read_file(folder, name, told).decode() for name in FILES}
     plan = Plan.from_json(contents[PLAN])
-    protocol = parse_protocol(contents[PROTOCOL], str(folder / PROTOCOL), planned=True)
+
+    def beside(name: str) -> str:
+        if name not in told.session.sha256:
+            raise VbrailleError(f"{folder} has lost {name} of its protocol; nothing was changed")
+        return read_file(folder, name, told).decode()
+
+    where = str(folder / PROTOCOL)
+    whole = parse_protocol(contents[PROTOCOL], where, planned=True, beside=beside)
+    try:
+        protocol = whole.assigned(plan.group)
+    except ValueError as error:
+        raise VbrailleError(f"{folder / PLAN} is damaged: {error}; put it back") from None
     head = json.loads(contents[HEAD])
     return Record(folder, head, protocol, plan, told, procedure_of(protocol, plan))
 
@@ -279,8 +292,8 @@ def _is_member(path: Path, trace: Trace) -> bool:
     return True
 
 
-def _clear(partial: Path) -> None:
+def _clear(partial: Path, names: Iterable[str]) -> None:
     """Remove the files of a session whose creation was interrupted, and nothing else."""
-    for name in (*FILES, journal.NAME):
+    for name in names:
         (partial / name).unlink(missing_ok=True)
     partial.rmdir()

@@ -33,6 +33,7 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
+    from vbraille.sessions.planning.appearance import Condition
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Trial
@@ -216,8 +217,20 @@ class Simulated:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
         self.name = f"simulated:{noise:g}"
         model: Model = protocol.model
-        style = replace(model.style, mapping=protocol.mapping, geometry=protocol.geometry)
-        self._observer = Observer(model.display, style, noise=noise)
+        likes = isinstance(protocol.asks, WhichQuestion) and protocol.asks.right is None
+        if likes and protocol.parameter not in _COMPARED:
+            raise InputError(
+                f"{protocol.name} compares {protocol.parameter}, which the simulated reader "
+                f"cannot; type the answers, or give a file of them"
+            )
+
+        def told(condition: Condition) -> Observer:
+            style = protocol.style_of(condition)
+            style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
+            return Observer(model.display, style, noise=noise)
+
+        self._noise = noise
+        self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
         self._question = protocol.asks
@@ -247,10 +260,11 @@ class Simulated:
         return isinstance(self._question, WhichQuestion | SameQuestion)
 
     def _answer(self, trial: Trial, felt: list[Exploration], random: np.random.Generator) -> str:
-        question, noise = self._question, self._observer.noise
+        question, noise = self._question, self._noise
+        observer = self._observers[trial.condition]
         if isinstance(question, WhichQuestion) and question.right is None and self._compared:
             first, second = felt
-            return str(self._observer.compare(first, second, self._compared, random))
+            return str(observer.compare(first, second, self._compared, random))
         if self._compares:
             one, two, unit = self._felt_of_two(trial, felt)
             if isinstance(question, SameQuestion):
@@ -268,7 +282,7 @@ class Simulated:
                     return f"{given:.3g}"
             return YES if judging.detects(strength, noise, random) else NO
         places = self._lead_cells + len(trial.stimuli[0].masks)
-        masks = self._observer.read(felt[0], places, random)
+        masks = observer.read(felt[0], places, random)
         asked = slice(*(self._lead_cells + place for place in trial.asked))
         return to_answer(masks[asked])
 
@@ -278,15 +292,15 @@ class Simulated:
             one, two = (self._strength(trial, place, felt[place]) for place in (0, 1))
             return one, two, 1.0
         which = [*_COMPARED.values()].index(self._compared)
-        one, two = (self._observer.lengths_mm(each)[which] for each in felt[:2])
-        geometry = self._observer.geometry
+        one, two = (self._observers[trial.condition].lengths_mm(each)[which] for each in felt[:2])
+        geometry = self._observers[trial.condition].geometry
         gap_mm = geometry.dot_spacing_mm - geometry.dot_width_mm
         return one, two, (geometry.dot_width_mm, gap_mm)[which]
 
     def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
         places = self._lead_cells + len(trial.stimuli[place].masks)
         first, stop = (self._lead_cells + cell for cell in trial.asked)
-        return judging.strength(self._observer.felt(felt, places), first, stop)
+        return judging.strength(self._observers[trial.condition].felt(felt, places), first, stop)
 
 
 def seed_of(text: str) -> int:

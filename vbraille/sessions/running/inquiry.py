@@ -109,7 +109,7 @@ class Inquiry:
         course.book.log(events.Answer, trial, **told)
         sure = f", confidence {told['confidence']}" if "confidence" in told else ""
         self._say(f"answer: {course.name(trial)}, {self._spoken(told['answer'])}{sure}")
-        if trial.practice:
+        if trial.practice and course.protocol.practice.feedback:
             self._tell(trial, told["answer"])
         # If the next trial depends on the answers, a corrected answer may lead to one more trial.
         if correcting is None or course.trial is None or course.phase is Phase.LAST:
@@ -164,7 +164,7 @@ def read_line(protocol: Protocol, trial: Trial, line: str) -> tuple[str, int | N
     ValueError
         If the line is not an answer to the trial.
     """
-    question, spelling = protocol.asks, protocol.cell_spelling
+    question, spelling = protocol.asks, protocol.cell_spelling(trial.stimuli[0])
     confidence = None
     if question.confidence is not None:
         line, confidence = question.confidence.split(line, spelling)

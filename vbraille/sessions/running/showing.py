@@ -219,7 +219,9 @@ class OnDevice:
         self._felt.append([])
         self._end = EndOfLine(self._span_mm, self._end_mm(stimulus))
         edge_mm = first_edge_mm(
-            self._protocol.line(stimulus.masks), self._protocol.mapping, stimulus.geometry
+            self._protocol.line(stimulus.masks),
+            self._protocol.mapping_of(stimulus),
+            stimulus.geometry,
         )
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
         self._touched = self._read = self._ended = False
