@@ -8,7 +8,9 @@ from vbraille.sessions.planning.making import make_plan
 def broken_rules(protocol, participant, seed):
     """Rules that a plan breaks, by name; none of them should be."""
     plan = make_plan(protocol, participant, seed)
-    practised, tested = ([_shows(protocol, t) for t in run] for run in (plan.practice, plan.trials))
+    practised, tested = (
+        [_shows(protocol, t) for t in run if not t.catch] for run in (plan.practice, plan.trials)
+    )
     problems = []
     runs = [practised, tested]
     if protocol.adaptive and protocol.task == "choice":
@@ -17,12 +19,13 @@ def broken_rules(protocol, participant, seed):
         problems.append("twice running")
     if set(practised) & set(tested):
         problems.append("practice of what is tested")
-    if (len(practised), len(tested)) != (protocol.practice.trials, protocol.trials):
+    if (len(practised), len(plan.trials)) != (protocol.practice.trials, protocol.trials):
         problems.append("trials missing")
+    others = [trial for trial in plan.trials if not trial.catch]
     for condition in protocol.conditions:
         of = [
             shows
-            for shows, trial in zip(tested, plan.trials, strict=True)
+            for shows, trial in zip(tested, others, strict=True)
             if trial.condition == condition.name
         ]
         if len({of.count(shows) for shows in of}) != 1 or len(of) != protocol.design.trials:

@@ -102,10 +102,10 @@ def _check_styles(protocol: Protocol) -> None:
             )
 
 
-def _sets(condition: Condition, knob: str) -> bool:
+def _sets(condition: Condition, knob: str | None) -> bool:
     """Whether a condition sets what is compared or varied."""
     same = {GAP: "dot_spacing_mm", "texture_cycles": "cycles"}
-    return same.get(knob, knob) in condition.changes
+    return knob is not None and same.get(knob, knob) in condition.changes
 
 
 def _check_question(protocol: Protocol) -> None:

@@ -16,7 +16,7 @@ from vbraille.toml.tomlfile import Table
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from vbraille.sessions.planning.knobs import Knob
+    from vbraille.sessions.planning.knobs import StimulusKnob
 
 MOST_TRIALS = 10_000
 
@@ -313,6 +313,6 @@ def _check_distinct(what: str, names: Iterable[str]) -> None:
             raise ValueError(f"{what} {name} twice; leave one out")
 
 
-def _bounds(knob: Knob) -> tuple[float, float]:
+def _bounds(knob: StimulusKnob) -> tuple[float, float]:
     """Bounds of the values compared; geometry itself says which lengths go together."""
     return (0, max(50, knob.high)) if knob.unit else (knob.low, knob.high)

@@ -18,7 +18,7 @@ KnobName = Literal[
 
 
 @dataclass(frozen=True, slots=True)
-class Knob:
+class StimulusKnob:
     """A number that stimuli may differ in.
 
     Parameters
@@ -37,13 +37,13 @@ class Knob:
     high: float
 
 
-KNOBS: dict[str, Knob] = {
-    "texture": Knob("texture", "", 0.0, 1.0),
-    "contrast": Knob("contrast", "", 0.0, 1.0),
-    "texture_cycles": Knob("texture cycles", "", 1.0, 50.0),
-    GAP: Knob("gap between dots", " mm", 0.0, 50.0),
+KNOBS: dict[str, StimulusKnob] = {
+    "texture": StimulusKnob("texture", "", 0.0, 1.0),
+    "contrast": StimulusKnob("contrast", "", 0.0, 1.0),
+    "texture_cycles": StimulusKnob("texture cycles", "", 1.0, 50.0),
+    GAP: StimulusKnob("gap between dots", " mm", 0.0, 50.0),
     **{
-        name: Knob(name.removesuffix("_mm").replace("_", " "), " mm", low, high)
+        name: StimulusKnob(name.removesuffix("_mm").replace("_", " "), " mm", low, high)
         for name, (low, high) in BOUNDS_MM.items()
         if name != "travel_mm"
     },

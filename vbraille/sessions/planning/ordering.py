@@ -47,7 +47,7 @@ class Catch(Table, frozen=True, kw_only=True):
         return max(1, round(trials * self.share / (1 - self.share)))
 
 
-class Order(Table, frozen=True, kw_only=True):
+class BlockOrder(Table, frozen=True, kw_only=True):
     """The table ``[order]``: in which order participants have the blocks of the conditions.
 
     Parameters
@@ -77,5 +77,6 @@ class Order(Table, frozen=True, kw_only=True):
     @property
     def of_blocks(self) -> Literal["balanced", "listed", "shuffled"]:
         """Name that ``[design] order`` has for this order; that of a table counts as listed."""
-        names = {"williams": "balanced", "balanced": "balanced", "random": "shuffled"}
-        return names.get(self.kind, "listed")
+        if self.kind == "random":
+            return "shuffled"
+        return "balanced" if self.kind in ("williams", "balanced") else "listed"

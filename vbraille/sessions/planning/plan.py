@@ -60,7 +60,7 @@ class Plan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def to_json(self) -> str:
         """Plan as JSON with one trial on each line; the bytes are the same on every machine."""
-        head = {"format": self.version}
+        head: dict[str, str | int] = {"format": self.version}
         head |= {n: getattr(self, n) for n in ("protocol", "participant", "seed", "order")}
         if self.group:
             head["group"] = self.group

@@ -43,7 +43,7 @@ from vbraille.sessions.planning.factors import (
 )
 from vbraille.sessions.planning.items import Items
 from vbraille.sessions.planning.knobs import with_value
-from vbraille.sessions.planning.ordering import Order
+from vbraille.sessions.planning.ordering import BlockOrder
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, usual_question
@@ -77,7 +77,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     factors: tuple[Factor, ...] = ()
     cross: Cross = "all"
-    order: Order | None = None
+    order: BlockOrder | None = None
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
     question: AnyQuestion | None = None

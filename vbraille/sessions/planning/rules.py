@@ -132,7 +132,9 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
     if _content(protocol, trial) not in shows:
         return "shows what is not in the design"
     condition = next((c for c in protocol.conditions if c.name == trial.condition), None)
-    for stimulus in trial.stimuli if condition is not None else ():
+    if condition is None:
+        return ""  # which `_check_tuning` says
+    for stimulus in trial.stimuli:
         planned = protocol.shown(condition, stimulus.masks, stimulus.value)
         if stimulus.geometry != planned.geometry:
             return "has other distances than the protocol's"

@@ -115,7 +115,8 @@ class _Search:
 
     def swap(self, one: int, other: int) -> None:
         """Exchange two places."""
-        for values in (self.sequence, self.names, *(limit.values for limit in self.limits)):
+        columns: list[list[Any]] = [self.sequence, self.names]
+        for values in (*columns, *(limit.values for limit in self.limits)):
             values[one], values[other] = values[other], values[one]
         if self.cuts:
             first, second = self.quarter_of[one], self.quarter_of[other]
