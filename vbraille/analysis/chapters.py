@@ -19,7 +19,9 @@ from vbraille.analysis.measures import (
     movement,
     overtime,
     preferences,
+    rated,
     remarks,
+    sensitivity,
     trialsmodel,
 )
 from vbraille.analysis.methods import methods
@@ -101,6 +103,8 @@ def analyse_study(study: Study, options: Options) -> Results:
         chapters += _of_trials(study, study.trials, options, left_out)
     if study.comparisons is not None:
         chapters.append(_of_comparisons(study, study.comparisons, options))
+    if study.judgements is not None:
+        chapters += _of_judgements(study.judgements)
     if any(sitting.notes for sitting in study.sittings):
         table = remarks.notes(study.sittings)
         chapters.append(Chapter("Notes", "What the experimenter wrote down.", (table,)))
@@ -271,3 +275,25 @@ def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -
         (table, own, preferred, each),
         tuple(bars.choices(table, preferred, own)),
     )
+
+
+def _of_judgements(judgements: pd.DataFrame) -> list[Chapter]:
+    """Chapters of the questions that were asked, beside which cells and which of two."""
+    asked = {*judgements["question"]}
+    told: list[tuple[str, str, tuple[ResultTable, ...]]] = []
+    if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
+        tables = [sensitivity.sensitivity(judgements)]
+        if "detect" in asked:
+            tables.append(sensitivity.thresholds(judgements))
+        told.append(("Telling apart", "How well one thing was told from another.", tuple(tables)))
+    if "rating" in asked:
+        told.append(("Ratings", "Where on a scale things were put.", rated.ratings(judgements)))
+    if "magnitude" in asked:
+        text = "How strong things felt, in numbers of one's own."
+        told.append(("Magnitudes", text, (rated.magnitudes(judgements),)))
+    if judgements["confidence"].notna().any():
+        text = "How sure somebody was of the answers."
+        told.append(("Confidence", text, (rated.confidence(judgements),)))
+    if "free" in asked:
+        told.append(("Words", "What was said in words.", (rated.words(judgements),)))
+    return [Chapter(*chapter) for chapter in told]

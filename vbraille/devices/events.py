@@ -198,10 +198,13 @@ class Button(Event):
         Number of the button, counted from 1.
     pressed
         Whether the button is down now.
+    at_ns
+        When that was, by the engine's clock; None if the device does not tell.
     """
 
     number: int
     pressed: bool
+    at_ns: int | None = field(default=None, kw_only=True, compare=False)
 
     @property
     def kind(self) -> Hashable:

@@ -130,12 +130,12 @@ class SimulatedDevice(Device):
     def press(self, button: int) -> None:
         """Press a button, 1 to 8."""
         check_range("button", button, 1, MOST_BUTTONS)
-        self._pressed.append(Button(button, pressed=True))
+        self._pressed.append(Button(button, pressed=True, at_ns=self._now_ns()))
 
     def let_go(self, button: int) -> None:
         """Let go of a button, 1 to 8."""
         check_range("button", button, 1, MOST_BUTTONS)
-        self._pressed.append(Button(button, pressed=False))
+        self._pressed.append(Button(button, pressed=False, at_ns=self._now_ns()))
 
     def turn(self, knob: int, value: float) -> None:
         """Turn a knob, counted from 1, to a position from 0 to 1."""
@@ -146,10 +146,11 @@ class SimulatedDevice(Device):
         """Buttons and knobs that were moved since the last call, and who the hand was."""
         told, self._pressed = self._pressed, []
         if self._presses:
-            now = held(self._presses, (self._now_ns() - self._opened_ns) / NS_PER_S)
+            now_ns = self._now_ns()
+            now = held(self._presses, (now_ns - self._opened_ns) / NS_PER_S)
             changed, self._held = now ^ self._held, now
             told += [
-                Button(bit + 1, pressed=bool(now >> bit & 1))
+                Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=now_ns)
                 for bit in range(MOST_BUTTONS)
                 if changed >> bit & 1
             ]

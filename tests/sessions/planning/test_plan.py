@@ -83,6 +83,9 @@ class TestPlans:
             for name in builtin_names()
         }
         assert sums == {
+            "detection": "f101f50ae51eec1b98bd80a4c015cca3c722409bfaadd911170d5751c1ae21c7",
+            "rating": "8e5393e0578af44119202f3bb8c848469f4f5332a4c5f6d4fd304edda20825c9",
+            "same-different": "394444f09bbcb3dc95dae4ddb6959bb2a3f248a5debe48376f8d89f3c0b7d926",
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
             "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",

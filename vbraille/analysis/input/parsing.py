@@ -18,6 +18,7 @@ from vbraille.analysis.input.fieldvalues import (
     parse_seconds,
     parse_whole,
 )
+from vbraille.analysis.input.judgements import judged, read_judgements
 from vbraille.analysis.input.sets import numbered, string_sets, tell_sessions_apart
 from vbraille.analysis.input.trials import TRIAL_COLUMNS, LeftOut, factor, name_string
 from vbraille.errors import InputError
@@ -32,7 +33,7 @@ NEEDED = ("participant", "condition", "presented", "answered")
 # Further columns that are understood; all are optional.
 _KNOWN = [
     *NEEDED, "session", "protocol", "block", "trial", "duration_s", "parameter", "correct",
-    "string_set",
+    "string_set", "question", "outcome",
 ]  # fmt: skip
 _OPEN = ("", "n/a")  # the answer to a trial that was not answered
 # Columns that, where they are above 0, say why a duration does not count.
@@ -56,12 +57,15 @@ class Parsed:
         Rows that are in neither data frame.
     warnings
         Sentences about what does not agree.
+    judgements
+        Data frame as in `vbraille.analysis.input.judgements`; None if there are none.
     """
 
     trials: pd.DataFrame | None
     comparisons: pd.DataFrame | None
     left_out: tuple[LeftOut, ...]
     warnings: tuple[str, ...]
+    judgements: pd.DataFrame | None = None
 
 
 def parse(sheets: Sequence[Sheet]) -> Parsed:
@@ -74,6 +78,7 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
     """
     strings: dict[int, pd.DataFrame] = {}
     pairs: dict[int, pd.DataFrame] = {}
+    judgements: dict[int, pd.DataFrame] = {}
     left_out: list[LeftOut] = []
     warnings: list[str] = []
     for number, sheet in enumerate(sheets):
@@ -82,10 +87,17 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         unanswered = len(sheet) - len(answered)
         if unanswered:
             left_out.append(LeftOut(f"{count(unanswered, 'trial')} of {sheet.name}", "no answer"))
-        caught = _caught(answered)
+        detected = answered.get("question", pd.Series("", answered.index)).eq("detect")
+        caught = _caught(answered) & ~detected  # blank ones are what detection needs
         if caught.any():
             left_out.append(_told_catch(sheet, answered[caught]))
             answered = answered[~caught]
+        told = read_judgements(sheet, answered, _who(sheet, answered))
+        if told is not None:
+            judgements[number] = told
+        answered = answered[~judged(sheet, answered)]
+        if answered.empty:
+            continue
         paired = answered["presented"].map(is_pair).astype(bool)
         if "parameter" in answered:
             paired |= answered["parameter"].str.strip() != ""
@@ -98,13 +110,19 @@ def parse(sheets: Sequence[Sheet]) -> Parsed:
         if paired.any():
             pairs[number] = _pairs(sheet, answered[paired])
     joined = []
-    for parts in (strings, pairs):
+    for parts in (strings, pairs, judgements):
         whole = pd.concat(parts) if parts else None
         if whole is not None:
             warnings += tell_sessions_apart(whole, sheets)
             _check_once(whole, sheets)
         joined.append(whole)
-    return Parsed(_trials(joined[0]), _comparisons(joined[1]), tuple(left_out), tuple(warnings))
+    return Parsed(
+        _trials(joined[0]),
+        _comparisons(joined[1]),
+        tuple(left_out),
+        tuple(dict.fromkeys(warnings)),
+        None if joined[2] is None else _sorted(joined[2].assign(condition=_conditions(joined[2]))),
+    )
 
 
 def _caught(rows: pd.DataFrame) -> pd.Series:

@@ -52,6 +52,8 @@ class Study:
         What a reader must know before all numbers.
     faults
         What is damaged in the sessions, in clauses.
+    judgements
+        Data frame as in `vbraille.analysis.input.judgements`; None if there are none.
     """
 
     trials: pd.DataFrame | None
@@ -61,6 +63,7 @@ class Study:
     about: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     faults: tuple[str, ...]
+    judgements: pd.DataFrame | None = None
 
 
 def load_study(
@@ -104,15 +107,16 @@ def load_study(
     apart = told_apart(sittings)
     parsed = parse(sources)
     left_out = [*ruled_out, *parsed.left_out]
-    trials, comparisons = parsed.trials, parsed.comparisons
+    parts = (parsed.trials, parsed.comparisons, parsed.judgements)
     for rule in _rules(exclude or {}, protocol):
-        trials, comparisons, sittings = rule.apply(trials, comparisons, sittings)
+        parts, sittings = rule.apply(parts, sittings)
         left_out.append(rule.told)
-    if trials is None and comparisons is None:
+    trials, comparisons, judgements = parts
+    if trials is None and comparisons is None and judgements is None:
         what = "".join(f"; left out: {left.what}, {left.reason}" for left in left_out)
         names = ", ".join(sheet.name for sheet in sources)
         raise InputError(f"{names}: no answered trial, and so nothing to analyse{what}")
-    about = [("Data", _describe(trials, comparisons))]
+    about = [("Data", _describe(trials, comparisons, judgements))]
     about += [
         (f"File {sheet.name}", f"{count(len(sheet), 'row')}, SHA-256 {_sum(path)}")
         for path, sheet in files.items()
@@ -131,7 +135,14 @@ def load_study(
         *(f"Damaged, and analysed as far as it is whole: {fault}." for fault in faults),
     )
     return Study(
-        trials, comparisons, tuple(sittings), tuple(left_out), tuple(about), warnings, faults
+        trials,
+        comparisons,
+        tuple(sittings),
+        tuple(left_out),
+        tuple(about),
+        warnings,
+        faults,
+        judgements,
     )
 
 
@@ -164,10 +175,9 @@ class _Rule:
 
     def apply(
         self,
-        trials: pd.DataFrame | None,
-        comparisons: pd.DataFrame | None,
+        parts: Sequence[pd.DataFrame | None],
         sittings: Sequence[SessionTrials],
-    ) -> tuple[pd.DataFrame | None, pd.DataFrame | None, list[SessionTrials]]:
+    ) -> tuple[tuple[pd.DataFrame | None, ...], list[SessionTrials]]:
         """Apply the rule, and give what is left.
 
         Raises
@@ -175,8 +185,8 @@ class _Rule:
         InputError
             If there is no such participant or protocol, as when a name is misspelled.
         """
-        parts = [part[self.factor] for part in (trials, comparisons) if part is not None]
-        known = {level for part in parts for level in part.cat.categories}
+        named = [part[self.factor] for part in parts if part is not None]
+        known = {level for part in named for level in part.cat.categories}
         if self.level not in known:
             raise InputError(
                 f"there is no {self.factor} {self.level!r} with answered trials; there are "
@@ -187,7 +197,7 @@ class _Rule:
             for sitting in sittings
             if (sitting.head[self.factor] == self.level) == self.keeps
         ]
-        return self._of(trials), self._of(comparisons), kept
+        return tuple(map(self._of, parts)), kept
 
     def _of(self, part: pd.DataFrame | None) -> pd.DataFrame | None:
         if part is None:
@@ -249,7 +259,11 @@ def _read(
     return sittings, files, left_out
 
 
-def _describe(trials: pd.DataFrame | None, comparisons: pd.DataFrame | None) -> str:
+def _describe(
+    trials: pd.DataFrame | None,
+    comparisons: pd.DataFrame | None,
+    judgements: pd.DataFrame | None,
+) -> str:
     parts = []
     if trials is not None:
         conditions = trials["condition"].cat.categories
@@ -262,6 +276,12 @@ def _describe(trials: pd.DataFrame | None, comparisons: pd.DataFrame | None) -> 
         parts.append(
             f"{count(len(comparisons), 'comparison')} of "
             f"{count(comparisons['participant'].nunique(), 'participant')}"
+        )
+    if judgements is not None:
+        parts.append(
+            f"{count(len(judgements), 'judgement')} of "
+            f"{count(judgements['participant'].nunique(), 'participant')} "
+            f"({', '.join(judgements['question'].unique())})"
         )
     return "; ".join(parts)
 

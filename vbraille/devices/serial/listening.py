@@ -264,7 +264,8 @@ class Listening:
         changed = 0 if before is None else before ^ buttons
         for bit in range(_BUTTONS):
             if changed >> bit & 1:
-                self._tell(Button(bit + 1, bool(buttons >> bit & 1)), now_ns)
+                pressed = bool(buttons >> bit & 1)
+                self._tell(Button(bit + 1, pressed, at_ns=now_ns), now_ns)
 
     def _mind_placing(self, now_ns: int) -> None:
         if self.place.placing is not self._placing:

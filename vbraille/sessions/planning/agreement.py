@@ -39,6 +39,7 @@ def check_agreement(protocol: Protocol) -> None:
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
+    _check_question(protocol)
     said = protocol.practice.problem(protocol.design)
     if said:
         raise ValueError(f"[practice] {said}")
@@ -105,6 +106,20 @@ def _sets(condition: Condition, knob: str | None) -> bool:
     """Whether a condition sets what is compared or varied."""
     same = {GAP: "dot_spacing_mm", "texture_cycles": "cycles"}
     return knob is not None and same.get(knob, knob) in condition.changes
+
+
+def _check_question(protocol: Protocol) -> None:
+    stimuli = 2 if protocol.task == "choice" else 1
+    problem = protocol.asks.problem(stimuli, adaptive=protocol.adaptive)
+    if problem:
+        raise ValueError(f"[question] {problem}")
+    same = isinstance(protocol.design, Choice) and protocol.design.same
+    if same and (protocol.asks.name != "same-different" or protocol.adaptive):
+        raise ValueError(
+            "[design] same is of [question] kind = 'same-different' in a fixed order; leave it out"
+        )
+    if protocol.trial.end is not None and protocol.medium == "paper":
+        raise ValueError("[trial] end is of a device; on paper Enter ends reading, leave it out")
 
 
 def _check_procedure(protocol: Protocol) -> None:

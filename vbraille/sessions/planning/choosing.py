@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.procedure import Answered, Procedure
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.questions import AnyQuestion
     from vbraille.sessions.planning.stimuli import Trial
 
 
@@ -192,7 +193,8 @@ class ByAnswers:
         """Questions and outcomes of each condition, as the choosers know them."""
         asked: dict[str, list[Asked]] = {name: [] for name in self.choosers}
         for answered in history:
-            asked[answered.trial.condition].append(_asked(answered, self.parameter))
+            told = _asked(answered, self.parameter, self.protocol.asks)
+            asked[answered.trial.condition].append(told)
         return asked
 
     def _places(self, asked: Mapping[str, Sequence[Asked]]) -> list[tuple[int, str]]:
@@ -240,12 +242,12 @@ def describe(protocol: Protocol) -> str:
     return f"staircase, {what} by the answers, from {ends}"
 
 
-def _asked(answered: Answered, parameter: str) -> Asked:
+def _asked(answered: Answered, parameter: str, question: AnyQuestion) -> Asked:
     """Question and outcome of an answered trial; of two values, the lower stands first."""
     trial, t_s = answered.trial, answered.t_s
     if len(trial.stimuli) == 1:
         value = value_at(trial.stimuli[0], parameter)
-        return Asked((value,), int(answered.answer == trial.presented), t_s)
+        return Asked((value,), int(question.positive(trial, answered.answer)), t_s)
     first, second = values_of(trial)
     chosen = (first, second)[int(answered.answer) - 1]
     low, high = sorted((first, second))

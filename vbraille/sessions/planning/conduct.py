@@ -11,6 +11,9 @@ from vbraille.toml.tomlfile import Table
 # names.
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
 LONGEST_LINE = 200
+ENTER = "key:enter"
+MOST_BUTTONS = 8  # the wire has a bit for each
+_BUTTON = re.compile(r"button:([1-8])")
 
 
 def check_name(what: str, name: str) -> None:
@@ -50,19 +53,34 @@ class TrialPace(Table, frozen=True):
         Seconds from the answer to the next start signal.
     warning_s
         Seconds from the start signal to the audible warning; None for no warning.
+    end
+        What the participant ends reading by: "button:N" for button N of the device, from 1, or
+        "key:enter" for Enter; None if the hand's way to the end and back ends it.
 
     Raises
     ------
     ValueError
-        If a time is out of range.
+        If a time is out of range, or nothing can end reading in this way.
     """
 
     gap_s: float = 0.5
     warning_s: float | None = None
+    end: str | None = None
 
     def __post_init__(self) -> None:
+        if self.end is not None and self.end != ENTER and self.button is None:
+            raise ValueError(
+                f"end is {self.end!r}; it must be 'button:1' to 'button:{MOST_BUTTONS}', or "
+                f"{ENTER!r}"
+            )
         check_range("gap_s", self.gap_s, 0, 60, " s")
         check_range("warning_s", self.warning_s, 1, 3600, " s")
+
+    @property
+    def button(self) -> int | None:
+        """Number of the device's button that ends reading; None if no button does."""
+        found = _BUTTON.fullmatch(self.end or "")
+        return int(found[1]) if found else None
 
 
 class SessionPace(Table, frozen=True):

@@ -208,6 +208,8 @@ class Choice(_Design, frozen=True, tag="choice"):
     reference
         Value that each of the values is compared with, in both orders, instead of with each
         other; None if there is none.
+    same
+        How often each value is compared with itself, in each of the repeats.
 
     Raises
     ------
@@ -220,9 +222,11 @@ class Choice(_Design, frozen=True, tag="choice"):
     values: tuple[float, ...]
     string: Masks
     reference: float | None = None
+    same: int = 0
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_range("same", self.same, 0, MOST_TRIALS)
         if len(self.values) < 2 and self.reference is None:
             raise ValueError(f"values are {len(self.values)}; give two or more to compare")
         if not self.values:
@@ -266,12 +270,15 @@ class Choice(_Design, frozen=True, tag="choice"):
 
     def items(self) -> Sequence[Item]:
         """Values of the first and the second stimulus in the trials of a condition."""
+        return self.pairs() * self.repeats
+
+    def pairs(self) -> list[Item]:
+        """Pairs of values that are compared in each of the repeats."""
+        alike = [(value, value) for value in self.values] * self.same
         if self.reference is None:
-            pairs = list(permutations(self.values, 2))
-        else:
-            compared = [(self.reference, value) for value in self.values]
-            pairs = [*compared, *(pair[::-1] for pair in compared)]
-        return pairs * self.repeats
+            return [*permutations(self.values, 2), *alike]
+        compared = [(self.reference, value) for value in self.values]
+        return [*compared, *(pair[::-1] for pair in compared), *alike]
 
 
 class ItemList(_Design, frozen=True, tag="items"):

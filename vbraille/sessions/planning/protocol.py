@@ -13,6 +13,7 @@ from msgspec import field, structs
 
 from vbraille.render import MODELS
 from vbraille.sessions.planning.appearance import Appearance, Condition, mapping_named
+from vbraille.sessions.planning.asking import CellSpelling
 from vbraille.sessions.planning.besides import ItemRow, OrderRow
 from vbraille.sessions.planning.conduct import (
     FaultRules,
@@ -45,6 +46,7 @@ from vbraille.sessions.planning.knobs import with_value
 from vbraille.sessions.planning.ordering import BlockOrder
 from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
+from vbraille.sessions.planning.questions import AnyQuestion, usual_question
 from vbraille.sessions.planning.ruletable import Rules
 from vbraille.sessions.planning.spellings import SpellingKeys
 from vbraille.sessions.planning.stimuli import Stimulus
@@ -78,6 +80,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     order: BlockOrder | None = None
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
+    question: AnyQuestion | None = None
     practice: Practice = Practice()
     trial: TrialPace = TrialPace()
     session: SessionPace = SessionPace()
@@ -118,6 +121,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Rules that the finished plan is checked for, beside its design.
     procedure
         Which trial comes next, and when enough was asked.
+    question
+        What is asked of each trial; None to identify a string, or to choose one of two.
     practice
         Practice before the first block.
     trial, session
@@ -254,6 +259,15 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
     def parameter(self) -> str | None:
         """What is compared, such as "dot_width_mm" or "contrast"; None if strings are read."""
         return self.design.parameter if isinstance(self.design, Choice) else None
+
+    @property
+    def asks(self) -> AnyQuestion:
+        """Question that is asked of each trial."""
+        return self.question or usual_question(2 if self.task == "choice" else 1)
+
+    def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
+        """How cells may be typed in answers about a stimulus."""
+        return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
     @property
     def adaptive(self) -> bool:

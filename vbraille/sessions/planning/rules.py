@@ -101,10 +101,8 @@ def _wanted(protocol: Protocol) -> Counter[Item]:
     design = protocol.design
     if isinstance(design, Combinations):
         things = product(design.characters, repeat=design.length)
-    elif isinstance(design, Choice) and design.reference is not None:
-        things = (p for v in design.values for p in permutations((v, design.reference), 2))
     elif isinstance(design, Choice):
-        things = permutations(design.values, 2)
+        things = design.pairs()
     else:
         things = (tuple(sorted(s)) if design.reorder else s for s in design.strings)
     return Counter({thing: n * design.repeats for thing, n in Counter(things).items()})
@@ -122,7 +120,8 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
     design = protocol.design
     if len(trial.stimuli) != (2 if isinstance(design, Choice) else 1):
         return f"has {len(trial.stimuli)} stimuli"
-    if len(trial.stimuli) == 2 and trial.stimuli[0] == trial.stimuli[1]:
+    alike = len(trial.stimuli) == 2 and trial.stimuli[0] == trial.stimuli[1]
+    if alike and not (isinstance(design, Choice) and design.same):
         return "compares two identical stimuli"
     first, stop = trial.asked
     for stimulus in trial.stimuli:

@@ -13,6 +13,7 @@ from vbraille.sessions.record.events import (
     Closed,
     Device,
     End,
+    Ended,
     Fault,
     JournalEvent,
     Lost,
@@ -34,7 +35,10 @@ EVENT_COLUMNS = {
     "trial": {"Description": "number of the trial that it happened in"},
     "trial_before": {"Description": "of a note: the trial that was shown last before it"},
     "trial_after": {"Description": "of a note: the trial that was shown next"},
-    "value": {"Description": "of an answer, what was answered; of a note, its text; else what"},
+    "value": {
+        "Description": "of an answer, what was answered, and its confidence after a "
+        "semicolon; of a note, its text; else what"
+    },
 }
 _LEFT_OUT = (Run, BreakWanted, Tuning, Closed, Lost)
 
@@ -107,7 +111,10 @@ def _text_of(event: JournalEvent) -> str:
     """Text that an event carries; empty for kinds without one."""
     match event:
         case Answer():
-            return event.answer
+            sure = "" if event.confidence is None else f"; {event.confidence}"
+            return event.answer + sure
+        case Ended():
+            return event.by
         case Note():
             return event.text
         case Fault() | Device():

@@ -242,6 +242,21 @@ class Read(WithStimulus, frozen=True, kw_only=True):
     time_ns: int | None = None
 
 
+class Ended(WithStimulus, frozen=True, kw_only=True):
+    """The participant's own key ended the reading of a stimulus; from format 5 on.
+
+    Parameters
+    ----------
+    by
+        Which key it was: "button:N" of the device, or "key:enter".
+    time_ns
+        Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
+    """
+
+    by: str
+    time_ns: int | None = None
+
+
 class Warning(InTrial, frozen=True):  # noqa: A001 - the protocol calls it so
     """The warning sounded."""
 
@@ -254,12 +269,20 @@ class Answer(InTrial, frozen=True, kw_only=True):
     attempt
         Number of the attempt at the trial that was answered.
     answer
-        The answer: Unicode braille with `?` for a place not read; or 1 or 2, for the stimulus
-        chosen.
+        The answer: Unicode braille with `?` for a place not read; 1 or 2, for the stimulus
+        chosen; or as `[question]` has it: yes or no, same or different, a number, or words.
     corrects
         Whether the answer replaces one that was taken back.
     early
         Whether the answer came before the trial was read to its end.
+    confidence
+        How sure the answer is, on the protocol's scale; left out if that is not asked. From
+        format 5 on.
+    confidence_s
+        Seconds from the answer to its confidence, with which it was written. From format 5 on.
+    ended_by
+        What ended reading: "button:N", "key:enter", or "answer" if the answer came before the
+        participant's key; left out if the protocol has no such key. From format 5 on.
     """
 
     durable: ClassVar[bool] = True
@@ -268,6 +291,9 @@ class Answer(InTrial, frozen=True, kw_only=True):
     answer: str
     corrects: bool = False
     early: bool = False
+    confidence: int | None = None
+    confidence_s: float = 0.0
+    ended_by: str = ""
 
 
 class Undo(InTrial, frozen=True):
@@ -450,7 +476,7 @@ class Lost(JournalEvent, frozen=True):
 
 
 AnyEvent = (
-    Session | Run | Presented | Cue | Contact | Read | Warning | Answer | Undo | Repeat
+    Session | Run | Presented | Cue | Contact | Read | Ended | Warning | Answer | Undo | Repeat
     | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
     | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.geometry import BOUNDS_MM
-from vbraille.braille.spelling import UNREAD, to_braille
+from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
@@ -65,8 +64,14 @@ COLUMNS = {
     "presented": "Unicode braille of the cells asked for; two values, the first one first",
     "string_set": "Unicode braille of the protocol's string, if its cells come in another order "
     "at each showing; else empty",
-    "answered": "Unicode braille, ? for a place not read; the value chosen; empty if not answered",
-    "correct": "1 if all places are right, 0 if not; empty for comparisons and without an answer",
+    "answered": "Unicode braille, ? for a place not read; the value chosen; as asked for, yes or "
+    "no, same or different, a number, or words; empty if not answered",
+    "correct": "1 if all places are right, or the answer is, 0 if not; empty where nothing is "
+    "right and without an answer",
+    "question": "what was asked: identify, which, same-different, detect, rating, magnitude, free",
+    "outcome": "right or wrong; where something is looked for, hit, miss, false alarm or correct "
+    "rejection; empty if nothing is right, and without an answer",
+    "confidence": "how sure the answer is, on the scale of the protocol; empty if not asked",
     "first_answer": "what had been answered before an undo; else empty",
     "answers_from": "typed, simulated:NOISE for a simulated reader, program, or a file",
     "moved_by": "what moved the carriage: person, simulated for a simulated hand, or "
@@ -78,7 +83,10 @@ COLUMNS = {
     "returned": "1 if the hand went back over the leftmost dot; 0 if the duration ends with the "
     "last tick at which an actuator was off its idle end",
     "contact_s": "from the start signal to the first touch",
-    "response_s": "from the start signal to the answer, pauses left out",
+    "response_s": "from the start signal to the participant's key, or to the answer where there "
+    "was none, pauses left out",
+    "ended_by": "what ended reading: button:N, key:enter, or answer if the answer came before the "
+    "participant's key; empty if the protocol has no such key",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
     "warned": "1 if the warning sounded",
@@ -240,32 +248,37 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     }
     if "cue" in t_s and "contact" in t_s and t_s["contact"] >= t_s["cue"]:
         row["contact_s"] = round(t_s["contact"] - t_s["cue"], 6)
-    if "cue" in t_s and "answer" in t_s:
-        row["response_s"] = round(t_s["answer"] - t_s["cue"] - told.paused_s, 6)
+    if told.response_s is not None:
+        row["response_s"] = round(told.response_s, 6)
+    return row | _asked(record, trial, told)
+
+
+def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
+    """Cells of a trial's row for what was asked, and what was answered."""
+    question, t_s = record.protocol.asks, told.t_s
+    row: dict[str, Any] = {"question": question.name, "ended_by": told.ended_by}
+    row["confidence"] = "" if told.confidence is None else told.confidence
+    if told.answer is not None:
+        row["outcome"] = question.outcome(trial, told.answer)
+        if row["outcome"]:
+            row["correct"] = int(question.good(trial, told.answer))
+    values = [f"{stimulus.value:g}" for stimulus in trial.stimuli if stimulus.value is not None]
     if len(trial.stimuli) == 2:
-        values = [f"{stimulus.value:g}" for stimulus in trial.stimuli]
         row["parameter"] = record.protocol.parameter
         row |= _compared(trial, record.protocol.parameter)
         row["presented"] = " ".join(values)
-        row["answered"] = _chosen(values, told.answer)
-        row["first_answer"] = _chosen(values, told.first_answer)
     else:
         row["presented"] = trial.presented
         row["string_set"] = _string_set(record, trial)
+    if question.name == "which":
+        row["answered"] = _chosen(values, told.answer)
+        row["first_answer"] = _chosen(values, told.first_answer)
+    else:
         row["answered"] = told.answer or ""
         row["first_answer"] = told.first_answer or ""
-        if told.answer is not None:
-            row["correct"] = int(_is_right(trial, told.answer))
-        if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
-            row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
+    if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
+        row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
     return row
-
-
-def _is_right(trial: Trial, answer: str) -> bool:
-    """Whether an answer is right; of a blank catch trial, whether no dot was felt."""
-    if trial.catch == "blank":
-        return set(answer) <= {UNREAD, chr(UNICODE_BLANK)}
-    return answer == trial.presented
 
 
 def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:

@@ -106,6 +106,11 @@ class TrialRecord:
         live view was the hand for a part of the trial, in any attempt; empty on paper.
     lost
         Numbers of the lost events of a salvaged journal that may belong to the trial.
+    confidence
+        How sure the answer that counts is, on the protocol's scale; None if that was not asked.
+    ended_by
+        What ended reading: the participant's key, or "answer" if the answer came before it; empty
+        if the protocol has no such key.
     """
 
     trial: Trial
@@ -121,6 +126,20 @@ class TrialRecord:
     source: str = ""
     moved_by: str = ""
     lost: list[int] = field(default_factory=list)
+    confidence: int | None = None
+    ended_by: str = ""
+
+    @property
+    def response_s(self) -> float | None:
+        """Seconds from the start signal to the participant's key, or else to the answer.
+
+        Pauses are left out. None if there is no answer.
+        """
+        by_key = self.ended_by not in ("", "answer") and "ended" in self.t_s
+        end = "ended" if by_key else "answer"
+        if "cue" not in self.t_s or end not in self.t_s or "answer" not in self.t_s:
+            return None
+        return self.t_s[end] - self.t_s["cue"] - self.paused_s
 
     @property
     def last_attempt(self) -> list[Showing]:
@@ -276,6 +295,8 @@ class Progress:
         self._take_in(event, record)
         kind = "corrected" if isinstance(event, events.Answer) and event.corrects else event.kind
         record.t_s[kind] = event.t_s
+        if isinstance(event, events.Answer):
+            record.t_s[kind] -= event.confidence_s
         record.wall[kind] = event.wall
         if not record.trial.practice:
             self._mark_lost(record.trial.number)
@@ -350,6 +371,7 @@ class Progress:
                 self.correcting = self.last_answered
                 record.first_answer = record.first_answer or record.answer
                 record.answer = None
+                record.confidence = None
             case events.Fault():
                 record.faults.append(event.what)
             case events.HandTaken():
@@ -385,6 +407,7 @@ class Progress:
 
     def _take_answer(self, event: events.Answer, record: TrialRecord) -> None:
         record.answer = event.answer
+        record.confidence = event.confidence
         record.source = self._answers
         # What goes by the answers goes by what was felt, whatever it would choose today.
         shown = record.trial if self.procedure.trials is not None else record.shown
@@ -396,13 +419,14 @@ class Progress:
                 self._next = self._ask()  # a trial that was shown already stays
             return
         record.early = event.early
+        record.ended_by = event.ended_by
         self._end_pause(record, event)  # an answer ends a pause
         if not event.practice:
             self.history.append(answered)
             self._next = self._ask()
 
     def _end_pause(self, record: TrialRecord, event: JournalEvent) -> None:
-        if self._paused_s is not None:
+        if self._paused_s is not None and "ended" not in record.t_s:
             record.paused_s += event.t_s - self._paused_s
         self._paused_s = None
 

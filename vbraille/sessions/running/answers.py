@@ -15,6 +15,19 @@ import numpy as np
 
 from vbraille.braille.spelling import to_answer
 from vbraille.errors import InputError
+from vbraille.sessions.planning.questions import (
+    DIFFERENT,
+    NO,
+    SAME,
+    YES,
+    FreeQuestion,
+    IdentifyQuestion,
+    MagnitudeQuestion,
+    RatingQuestion,
+    SameQuestion,
+    WhichQuestion,
+)
+from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import Observer
 from vbraille.wording import setting
 
@@ -204,7 +217,8 @@ class Simulated:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
         self.name = f"simulated:{noise:g}"
         model: Model = protocol.model
-        if protocol.parameter and protocol.parameter not in _COMPARED:
+        likes = isinstance(protocol.asks, WhichQuestion) and protocol.asks.right is None
+        if likes and protocol.parameter not in _COMPARED:
             raise InputError(
                 f"{protocol.name} compares {protocol.parameter}, which the simulated reader "
                 f"cannot; type the answers, or give a file of them"
@@ -215,9 +229,17 @@ class Simulated:
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
             return Observer(model.display, style, noise=noise)
 
+        self._noise = noise
         self._observers = {c.name: told(c) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
+        self._question = protocol.asks
+        pairs = protocol.task == "choice"
+        if isinstance(self._question, FreeQuestion) or (pairs and not self._compares):
+            raise InputError(
+                f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
+                f"simulated reader cannot answer; type the answers, or give a file of them"
+            )
         self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
 
     def lines(self, wait_s: float) -> list[str]:
@@ -229,14 +251,56 @@ class Simulated:
         """Answer to a trial, by what was felt of it."""
         drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
         random = np.random.default_rng(seed_of(drawn))
+        scale = self._question.confidence
+        sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
+        return self._answer(trial, felt, random) + sure, 0
+
+    @property
+    def _compares(self) -> bool:
+        return isinstance(self._question, WhichQuestion | SameQuestion)
+
+    def _answer(self, trial: Trial, felt: list[Exploration], random: np.random.Generator) -> str:
+        question, noise = self._question, self._noise
         observer = self._observers[trial.condition]
-        if self._compared is not None:
+        if isinstance(question, WhichQuestion) and question.right is None and self._compared:
             first, second = felt
-            return str(observer.compare(first, second, self._compared, random)), 0
+            return str(observer.compare(first, second, self._compared, random))
+        if self._compares:
+            one, two, unit = self._felt_of_two(trial, felt)
+            if isinstance(question, SameQuestion):
+                return DIFFERENT if judging.differ(one, two, unit, noise, random) else SAME
+            assert isinstance(question, WhichQuestion), "these are the two that compare"
+            one, two = question.worth(one), question.worth(two)
+            return str(judging.larger(one, two, unit, noise, random))
+        if not isinstance(question, IdentifyQuestion):
+            strength = self._strength(trial, 0, felt[0])
+            match question:
+                case RatingQuestion():
+                    return str(judging.rate(strength, question.least, question.most, noise, random))
+                case MagnitudeQuestion():
+                    given = judging.magnitude(strength, question.modulus or 1.0, noise, random)
+                    return f"{given:.3g}"
+            return YES if judging.detects(strength, noise, random) else NO
         places = self._lead_cells + len(trial.stimuli[0].masks)
         masks = observer.read(felt[0], places, random)
         asked = slice(*(self._lead_cells + place for place in trial.asked))
-        return to_answer(masks[asked]), 0
+        return to_answer(masks[asked])
+
+    def _felt_of_two(self, trial: Trial, felt: list[Exploration]) -> tuple[float, float, float]:
+        """What is felt of two stimuli, and its unit: lengths in mm, or how strong they are."""
+        if self._compared is None:
+            one, two = (self._strength(trial, place, felt[place]) for place in (0, 1))
+            return one, two, 1.0
+        which = [*_COMPARED.values()].index(self._compared)
+        one, two = (self._observers[trial.condition].lengths_mm(each)[which] for each in felt[:2])
+        geometry = self._observers[trial.condition].geometry
+        gap_mm = geometry.dot_spacing_mm - geometry.dot_width_mm
+        return one, two, (geometry.dot_width_mm, gap_mm)[which]
+
+    def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
+        places = self._lead_cells + len(trial.stimuli[place].masks)
+        first, stop = (self._lead_cells + cell for cell in trial.asked)
+        return judging.strength(self._observers[trial.condition].felt(felt, places), first, stop)
 
 
 def seed_of(text: str) -> int:

@@ -7,21 +7,19 @@ before the answer, and says whether an answer is right in practice only.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from vbraille.braille.spelling import parse_answer, parse_choice, say_cells
 from vbraille.engine.suspending import Suspension
-from vbraille.errors import InputError
+from vbraille.sessions.planning.conduct import ENTER
 from vbraille.sessions.record import events
 from vbraille.sessions.running.course import POLL_S
+from vbraille.sessions.running.inquiry import Inquiry
 from vbraille.sessions.running.orders import Order
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.course import Course
 
@@ -63,7 +61,7 @@ class Console:
         self._say = say
         self._wait_s = POLL_S if real else 0.0
         self._look = look
-        self._early = ()  # the trial, attempt and answer that were asked about
+        self._inquiry = Inquiry(course, typed=answers.typed, say=say)
 
     def run(self) -> None:
         """Run the session from where it has come to."""
@@ -135,7 +133,7 @@ class Console:
         if course.display is None and not correcting and not course.read:
             course.press()  # answers that are not typed take no time to read paper
         last = course.phase is Phase.LAST
-        if not (correcting or course.paused or course.read or last):
+        if not (correcting or course.half or course.paused or course.read or last):
             return
         trial = correcting or course.trial or self._progress.last_answered
         if trial is None or course.phase is Phase.OVER:
@@ -157,77 +155,18 @@ class Console:
         else:
             self.stop()
 
-    def _spoken(self, answer: str) -> str:
-        if self._course.protocol.task == "choice":
-            return "first" if answer == "1" else "second"
-        return say_cells(answer, self._course.protocol.keys)
-
-    def _tell(self, trial: Trial, answer: str) -> None:
-        """Say what a practice trial has shown."""
-        if len(trial.stimuli) == 2:
-            values = " and ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
-            self._say(f"practice: they were {values}")
-        else:
-            verdict = "right" if answer == trial.presented else "wrong"
-            self._say(f"practice: {verdict}, it was {self._spoken(trial.presented)}")
-
     # The methods from here on do the orders.
 
     def answer(self, line: str) -> None:
         """Take an answer to the open trial, or to the one that was taken back."""
-        course, correcting = self._course, self._progress.correcting
-        trial = correcting or course.open_trial
-        if trial is None:
-            self._say("no answer is waited for now; help says what there is to type")
-            return
-        if correcting is None and course.second_to_come:
-            self._say("the second has not been felt yet; repeat shows both again")
-            return
-        try:
-            answer = read_line(course.protocol, trial, line)
-        except ValueError as error:
-            if course.book.script_line:
-                raise InputError(
-                    f"line {course.book.script_line} of the answers: {error}"
-                ) from None
-            self._say(f"no answer: {error}")
-            return
-        told: dict[str, Any] = {"attempt": self._progress.told(trial).attempts, "answer": answer}
-        if correcting is not None:
-            told["corrects"] = True
-        elif not course.reached:
-            if self._asks_whether(trial, answer):
-                return
-            told["early"] = True
-        if correcting is None:
-            course.withdraw()
-        course.book.log(events.Answer, trial, **told)
-        self._say(f"answer: {course.name(trial)}, {self._spoken(answer)}")
-        if trial.practice and course.protocol.practice.feedback:
-            self._tell(trial, answer)
-        # If the next trial depends on the answers, a corrected answer may lead to one more trial.
-        if correcting is None or course.trial is None or course.phase is Phase.LAST:
-            course.paused = False
-            course.next()
-
-    def _asks_whether(self, trial: Trial, answer: str) -> bool:
-        """Ask once about an answer that was typed before the trial was read; True if it asks."""
-        told = self._progress.told(trial)
-        early = trial.practice, trial.number, told.attempts, answer
-        if not self._answers.typed or early == self._early:
-            return False
-        self._early = early
-        if self._course.display is None:
-            why = "Enter has not said yet that it was read"
-        elif "contact" in told.t_s:
-            why = "it was not read to its end yet"
-        else:
-            why = "nothing was read yet"
-        self._say(f"no answer: {why}; the same answer again is taken")
-        return True
+        self._inquiry.take(line)
 
     def undo(self, _: str = "") -> None:
-        """Take back the last answer."""
+        """Take back the last answer, with its confidence."""
+        if (half := self._course.half) is not None:
+            self._course.half = None
+            self._say(f"undo: {self._course.name(half.trial)}; type its answer")
+            return
         trial = self._progress.last_answered
         if trial is None or self._progress.correcting is not None:
             self._say("undo: there is no answer to take back")
@@ -258,6 +197,9 @@ class Console:
         if course.paused:
             self.go_on()
             return
+        if course.half is not None:
+            self._say("pause: the array is at rest; the confidence is waited for")
+            return
         if course.display is not None:
             course.display.rest()
         course.paused = True
@@ -282,6 +224,8 @@ class Console:
             course.end("all trials are done")
         elif course.display is None:
             course.press()
+        elif course.protocol.trial.end == ENTER:
+            course.end_reading(ENTER)
 
     def have_break(self, _: str = "") -> None:
         """Have a break, after the open trial."""
@@ -323,6 +267,9 @@ class Console:
     def stop(self, _: str = "") -> None:
         """Stop the session, so that it can be resumed later."""
         course = self._course
+        if (half := course.half) is not None:
+            course.half = None
+            self._say(f"no confidence: {course.name(half.trial)} is asked again")
         course.withdraw()
         course.book.log(events.Stop)
         done = self._progress.of_all(self._progress.done)
@@ -331,8 +278,11 @@ class Console:
 
     def help(self, _: str = "") -> None:
         """Say what may be typed."""
-        if self._course.protocol.task == "choice":
-            self._say("an answer: 1 or 2, for the first or the second")
+        question = self._course.protocol.asks
+        if question.ask:
+            self._say(f"question: {question.ask}")
+        if question.name != "identify":
+            self._say(f"an answer: {question.typed}")
         else:
             keys = " ".join(self._course.protocol.keys)
             self._say(
@@ -340,28 +290,11 @@ class Console:
                 + (f"the keys {keys}, " if keys else "")
                 + "? for a place not read"
             )
+        if question.confidence is not None:
+            self._say(f"confidence: {question.confidence.typed}, after the answer or a semicolon")
         self._say("Enter: go on after a pause or a break")
         for order in ORDERS:
             self._say(f"{order.word}: {order.help}")
-
-
-def read_line(protocol: Protocol, trial: Trial, line: str) -> str:
-    """Read an answer to a trial, and bring it into its canonical form.
-
-    Raises
-    ------
-    ValueError
-        If the line is not an answer to the trial.
-    """
-    if len(trial.stimuli) == 2:
-        return parse_choice(line)
-    first, stop = trial.asked
-    return parse_answer(
-        line,
-        places=stop - first,
-        keys=protocol.keys,
-        shown_dots=protocol.mapping_of(trial.stimuli[0]).shown_dots(),
-    )
 
 
 ORDERS = (

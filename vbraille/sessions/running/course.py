@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
+    from vbraille.sessions.running.halfanswer import HalfAnswer
     from vbraille.sessions.running.happened import Happened
     from vbraille.sessions.running.showing import OnDevice
 
@@ -70,6 +71,10 @@ class Course:
     read_said : bool
         Whether the experimenter has been told that the trial is read; on paper, whether a key has
         said so.
+    half : HalfAnswer or None
+        Answer whose confidence is waited for.
+    ended_by : str
+        Key by which the participant has ended reading; empty before.
     """
 
     def __init__(
@@ -93,6 +98,8 @@ class Course:
         self.phase = Phase.READY
         self.paused = False
         self.read_said = False
+        self.half: HalfAnswer | None = None
+        self.ended_by = ""
         self._waits = waits
         self._corrects = corrects
         self._say = say
@@ -167,6 +174,7 @@ class Course:
 
     def next(self, *, gap: bool = True) -> None:
         """Get the next trial ready, begin a break, or end the session."""
+        self.half = None
         trial = self.trial
         gap_s = self.protocol.trial.gap_s if gap else 0.0
         self._ready_ns = self._now_ns() + round(gap_s * 1e9)
@@ -211,7 +219,7 @@ class Course:
         assert trial is not None, "there is no trial to begin"
         self._attempt = self.progress.told(trial).attempts + 1
         self.phase = Phase.OPEN
-        self.read_said = False
+        self.read_said, self.ended_by = False, ""
         self._show(trial, 0)
 
     def again(self) -> None:
@@ -237,6 +245,28 @@ class Course:
             self.book.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.told(trial)
             self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
+
+    def end_reading(self, by: str, **when: int) -> None:
+        """Take the participant's key, which ends reading of the stimulus that is shown."""
+        trial, display = self.open_trial, self.display
+        if trial is None or display is None or self.paused or self.half or self.ended_by:
+            return
+        self.book.log(
+            events.Ended, trial, attempt=self._attempt, stimulus=self._stimulus, by=by, **when
+        )
+        display.end_reading()
+        key = by.replace(":", " ")
+        if self.second_to_come:
+            self._say(f"ended: the first, by {key}")
+            return
+        self.ended_by, self.read_said = by, True
+        told = self.progress.told(trial)
+        seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
+        self._say(f"ended: {seconds:.2f} s, by {key}; type {self._prompt}")
+
+    @property
+    def _prompt(self) -> str:
+        return "the answer" if self.protocol.question is None else self.protocol.question.typed
 
     def retune(self, tuning: dict[str, float]) -> None:
         """Show the open trial and all later ones with another contrast or texture."""
@@ -345,7 +375,9 @@ class Course:
     def _take(self, happened: Happened) -> None:
         kind, fields, said = happened
         trial = self.open_trial
-        if said:
+        if kind is events.Ended:
+            self.end_reading(**fields)
+        elif said:
             self.book.log(kind, None if kind is events.Device else trial, **fields)
             self._say(said)
         elif trial is not None:
@@ -355,6 +387,8 @@ class Course:
 
     def _watch(self, trial: Trial) -> None:
         """Give the warning, or show the second stimulus, if either is due."""
+        if self.half is not None:
+            return
         warning_s = self.protocol.trial.warning_s
         told = self.progress.told(trial)
         waited_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
@@ -370,7 +404,7 @@ class Course:
                 self._show(trial, self._stimulus + 1)
         elif not self.read_said and self._waits:
             self.read_said = True
-            self._say("read: type the answer")
+            self._say(f"read: type {self._prompt}")
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
         """Show the open trial again after a fault, if the protocol says so."""
@@ -383,7 +417,8 @@ class Course:
     def _start_again(self, fault: HostDiedError) -> None:
         """Start the engine again after it died; an open trial gets a new attempt."""
         self._deaths += 1
-        trial = self.open_trial
+        # An answer whose confidence is waited for needs no device: its trial is not shown again.
+        trial = None if self.half is not None else self.open_trial
         if trial is None:
             self.book.log(events.Device, what=str(fault))
         else:

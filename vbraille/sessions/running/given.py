@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.answers import PROGRAM, ScriptedAnswers
-from vbraille.sessions.running.console import find_order, read_line
+from vbraille.sessions.running.console import find_order
+from vbraille.sessions.running.inquiry import read_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -83,26 +84,48 @@ def check_script(script: ScriptedAnswers, protocol: Protocol, progress: Progress
         return
     trials = iter(planned[progress.done :])
     correcting, answered = progress.correcting, progress.last_answered
+    half = again = None  # a trial without a confidence yet, and one whose answer was dropped so
     for line, number in script.left:
         found = find_order(line)
-        if found is not None and found[0].word == "undo":
+        word = "answer" if found is None else found[0].word
+        if word in ("undo", "repeat") and half is not None:
+            half, again = None, half
+        elif word == "undo":
             correcting = correcting or answered
-        if found is not None and found[0].word != "answer":
+        if word != "answer":
             continue
-        trial = correcting or next(trials, None)
+        trial = half or again or correcting or next(trials, None)
         if trial is None:
             raise InputError(f"{script.path} line {number}: there is no trial left to answer")
         try:
-            _is_answer(protocol, trial, line)
+            whole = half is not None or _is_whole(protocol, trial, line)
+            if half is not None and protocol.asks.confidence is not None:
+                protocol.asks.confidence.parse(line if found is None else found[1])
         except ValueError as error:
             raise InputError(f"{script.path} line {number}: {error}") from None
+        again = None
+        if not whole:
+            half = trial
+            continue
+        half = None
         correcting, answered = None, trial if correcting is None else answered
+
+
+def _is_whole(protocol: Protocol, trial: Trial, line: str) -> bool:
+    """Whether a line has all that is asked; ValueError if it does not suit its trial."""
+    found = find_order(line)
+    _, confidence = read_line(protocol, trial, line if found is None else found[1])
+    return confidence is not None or protocol.asks.confidence is None
 
 
 def _is_answer(protocol: Protocol, trial: Trial, line: str) -> bool:
     """Whether a line is an answer and no order; ValueError if it does not suit its trial."""
     found = find_order(line)
-    answers = found is None or found[0].word == "answer"
-    if answers:
-        read_line(protocol, trial, line if found is None else found[1])
-    return answers
+    if found is not None and found[0].word != "answer":
+        return False
+    scale = protocol.asks.confidence
+    if not _is_whole(protocol, trial, line) and scale is not None:
+        raise ValueError(
+            f"it has no confidence; give one after a semicolon, such as '{line}; {scale.most}'"
+        )
+    return True

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from vbraille.devices.base import Placing
+from vbraille.devices.events import Button
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
@@ -19,12 +20,13 @@ from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from collections.abc import Mapping as Named
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from vbraille.devices.events import Event
     from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Stimulus
@@ -92,6 +94,9 @@ class OnDevice:
     centred
         Whether traces have places of the array's centre. In a session of format 1 or 2 they have
         places of its left column.
+    by_hand
+        Whether the hand's way to the end and back ends reading, and not the participant's key
+        alone.
 
     Attributes
     ----------
@@ -113,6 +118,7 @@ class OnDevice:
         tie: Callable[[], Tie] | None = None,
         steering: Steering | None = None,
         centred: bool = True,
+        by_hand: bool = True,
     ) -> None:
         self.engine = engine
         self.line = 0
@@ -123,12 +129,16 @@ class OnDevice:
         self._tie = tie
         self._steering = steering
         self._left_mm = None if centred else self._span_mm / 2
+        self._button = protocol.trial.button
+        self._by_hand = by_hand
+        self._ended = False  # whether the participant's key has ended this stimulus
         self._trace: TraceWriter | None = None
         self._newest: np.void | None = None
         self._placing = Placing.DONE
         self._stimulus: Stimulus | None = None
         self._end: EndOfLine
         self._edge_mm: float | None = None
+        self._shown_ns = 0
         self._touched = self._read = self._away = self._ready = False
         self._trial_line = self._shown_line = 0  # first line of the trial, of the stimulus
         self._still = False  # whether the newest tick rested because the hand stood still
@@ -199,6 +209,7 @@ class OnDevice:
             Whether it is the first stimulus of a trial, and not the second of a comparison.
         """
         self._stimulus = stimulus
+        self._shown_ns = self.now_ns
         self._shown_line = self.line + 1
         if first:
             self._felt = []
@@ -213,7 +224,7 @@ class OnDevice:
             stimulus.geometry,
         )
         self._edge_mm = None if edge_mm is None else edge_mm - self._span_mm / 2
-        self._touched = self._read = False
+        self._touched = self._read = self._ended = False
         self.retune(tuning)
         self.engine.paused = False
 
@@ -235,8 +246,13 @@ class OnDevice:
         self.engine.paused = True
 
     def go(self) -> None:
-        """Let the stimulus be felt again after a rest."""
-        self.engine.paused = False
+        """Let the stimulus be felt again after a rest, unless its reading was ended."""
+        self.engine.paused = self._ended
+
+    def end_reading(self) -> None:
+        """Bring the array to rest, since the participant's key has ended the reading."""
+        self._read = self._ended = True
+        self.rest()
 
     def withdraw(self) -> None:
         """Take the stimulus away, since the attempt at the trial is over."""
@@ -259,9 +275,10 @@ class OnDevice:
             If the engine has ended, or the disk does not take the trace.
         """
         ticks = self.engine.poll()
-        happened = of_device(self.engine.take_events())
+        told = self.engine.take_events()
+        happened = of_device(told)
         if not ticks.size:
-            return happened
+            return happened + self._pressed(told)
         before = ticks["tick"][0] - 1 if self._newest is None else self._newest["tick"]
         lost = np.diff(ticks["tick"], prepend=before) != 1
         self._newest = ticks[-1]
@@ -280,7 +297,19 @@ class OnDevice:
                 self._unfelt(ticks, lost) + self._follow(ticks),
                 key=lambda each: each.fields["tick"],
             )
-        return happened
+        return happened + self._pressed(told)
+
+    def _pressed(self, told: Iterable[Event]) -> list[Happened]:
+        """Press of the button that ends reading, if it is among these events."""
+        if self._stimulus is None or self._ended:
+            return []
+        for event in told:
+            if isinstance(event, Button) and event.pressed and event.number == self._button:
+                by = {"by": f"button:{event.number}"}
+                # A press from before the stimulus came is told now, and counts from now on.
+                at_ns = event.at_ns if event.at_ns and event.at_ns > self._shown_ns else None
+                return [Happened(events.Ended, by if at_ns is None else by | {"time_ns": at_ns})]
+        return []
 
     def sync(self) -> None:
         """Make sure that the trace is on the disk."""
@@ -356,7 +385,11 @@ class OnDevice:
                 self._touched = True
                 happened.append(Happened(events.Contact, _when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
-        if not self._read and (self._end.find(ticks["x_mm"]) is not None or steered):
+        if (
+            self._by_hand
+            and not self._read
+            and (self._end.find(ticks["x_mm"]) is not None or steered)
+        ):
             self._read = True
             happened.append(Happened(events.Read, _when(ticks[-1])))
         return happened

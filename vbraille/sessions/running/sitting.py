@@ -172,6 +172,7 @@ class Sitting:
             tie=None if book.told.format == 1 else lambda: book.durable,
             steering=self._steering,
             centred=record.centred,
+            by_hand=not self._answers.typed or record.protocol.trial.end is None,
         )
 
     def _since(self, book: Journal, progress: Progress) -> dict[str, Any]:

@@ -179,11 +179,14 @@ def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
 
 def _answer(protocol: Protocol, trial: Trial, answer: str) -> str:
     """Words for an answer, and whether it is right."""
-    if len(trial.stimuli) == 2:
+    question = protocol.asks
+    if question.name == "which":
         values = [stimulus.value for stimulus in trial.stimuli]
         return f"{values[int(answer) - 1]:g} mm of {values[0]:g} mm and {values[1]:g} mm"
-    said, shown = (say_cells(cells, protocol.keys) for cells in (answer, trial.presented))
-    return f"{said}, right" if answer == trial.presented else f"{said}, wrong: it was {shown}"
+    said, was = question.said(answer, protocol.keys), question.was(trial, protocol.keys)
+    if not was:
+        return said
+    return f"{said}, right" if question.good(trial, answer) else f"{said}, wrong: it was {was}"
 
 
 def _facts(course: Course) -> list[tuple[str, str]]:

@@ -1,0 +1,140 @@
+"""Answers that are no cells: yes and no, same and different, ratings, magnitudes, words.
+
+Judgements have a row for each answered trial, with the columns ``participant``, ``session``,
+``protocol``, ``condition`` (categories in natural order), ``block``, ``trial``, and
+
+- ``question``: kind of the question, a key of `QUESTIONS`;
+- ``presented``, ``answered``: text as it was exported;
+- ``number``: float64, the answer as a number; NaN for questions that have none;
+- ``outcome``: one of `OUTCOMES` of the question, or empty;
+- ``confidence``: float64, NaN where it was not asked;
+- each of `LEVELS`: float64, NaN where it is not known or two values were compared.
+
+Strings that were identified, and choices of one of two, are among them if they have a confidence,
+or if one of two was right; they are trials and comparisons as well.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from vbraille.analysis.input.fieldvalues import UNKNOWN
+from vbraille.errors import InputError
+
+if TYPE_CHECKING:
+    from vbraille.analysis.input.sheets import Sheet
+
+_RIGHT = frozenset(("right", "wrong"))
+_FOUND = frozenset(("hit", "miss", "false alarm", "correct rejection"))
+# Outcomes that each kind of question may have, beside none.
+QUESTIONS = {
+    "identify": _RIGHT,
+    "which": _RIGHT,
+    "same-different": _FOUND,
+    "detect": _FOUND,
+    "rating": frozenset(),
+    "magnitude": frozenset(),
+    "free": frozenset(),
+}
+OUTCOMES = _RIGHT | _FOUND
+USUAL = ("identify", "which")  # questions whose answers are trials or comparisons
+_NUMBERS = ("rating", "magnitude")
+LEVELS = (
+    "contrast", "texture", "dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
+)  # fmt: skip
+
+
+def judged(sheet: Sheet, rows: pd.DataFrame) -> pd.Series:
+    """Whether each row is a judgement alone, and neither a string that was read nor a choice.
+
+    Raises
+    ------
+    InputError
+        If a question is of no known kind.
+    """
+    if "question" not in rows:
+        return pd.Series(False, rows.index)
+    kinds = rows["question"].str.strip()
+    for row, kind in kinds.items():
+        if kind not in (*QUESTIONS, ""):
+            raise InputError(
+                f"{sheet.place(row)}: question is {kind!r}; it must be one of "
+                f"{', '.join(QUESTIONS)}, or empty"
+            )
+    return ~kinds.isin((*USUAL, ""))
+
+
+def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.DataFrame | None:
+    """Judgements of a sheet; None if there are none.
+
+    Parameters
+    ----------
+    rows
+        Answered rows of the sheet.
+    who
+        Participant, session, protocol, condition, block and trial of each of these rows.
+
+    Raises
+    ------
+    InputError
+        If an outcome or a number cannot be used.
+    """
+    if "question" not in rows:
+        return None
+    empty = pd.Series("", rows.index)
+    outcome = rows.get("outcome", empty).astype(str).str.strip()
+    kinds = rows["question"].str.strip()
+    confidence = _numbers(sheet, rows.get("confidence", empty), "confidence")
+    kept = judged(sheet, rows) | (kinds.isin(USUAL) & confidence.notna())
+    kept |= (kinds == "which") & (outcome != "")
+    if not kept.any():
+        return None
+    for row in rows.index[kept]:
+        if outcome[row] and outcome[row] not in QUESTIONS[kinds[row]]:
+            known = ", ".join(sorted(QUESTIONS[kinds[row]])) or "none"
+            raise InputError(
+                f"{sheet.place(row)}: outcome is {outcome[row]!r}; of the question "
+                f"{kinds[row]!r} it must be one of: {known}"
+            )
+    answered = rows["answered"].astype(str).str.strip()
+    number = _numbers(sheet, answered.where(kinds.isin(_NUMBERS), ""), "answered")
+    found = who.assign(
+        question=kinds,
+        presented=rows["presented"].astype(str),
+        answered=answered,
+        number=number,
+        outcome=outcome,
+        confidence=confidence,
+        **{name: _levels(rows.get(name, empty)) for name in LEVELS},
+    )
+    bad = kept & (kinds == "magnitude") & (number <= 0)
+    if bad.any():
+        row = rows.index[bad][0]
+        raise InputError(
+            f"{sheet.place(row)}: answered is {answered[row]!r}; a magnitude must be above 0"
+        )
+    return found[kept]
+
+
+def _numbers(sheet: Sheet, given: pd.Series, column: str) -> pd.Series:
+    """Numbers of a column, NaN where there is nothing."""
+    values = []
+    for row, value in given.items():
+        text = str(value).strip()
+        try:
+            number = math.nan if text.lower() in UNKNOWN else sheet.number(text)
+        except ValueError:
+            number = math.inf
+        if math.isinf(number):
+            raise InputError(f"{sheet.place(row)}: {column} is {text!r}; give a number")
+        values.append(number)
+    return pd.Series(values, given.index, np.float64)
+
+
+def _levels(given: pd.Series) -> pd.Series:
+    """Numbers of a column, NaN where it has something else, such as two values."""
+    return pd.to_numeric(given, errors="coerce").astype(np.float64)
