@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import lab, live, reading
+from vbraille.cli.options import forecast, lab, live, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -87,6 +87,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Make tables, statistics and a report of sessions.",
         lab.analyse,
         "vbraille analyse P01-letters-* P02-letters-* --out report",
+    ),
+    "power": (
+        "Say how often a study of a protocol would find an effect, by simulation.",
+        forecast.power,
+        "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",
     ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
