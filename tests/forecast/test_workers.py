@@ -88,7 +88,7 @@ from distributed import LocalCluster
 if __name__ == "__main__":
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         print(cluster.scheduler_address, flush=True)
-        input()
+        cluster.sync(__import__("asyncio").sleep, 120)
 """
 
 

@@ -185,7 +185,9 @@ def _on_cluster(
     from distributed import Client, as_completed
 
     # What it would log of a lost connection is said in one sentence instead.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("asyncio", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     patience = f"{_PATIENCE_S}s"
     finished = 0
     with dask.config.set({"distributed.comm.timeouts.connect": patience}):  # pyright: ignore[reportPrivateImportUsage]
@@ -213,7 +215,7 @@ def _on_cluster(
     if finished < len(tasks):
         raise VbrailleError(
             f"the cluster at {address} went away after {finished} of {count(len(tasks), 'task')}; "
-            f"what they found is kept"
+            f"what is done is told, and with {setting('keep')} FILE the same command goes on there"
         )
 
 
