@@ -56,8 +56,8 @@ def _textures(folder: Path, skin: str) -> Result:
     verdict = "agrees" if agrees else f"is {' < '.join(order)}, which does not agree"
     gain = means["T100"] - means["T0"]
     return Result(
-        f"letters identified by the simulated reader (skin: {skin}) with texture 0, 25, 100 % (published "
-        f"{published}), {PARTICIPANTS} participants, noise {noise:g} so that the first identifies "
+        f"letters identified by the simulated reader (skin: {skin}) with texture 0, 25, 100 % "
+        f"(published {published}), {PARTICIPANTS} participants, noise {noise:g} so that the first identifies "
         f"about half without texture",
         "reported",
         f"{', '.join(f'{means[name]:.1%}' for name in PUBLISHED)}; the order {verdict}, in {same} "
@@ -91,7 +91,7 @@ def _contrasts(folder: Path, condition: str) -> Result:
         for contrast in CONTRASTS
     ]
     return Result(
-        f"letters identified by the simulated reader (skin: {skin}) with texture {condition[1:]} % and contrast "
+        f"letters identified by the simulated reader with texture {condition[1:]} % and contrast "
         f"{', '.join(f'{contrast:g}' for contrast in CONTRASTS)}, noise {NOISE:g}",
         "reported",
         ", ".join(f"{share:.1%}" for share in shares),
