@@ -57,8 +57,8 @@ def _textures(folder: Path, skin: str) -> Result:
     gain = means["T100"] - means["T0"]
     return Result(
         f"letters identified by the simulated reader (skin: {skin}) with texture 0, 25, 100 % "
-        f"(published {published}), {PARTICIPANTS} participants, noise {noise:g} so that the first identifies "
-        f"about half without texture",
+        f"(published {published}), {PARTICIPANTS} participants, noise {noise:g} so that the first "
+        f"identifies about half without texture",
         "reported",
         f"{', '.join(f'{means[name]:.1%}' for name in PUBLISHED)}; the order {verdict}, in {same} "
         f"of {PARTICIPANTS} it agrees (full texture beyond none {gain:+.1%}, s.d. {spread:.1%})",

@@ -15,7 +15,7 @@ from vbraille.sessions.planning.protocolfiles import load_protocol
 ONE = Workers()
 LETTERS = load_protocol("letters")
 EFFECT = {"T0": "0.4", "T25": "0.5", "T100": "0.7"}
-QUESTION = PowerQuestion(LETTERS, EFFECT, (6, 12), studies=120)
+QUESTION = PowerQuestion(LETTERS, EFFECT, (6, 12), studies=300)
 
 
 def legibility(**changed):
@@ -62,7 +62,7 @@ def test_rows_are_of_each_size_and_pair_with_what_is_enough():
     assert table.enough(1.01)["T0", "T100"] is None
     row = table.rows[0]
     assert row.low < row.power < row.high
-    assert row.studies == 120
+    assert row.studies == 300
     assert table.to_json()["rows"][0]["power"] == row.power
 
 

@@ -138,6 +138,11 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
         lab.session_resume,
         "vbraille session resume P07-legibility-20261121-101500",
     ),
+    "pilot": (
+        "Conduct a whole study with the simulated reader, its report and all.",
+        forecast.session_pilot,
+        "vbraille session pilot letters --participants 20 --workers 2",
+    ),
     "export": (
         "Make tables of a session.",
         lab.session_export,
