@@ -93,6 +93,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         forecast.power,
         "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",
     ),
+    "predict": (
+        "Say what the simulated reader would read, over a grid of styles, texts and speeds.",
+        forecast.predict,
+        "vbraille predict grid.toml --out predicted --workers 2",
+    ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
         reading.tables,
