@@ -10,7 +10,7 @@ from vbraille.pictures.heatmaps import MapPanel, ShareMap
 if TYPE_CHECKING:
     from vbraille.forecast.grids import GridFile, Prediction
 
-_TITLE = "Characters read rightly (%): simulated reader, no data about people"
+_TITLE = "Characters read rightly (%)\nsimulated reader, no data about people"
 
 
 def map_of(grid: GridFile, found: list[Prediction]) -> ShareMap:

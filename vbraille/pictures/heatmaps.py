@@ -52,7 +52,10 @@ def draw_map(chart: ShareMap) -> Figure:
     """Draw a map: darker is more, and each field says its share in percent."""
     across = min(len(chart.panels), _ACROSS)
     down = -(-len(chart.panels) // across)
-    size = max(len(chart.columns) * 0.7 + 1.4, 3.2), max(len(chart.rows) * 0.45 + 1.2, 2.0)
+    size = (
+        max(len(chart.columns) * 0.7 + 1.4, 4.8 if across == 1 else 3.2),
+        max(len(chart.rows) * 0.45 + 1.2, 2.0),
+    )
     with styled():
         figure = Figure(figsize=(size[0] * across, size[1] * down + 0.5))
         FigureCanvasAgg(figure)
