@@ -20,7 +20,7 @@ def power(parser: ArgumentParser) -> None:
     _protocol(parser)
     parser.add_argument(
         "--effect",
-        action=Effect,
+        action=ExpectedShares,
         required=True,
         metavar="NAME=SHARE,…",
         help="Assume these shares of right answers, by condition; or one of them, and odds-ratio=R "
@@ -170,7 +170,7 @@ def _printed(parser: ArgumentParser) -> None:
     how.add_argument("--csv", action="store_true", help="Print the table as CSV.")
 
 
-class Effect(argparse.Action):
+class ExpectedShares(argparse.Action):
     """Pairs NAME=SHARE with commas between, gathered in a dictionary."""
 
     def __call__(
