@@ -15,6 +15,7 @@ from vbraille.forecast.kept import KeptResults, work_on
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.session import Session
+from vbraille.sessions.simulated.observer import SKINS
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -120,7 +121,7 @@ def pilot(
     """
     if not 1 <= participants <= MOST_PILOTS:
         raise InputError(f"{setting('participants')} is {participants}; it must be 1 to 500")
-    answers = f"simulated:{noise:g}:{skin}"
+    answers = f"simulated:{noise:g}" + ("" if skin == SKINS[0] else f":{skin}")
     tasks = [
         PilotTask(
             text=protocol.text,
