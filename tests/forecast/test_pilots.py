@@ -42,7 +42,7 @@ def test_titles_and_rows_are_marked(tmp_path):
     assert MARK in results.title
     assert all(MARK in table.title for table in results.result_tables())
     assert all(MARK in figure.chart.title for figure in results.figures())
-    assert mark_rows('a,b\n1,"x, y"\n') == f'a,b,answers_from_whom\n1,"x, y","{MARK}"\n'
+    assert mark_rows('a,b\n1,"x, y"\n') == f'a,b,"{MARK}"\n1,"x, y",yes\n'
 
 
 @heavy

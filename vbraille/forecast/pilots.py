@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
 
 MARK = "simulated reader, no data about people"
-MARK_COLUMN = "answers_from_whom"
 MOST_PILOTS = 500
 ABOUT, REPORT = "pilot.json", "report"
 _TOLD = (
@@ -215,5 +214,5 @@ def mark_rows(text: str) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     for number, row in enumerate(rows):
-        writer.writerow([*row, MARK if number else MARK_COLUMN])
+        writer.writerow([*row, "yes" if number else MARK])
     return out.getvalue()
