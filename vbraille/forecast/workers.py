@@ -28,6 +28,8 @@ MOST_WORKERS = 256
 HOW_TO_GET_DASK = "pip install 'vbraille[sweeps]' installs it"
 _ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:[\w.-]+|\[[0-9a-fA-F:]+\]):[0-9]{1,5}")
 _PATIENCE_S = 10  # for a cluster to answer
+# Turns of a worker: at each it waits until this process, on a busy machine, gives it more.
+_TURNS = 8
 # Threads of linear algebra beside those of other workers would only take turns with them.
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -142,7 +144,7 @@ def _on_processes(
                 *graph,
                 scheduler="processes",
                 num_workers=number,
-                chunksize=1,
+                chunksize=max(1, len(tasks) // (number * _TURNS)),
                 optimize_graph=False,
                 initializer=_begin_worker,
             )
