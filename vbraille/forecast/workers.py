@@ -124,8 +124,8 @@ def _on_processes(
 ) -> None:
     from concurrent.futures.process import BrokenProcessPool
 
-    import dask
-    from dask.callbacks import Callback
+    import dask  # pyright: ignore[reportMissingImports]
+    from dask.callbacks import Callback  # pyright: ignore[reportMissingImports]
 
     keys = {f"task-{number}": number for number in range(len(tasks))}
     delayed = dask.delayed(function, pure=False)  # pyright: ignore[reportPrivateImportUsage]
@@ -183,8 +183,8 @@ def _on_cluster(
 ) -> None:
     import logging
 
-    import dask
-    from distributed import Client, as_completed
+    import dask  # pyright: ignore[reportMissingImports]
+    from distributed import Client, as_completed  # pyright: ignore[reportMissingImports]
 
     # What it would log of a lost connection is said in one sentence instead.
     for name in ("asyncio", *logging.root.manager.loggerDict):

@@ -62,7 +62,7 @@ DEPTH_MM = 0.75
 _ARRAY = 40  # pairs on either side of a receptor that stand for an array without end
 
 
-def strains_below(pairs: int, pitch_mm: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def strains_below(pairs: int, pitch_mm: float) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
     """Strain below each pair of contactors for a strain of 1 between each pair, equations 5 and 7.
 
     Parameters
@@ -91,12 +91,12 @@ def without_receptors(pairs: int, pitch_mm: float) -> int:
     return min(too_near, (pairs - 1) // 2)
 
 
-def _along(x_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+def _along(x_mm: NDArray[np.floating]) -> NDArray[np.floating]:
     z = DEPTH_MM
     return (np.arctan(x_mm / z) - x_mm * z / (x_mm**2 + z**2)) / np.pi
 
 
-def _shear(x_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+def _shear(x_mm: NDArray[np.floating]) -> NDArray[np.floating]:
     squares = x_mm**2 + DEPTH_MM**2
     return (np.log(squares) / 2 + DEPTH_MM**2 / squares) / np.pi
 
