@@ -205,7 +205,8 @@ def predict_point(task: GridTask) -> list[int]:
         shown = style.mapping.shown_dots()
         wanted = [mask & shown for mask in masks]
         for _ in range(grid.answers):
-            right = np.equal(observer.answer(touch, random), wanted)
+            answer = observer.answer(touch, random)
+            right = np.array([one == other for one, other in zip(answer, wanted, strict=True)])
             counts += (right.size, int(right.sum()), 1, int(right.all()))
     return counts.tolist()
 

@@ -104,7 +104,7 @@ def log_odds_of(share: float, spread: float) -> float:
     def off(middle: float) -> float:
         return float(expit(middle + spread * _NODES) @ weights) - share
 
-    return float(brentq(off, -_MOST_LOG_ODDS, _MOST_LOG_ODDS))
+    return float(brentq(off, -_MOST_LOG_ODDS, _MOST_LOG_ODDS))  # pyright: ignore[reportArgumentType]
 
 
 def simulate(task: StudyTask) -> NDArray[np.int64]:
