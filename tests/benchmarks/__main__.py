@@ -17,6 +17,7 @@ PARTS = (
     "jumps",
     "sessions",
     "adaptive",
+    "power",
     "analysis",
     "coverage",
     "trials_coverage",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import lab, live, reading
+from vbraille.cli.options import forecast, lab, live, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -88,6 +88,16 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         lab.analyse,
         "vbraille analyse P01-letters-* P02-letters-* --out report",
     ),
+    "power": (
+        "Say how often a study of a protocol would find an effect, by simulation.",
+        forecast.power,
+        "vbraille power letters --effect T0=0.5,T25=0.56,T100=0.64 --participants 4-40",
+    ),
+    "predict": (
+        "Say what the simulated reader would read, over a grid of styles, texts and speeds.",
+        forecast.predict,
+        "vbraille predict grid.toml --out predicted --workers 2",
+    ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
         reading.tables,
@@ -132,6 +142,11 @@ SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
         "Go on with a session at the next trial of the same order.",
         lab.session_resume,
         "vbraille session resume P07-legibility-20261121-101500",
+    ),
+    "pilot": (
+        "Conduct a whole study with the simulated reader, its report and all.",
+        forecast.session_pilot,
+        "vbraille session pilot letters --participants 20 --workers 2",
     ),
     "export": (
         "Make tables of a session.",

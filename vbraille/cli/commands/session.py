@@ -154,7 +154,32 @@ def _check(arguments: argparse.Namespace) -> int:
     return 0 if good else 1
 
 
+def _pilot(arguments: argparse.Namespace) -> int:
+    from vbraille.cli.progress import WorkProgress
+    from vbraille.forecast.pilots import MARK, pilot
+    from vbraille.forecast.workers import Workers
+
+    protocol = load_protocol(arguments.protocol)
+    folder = Path(arguments.out or f"pilot-{protocol.name}")
+    workers = Workers(arguments.workers).available(_warn)
+    with WorkProgress() as progress:
+        report = pilot(
+            protocol,
+            arguments.participants,
+            folder,
+            workers,
+            noise=arguments.noise,
+            skin=arguments.skin,
+            seed=arguments.seed,
+            told=progress.at,
+        )
+    _say(f"pilot: {arguments.participants} sessions of {protocol.name}; {MARK}")
+    _say(f"written: {report / 'report.html'}")
+    return 0
+
+
 _ACTIONS = {
+    "pilot": _pilot,
     "protocols": _protocols,
     "plan": _plan,
     "run": _run,

@@ -28,7 +28,7 @@ from vbraille.sessions.planning.questions import (
     WhichQuestion,
 )
 from vbraille.sessions.simulated import judging
-from vbraille.sessions.simulated.observer import Observer
+from vbraille.sessions.simulated.observer import SKINS, Observer
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -197,17 +197,27 @@ class Simulated:
         number and the attempt of the trial.
     noise
         Noise of the reader, described at `vbraille.sessions.simulated.observer`.
+    skin
+        Model of the skin, one of `vbraille.sessions.simulated.observer.SKINS`.
 
     Raises
     ------
     InputError
-        If the protocol is for paper, or the noise is out of range.
+        If the protocol is for paper, the noise is out of range, or there is no such skin.
     """
 
     typed = False
     felt = True
 
-    def __init__(self, protocol: Design, plan: Plan, noise: float = 0.0) -> None:
+    def __init__(
+        self, protocol: Design, plan: Plan, noise: float = 0.0, skin: str = SKINS[0]
+    ) -> None:
+        chosen = next((one for one in SKINS if one == skin), None)
+        if chosen is None:
+            raise InputError(
+                f"there is no skin {skin!r}; give {' or '.join(SKINS)}, as in "
+                f"simulated:0.2:{SKINS[-1]}"
+            )
         if protocol.medium == "paper":
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
@@ -215,7 +225,7 @@ class Simulated:
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
-        self.name = f"simulated:{noise:g}"
+        self.name = f"simulated:{noise:g}" + (f":{skin}" if skin != SKINS[0] else "")
         model: Model = protocol.model
         likes = isinstance(protocol.asks, WhichQuestion) and protocol.asks.right is None
         if likes and protocol.parameter not in _COMPARED:
@@ -227,7 +237,7 @@ class Simulated:
         def told(condition: Condition) -> Observer:
             style = protocol.style_of(condition)
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
-            return Observer(model.display, style, noise=noise)
+            return Observer(model.display, style, noise=noise, skin=chosen)
 
         self._noise = noise
         self._observers = {c.name: told(c) for c in protocol.conditions}
@@ -309,7 +319,9 @@ def seed_of(text: str) -> int:
 
 
 def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> Answers:
-    """Make the source of answers for a spec: ``typed``, ``simulated[:NOISE]``, or a file's name.
+    """Make the source of answers for a spec.
+
+    That is ``typed``, ``simulated[:NOISE[:SKIN]]``, or a file's name.
 
     Raises
     ------
@@ -322,10 +334,12 @@ def parse_answers(spec: str, protocol: Design, plan: Plan, after: int = 0) -> An
     if spec == PROGRAM:
         raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     if kind == "simulated":
+        number, _, skin = noise.partition(":")
         try:
-            answers = Simulated(protocol, plan, float(noise or 0.0))
+            loud = float(number or 0.0)
         except ValueError:
-            raise InputError(f"noise is {noise!r}; give a number, such as simulated:0.2") from None
+            raise InputError(f"noise is {number!r}; give a number, such as simulated:0.2") from None
+        answers = Simulated(protocol, plan, loud, skin or SKINS[0])
     else:
         from difflib import get_close_matches  # takes long to load
 

@@ -184,21 +184,32 @@ class Rates:
 
     def rms(self, left_mm: float, right_mm: float, sigma_mm: float) -> NDArray[np.float64]:
         """Rms rate between two places by equation 3; float64[channels], NaN if not felt there."""
+        smooth, felt = self._smoothed(left_mm, right_mm, sigma_mm)
+        rate = np.diff(smooth, axis=1) / self._step_mm
+        return _rms(rate, felt)
+
+    def rms_of_values(
+        self, left_mm: float, right_mm: float, sigma_mm: float
+    ) -> NDArray[np.float64]:
+        """Rms of the smoothed wave itself; float64[channels], NaN if it was not felt there."""
+        smooth, felt = self._smoothed(left_mm, right_mm, sigma_mm)
+        return _rms((smooth[:, 1:] + smooth[:, :-1]) / 2, felt)
+
+    def _smoothed(
+        self, left_mm: float, right_mm: float, sigma_mm: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Smoothed wave at points between two places, and whether each step between was felt."""
         first = math.ceil((left_mm - self._start_mm) / self._step_mm)
         count = math.floor((right_mm - self._start_mm) / self._step_mm) - first + 1
         middle_mm = self._start_mm + (first + np.arange(count - 1) + 0.5) * self._step_mm
         felt = self._covered(middle_mm)
-        if np.mean(felt) < _REACHED:
-            return np.full(len(self._weights) - 1, np.nan)
         reach = math.ceil(_TAILS * sigma_mm / self._step_mm)
         kernel = np.exp(-((np.arange(-reach, reach + 1) * self._step_mm / sigma_mm) ** 2) / 2)
         total, *sums = (
             np.convolve(self._cut(row, first - reach, count + 2 * reach), kernel, "valid")
             for row in self._weights
         )
-        smooth = np.array(sums) / np.maximum(total, np.finfo(float).tiny)
-        rate = np.diff(smooth, axis=1) / self._step_mm
-        return np.sqrt(np.mean(rate[:, felt] ** 2, axis=1))
+        return np.array(sums) / np.maximum(total, np.finfo(float).tiny), felt
 
     def _covered(self, at_mm: NDArray[np.floating]) -> NDArray[np.bool_]:
         after = np.searchsorted(self._u_mm, at_mm)
@@ -213,3 +224,10 @@ class Rates:
         low, high = max(first, 0), min(first + count, row.size)
         cut[low - first : high - first] = row[low:high]
         return cut
+
+
+def _rms(values: NDArray[np.float64], felt: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Root mean square of what was felt, by channel; NaN if too little of the way was."""
+    if np.mean(felt) < _REACHED:
+        return np.full(len(values), np.nan)
+    return np.sqrt(np.mean(values[:, felt] ** 2, axis=1))

@@ -1,0 +1,81 @@
+"""Predictions over a grid: each point once, the same on any workers, with a map."""
+
+import pytest
+
+from vbraille.errors import InputError
+from vbraille.forecast.grids import predict, read_grid, to_json
+from vbraille.forecast.maps import map_of
+from vbraille.forecast.workers import Workers
+from vbraille.pictures.figurefiles import to_bytes
+from vbraille.pictures.heatmaps import draw_map
+
+GRID = """format = 1
+model = "vbd"
+speeds_mm_s = [300.0, 600.0]
+noise = 0.3
+answers = 5
+[texts]
+one = ["c"]
+two = ["ca"]
+[style]
+contrast = [0.05, 1.0]
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "grid.toml"
+    path.write_text(GRID)
+    return str(path)
+
+
+def test_each_point_is_predicted_once(path):
+    grid, found, ended = predict(path, Workers())
+    assert ended is None
+    assert [one.point for one in found] == grid.points()
+    assert len(found) == 8
+    one = found[2]  # two cells, answered five times
+    assert (one.characters, one.strings) == (10, 5)
+    assert one.right == round(10 * one.legibility)
+    assert predict(path, Workers())[1] == found
+    assert "no data about people" in found[0].row()["answers_from_whom"]
+    assert "no data about people" in to_json(grid, found)["about"]
+
+
+def test_without_noise_all_is_read(path, tmp_path):
+    (tmp_path / "grid.toml").write_text(GRID.replace("0.3", "0.0"))
+    assert {one.legibility for one in predict(path, Workers())[1]} == {1.0}
+
+
+def test_a_map_has_every_share_in_its_place(path):
+    grid, found, _ = predict(path, Workers())
+    chart = map_of(grid, found)
+    assert (chart.down, chart.across) == ("contrast", "speed_mm_s")
+    assert [panel.title for panel in chart.panels] == ["text one", "text two"]
+    first, second = found[4:6]  # contrast 1, text one
+    assert chart.panels[0].shares[1] == (first.legibility, second.legibility)
+    assert map_of(grid, found[1:]).panels[0].shares[0][0] is None
+    drawn = to_bytes(draw_map(chart), "svg")
+    assert b"no data about people" in drawn
+    assert drawn == to_bytes(draw_map(chart), "svg")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("contrast = [0.05, 1.0]", "colour = [1.0]", "has 'colour'"),
+        ("[0.05, 1.0]", "[1.5]", "contrast"),
+        ("[0.05, 1.0]", "[]", "has no value; give one or more"),
+        ("[0.05, 1.0]", "[1.0, 1.0]", "has a value twice"),
+        ("[300.0, 600.0]", "[0.0]", "speeds_mm_s: one is 0 mm/s; it must be 1 to 1000"),
+        ('"vbd"', '"vdb"', "model is 'vdb'"),
+        ('["c"]', "[]", "has no string"),
+        ("answers = 5", "answers = 0", "answers is 0"),
+        ("format = 1", "format = 2", "format"),
+    ],
+)
+def test_a_grid_that_cannot_be_used_is_refused(old, new, sentence):
+    with pytest.raises(InputError, match=r"grid\.toml") as caught:
+        read_grid(GRID.replace(old, new), "grid.toml")
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,93 @@
+"""Pilots: a whole study with the simulated reader, every file of it marked."""
+
+import csv
+
+import pytest
+
+from tests.tiers import heavy
+from vbraille.analysis import analyse
+from vbraille.errors import InputError
+from vbraille.forecast.pilots import MARK, mark_rows, marked, pilot
+from vbraille.forecast.workers import Workers
+from vbraille.sessions.planning.protocolfiles import parse_protocol
+
+TEXT = """format = 1
+name = "two"
+title = "Two"
+source = "ours"
+model = "vbd"
+[design]
+kind = "combinations"
+characters = ["a", "c"]
+length = 1
+[[conditions]]
+name = "T0"
+texture = 0.0
+[[conditions]]
+name = "T100"
+texture = 1.0
+"""
+TWO = parse_protocol(TEXT, "two.toml")
+
+
+def piloted(folder, **changed):
+    given = {"noise": 0.4, "skin": "strain", "seed": 3} | changed
+    return pilot(TWO, given.pop("participants", 2), folder, Workers(), **given)
+
+
+def test_titles_and_rows_are_marked(tmp_path):
+    table = tmp_path / "trials.csv"
+    table.write_text("participant,condition,presented,answered\nP1,T0,ab,ab\nP1,T1,ca,c?\n")
+    results = marked(analyse([table]))
+    assert MARK in results.title
+    assert all(MARK in table.title for table in results.result_tables())
+    assert all(MARK in figure.chart.title for figure in results.figures())
+    assert mark_rows('a,b\n1,"x, y"\n') == f'a,b,"{MARK}"\n1,"x, y",yes\n'
+
+
+@heavy
+def test_a_pilot_has_all_sessions_and_a_report_that_is_marked(tmp_path):
+    report = piloted(tmp_path / "pilot")
+    files = [path for path in report.rglob("*") if path.is_file()]
+    texts = [path for path in files if path.suffix in (".csv", ".md", ".html", ".svg", ".json")]
+    assert len(texts) > 10
+    assert [path for path in texts if MARK not in path.read_text()] == []
+    with (report / "trials.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 4
+    assert {row["participant"] for row in rows} == {"SIM001", "SIM002"}
+    with pytest.raises(InputError, match="has this pilot already"):
+        piloted(tmp_path / "pilot")
+    with pytest.raises(InputError, match="is there already"):
+        piloted(tmp_path / "pilot", seed=4)
+
+
+@heavy
+def test_a_pilot_that_was_ended_goes_on_and_is_the_same(tmp_path):
+    def answers(report):
+        with (report / "trials.csv").open() as file:
+            return [(row["participant"], row["presented"], row["answered"])
+                    for row in csv.DictReader(file)]  # fmt: skip
+
+    def stop(done, _all):
+        if done == 1:
+            raise KeyboardInterrupt
+
+    whole = answers(piloted(tmp_path / "whole"))
+    with pytest.raises(KeyboardInterrupt):
+        piloted(tmp_path / "ended", told=stop)
+    assert answers(piloted(tmp_path / "ended")) == whole
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"participants": 0}, "is 0; it must be 1 to 500"),
+        ({"noise": 101.0}, "noise is 101; it must be 0 to 100"),
+        ({"skin": "leather"}, "no skin 'leather'; give strain or halfspace"),
+    ],
+)
+def test_what_cannot_be_piloted_leaves_nothing(changed, sentence, tmp_path):
+    with pytest.raises(InputError, match=sentence):
+        piloted(tmp_path / "pilot", **changed)
+    assert not (tmp_path / "pilot").exists()

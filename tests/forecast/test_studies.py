@@ -1,0 +1,90 @@
+"""Simulated studies: the same however they are portioned, with the shares asked for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import expit
+
+from vbraille.analysis.statistics.correction import adjust
+from vbraille.forecast.studies import (
+    StudyPlan,
+    StudyTask,
+    _corrected,
+    count_found,
+    log_odds_of,
+    mean_and_spread,
+    simulate,
+)
+
+PLAN = StudyPlan(
+    trials=((26, 26, 20),) * 8,
+    log_odds=(0.0, 0.3, 1.0),
+    between=0.5,
+    differing=0.3,
+    sizes=(5, 8),
+    test="model",
+    correction="holm",
+    alpha=0.05,
+)
+
+
+def test_studies_are_the_same_in_whatever_portions():
+    whole = simulate(StudyTask(PLAN, 7, 0, 6))
+    parts = [simulate(StudyTask(PLAN, 7, first, 2)) for first in (0, 2, 4)]
+    assert np.array_equal(whole, np.concatenate(parts))
+    assert not np.array_equal(whole, simulate(StudyTask(PLAN, 8, 0, 6)))
+
+
+def test_a_smaller_study_is_the_beginning_of_a_larger_one():
+    smaller = replace(PLAN, trials=PLAN.trials[:5])
+    whole = simulate(StudyTask(PLAN, 7, 0, 4))
+    assert np.array_equal(whole[:, :5], simulate(StudyTask(smaller, 7, 0, 4)))
+
+
+def test_participants_have_trials_in_the_conditions_of_their_own_alone():
+    groups = replace(PLAN, trials=((10, 0, 5), (0, 20, 5)) * 4, log_odds=(39.0, 39.0, -39.0))
+    correct = simulate(StudyTask(groups, 7, 0, 2))
+    assert correct[0, :2].tolist() == [[10, 0, 0], [0, 20, 0]]
+
+
+@pytest.mark.parametrize(("share", "spread"), [(0.5, 0.0), (0.64, 0.5), (0.97, 1.5)])
+def test_the_population_has_the_share_asked_for(share, spread):
+    people = np.random.default_rng(1).standard_normal(400_000)
+    assert expit(log_odds_of(share, spread) + spread * people).mean() == pytest.approx(
+        share, abs=0.001
+    )
+
+
+def test_shares_differ_as_the_closed_form_says():
+    correct = simulate(StudyTask(PLAN, 7, 0, 2500)) / np.array(PLAN.trials)
+    apart = (correct[..., 0] - correct[..., 2]).ravel()
+    mean, spread = mean_and_spread(PLAN, 0, 2, PLAN.trials[0])
+    assert apart.mean() == pytest.approx(mean, abs=4 * spread / 20_000**0.5)
+    assert apart.std() == pytest.approx(spread, rel=0.02)
+    half = mean_and_spread(PLAN, 1, None, PLAN.trials[0])
+    assert correct[..., 1].mean() - 0.5 == pytest.approx(half[0], abs=4 * half[1] / 20_000**0.5)
+    assert correct[..., 1].std() == pytest.approx(half[1], rel=0.02)
+
+
+def test_p_values_of_a_study_are_corrected_as_the_analysis_does():
+    p = np.random.default_rng(3).random((20, 3)) / 10
+    missing = p.copy()
+    missing[4, 1] = np.nan
+    for given in (p, missing):
+        for own, corrected in zip(given, _corrected(given, "holm"), strict=True):
+            known = ~np.isnan(own)
+            assert np.allclose(corrected[known], adjust(own[known], "holm"), rtol=1e-12)
+            assert np.isnan(corrected[~known]).all()
+
+
+def test_what_differs_is_found_and_what_does_not_is_not():
+    counts = count_found(StudyTask(replace(PLAN, log_odds=(0.0, 0.0, 3.0)), 7, 0, 40))
+    (_, _), (alike, one) = (size[:2] for size in counts)
+    assert alike[0] <= 6
+    assert one[0] >= 35
+
+
+def test_a_study_in_which_nobody_differs_is_told_of():
+    sure = replace(PLAN, log_odds=(39.0, 39.0, -39.0), between=0.0, differing=0.0, test="paired")
+    assert count_found(StudyTask(sure, 7, 0, 3))[0][0] == [0, 3]

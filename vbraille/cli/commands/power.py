@@ -1,0 +1,76 @@
+"""``vbraille power``."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vbraille.cli.progress import WorkProgress
+from vbraille.forecast.power import ENOUGH, SEED, PowerQuestion, PowerRow, power
+from vbraille.forecast.workers import Workers
+from vbraille.sessions.planning.protocolfiles import load_protocol
+from vbraille.wording import count, printable
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from vbraille.forecast.power import PowerTable
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate studies of a protocol, and say how many found the effect."""
+    question = PowerQuestion(
+        protocol=load_protocol(arguments.protocol),
+        effect=arguments.effect,
+        sizes=arguments.participants,
+        between=arguments.between,
+        differing=arguments.differing,
+        test=arguments.test,
+        correction=arguments.correction,
+        studies=arguments.studies,
+        seed=SEED if arguments.seed is None else arguments.seed,
+    )
+    workers = Workers(arguments.workers, arguments.cluster).available(_warn)
+    keep = None if arguments.keep is None else Path(arguments.keep)
+    with WorkProgress() as progress:
+        table = power(question, workers, keep=keep, told=progress.at)
+    if arguments.json:
+        json.dump(table.to_json(), sys.stdout, ensure_ascii=False, indent=1)
+        print()
+    elif arguments.csv:
+        rows = csv.DictWriter(sys.stdout, [field.name for field in fields(PowerRow)])
+        rows.writeheader()
+        rows.writerows(map(asdict, table.rows))
+    else:
+        for line in _lines(table):
+            print(printable(line))
+    if table.unfinished is not None:
+        sys.stdout.flush()
+        raise table.unfinished
+    return 0
+
+
+def _lines(table: PowerTable) -> Iterator[str]:
+    for word, sentence in table.about:
+        yield f"{word}: {sentence}"
+    for row in table.rows:
+        closed = "" if row.closed_form is None else f"; if normal {row.closed_form:.1%}"
+        untested = f"; without a p {row.untested}" if row.untested else ""
+        line = (
+            f"{count(row.participants, 'participant')}: {row.first} against {row.second}; "
+            f"power {row.power:.1%}, {row.low:.1%} to {row.high:.1%}{closed}{untested}"
+        )
+        yield line.replace("%", " %")
+    largest = max(row.participants for row in table.rows)
+    for (first, second), least in table.enough().items():
+        who = f"more than {largest}" if least is None else f"{least}"
+        yield f"for a power of {100 * ENOUGH:.0f} %: {first} against {second}; {who} participants"
+
+
+def _warn(sentence: str) -> None:
+    print(printable(sentence), file=sys.stderr, flush=True)

@@ -1,0 +1,68 @@
+"""``vbraille predict``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vbraille.cli.progress import WorkProgress
+from vbraille.files import check_free, write_folder
+from vbraille.forecast.grids import predict, to_json
+from vbraille.forecast.workers import Workers
+from vbraille.wording import printable
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.forecast.grids import Prediction
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Ask the simulated reader about each point of a grid."""
+    out = None if arguments.out is None else Path(arguments.out)
+    if out is not None:
+        check_free(out)
+    workers = Workers(arguments.workers, arguments.cluster).available(_warn)
+    keep = None if arguments.keep is None else Path(arguments.keep)
+    with WorkProgress() as progress:
+        grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.at)
+    if out is not None:
+        from vbraille.forecast.maps import map_of
+        from vbraille.pictures.figurefiles import to_bytes
+        from vbraille.pictures.heatmaps import draw_map
+
+        figure = draw_map(map_of(grid, found))
+        files = {f"map.{kind}": to_bytes(figure, kind) for kind in ("png", "svg")}
+        write_folder(out, {"predictions.csv": _csv(found).encode(), **files})
+    if arguments.json:
+        json.dump(to_json(grid, found), sys.stdout, ensure_ascii=False, indent=1)
+        print()
+    elif arguments.csv:
+        sys.stdout.write(_csv(found))
+    else:
+        print("predicted: by the simulated reader, no data about people")
+        for one in found:
+            where = ", ".join(f"{name} {value}" for name, value in one.point.items())
+            print(printable(f"{where}: {100 * one.legibility:.1f} % of the characters right"))
+        if out is not None:
+            print(printable(f"written: {out / 'predictions.csv'}, map.png, map.svg"))
+    if ended is not None:
+        sys.stdout.flush()
+        raise ended
+    return 0
+
+
+def _csv(found: list[Prediction]) -> str:
+    out = io.StringIO()
+    rows = csv.DictWriter(out, list(found[0].row()), lineterminator="\n")
+    rows.writeheader()
+    rows.writerows(one.row() for one in found)
+    return out.getvalue()
+
+
+def _warn(sentence: str) -> None:
+    print(printable(sentence), file=sys.stderr, flush=True)

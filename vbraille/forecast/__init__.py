@@ -1,0 +1,6 @@
+"""What a study will show before anybody takes part: power, pilots, and maps of predictions.
+
+`workers` spreads work over processes. `power` simulates studies of a protocol's own design and
+analysis; `pilots` conducts its sessions with the simulated reader; `grids` asks the simulated
+reader about a grid of styles, texts and speeds. Nothing made here is data about people.
+"""

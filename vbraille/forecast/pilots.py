@@ -1,0 +1,218 @@
+"""Pilots: a protocol's sessions with the simulated reader, and their report, all so marked."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vbraille.errors import InputError, VbrailleError
+from vbraille.files import check_free, write_file
+from vbraille.forecast.kept import KeptResults, work_on
+from vbraille.sessions.conditions import Conditions
+from vbraille.sessions.planning.protocolfiles import parse_protocol
+from vbraille.sessions.session import Session
+from vbraille.sessions.simulated.observer import SKINS
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.analysis.results import Results
+    from vbraille.analysis.schemas import ResultTable
+    from vbraille.forecast.workers import Workers
+    from vbraille.sessions.planning.protocol import Protocol
+
+MARK = "simulated reader, no data about people"
+MOST_PILOTS = 500
+ABOUT, REPORT = "pilot.json", "report"
+_TOLD = (
+    "A simulated reader answered in all sessions here. Nothing in this directory is data about "
+    "people.\n"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PilotTask:
+    """A session of one simulated participant.
+
+    Parameters
+    ----------
+    text, where
+        The protocol's file: its content, and what messages call it.
+    participant
+        Pseudonym, which tells that nobody is meant.
+    seed
+        What the plan, the hand and the noise are drawn by, together with the pseudonym.
+    answers
+        Source of the answers, such as ``simulated:0.4``.
+    hand
+        What moves the simulated device.
+    folder
+        Directory of the session.
+    """
+
+    text: str
+    where: str
+    participant: str
+    seed: int
+    answers: str
+    hand: str
+    folder: str
+
+
+def conduct(task: PilotTask) -> int:
+    """Conduct a session as fast as the machine can, or go on with it, and count its trials."""
+    folder = Path(task.folder)
+    if folder.exists():
+        session = Session.resume(folder)
+    else:
+        protocol = parse_protocol(task.text, task.where)
+        session = Session.create(
+            protocol,
+            task.participant,
+            folder=folder,
+            seed=task.seed,
+            conditions=Conditions(answers=task.answers, hand=task.hand, fast=True, sound="none"),
+        )
+    return session.run().progress.done
+
+
+def pilot(
+    protocol: Protocol,
+    participants: int,
+    folder: Path,
+    workers: Workers,
+    *,
+    noise: float,
+    skin: str,
+    seed: int,
+    told: Callable[[int, int], None] = lambda _done, _all: None,
+) -> Path:
+    """Conduct the sessions of a pilot, write its report, and give the report's directory.
+
+    Parameters
+    ----------
+    protocol
+        Protocol that is tried.
+    participants
+        Number of simulated participants.
+    folder
+        New directory; or that of the same pilot, ended early, which then goes on.
+    workers
+        Who conducts the sessions; they are the same whoever does.
+    noise, skin
+        Noise of the simulated reader and model of its skin.
+    seed
+        What plans, hands and noise are drawn by.
+    told
+        Function that is told how many sessions are done, and how many there are.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used, or the directory is of something else.
+    VbrailleError
+        If the work ended early.
+    """
+    if not 1 <= participants <= MOST_PILOTS:
+        raise InputError(f"{setting('participants')} is {participants}; it must be 1 to 500")
+    answers = f"simulated:{noise:g}" + ("" if skin == SKINS[0] else f":{skin}")
+    tasks = [
+        PilotTask(
+            text=protocol.text,
+            where=protocol.name,
+            participant=name,
+            seed=seed,
+            answers=answers,
+            hand="slow",
+            folder=str(folder / name),
+        )
+        for name in (f"SIM{number:03}" for number in range(1, participants + 1))
+    ]
+    about = {"mark": MARK, "protocol": protocol.text, "participants": participants, "seed": seed,
+             "answers": answers}  # fmt: skip
+    _begin(folder, about, tasks[0])
+    ended = work_on(workers, conduct, tasks, _kept(folder, tasks), told)
+    if ended is not None:
+        raise VbrailleError(f"{ended}; the same command goes on with {folder}")
+    from vbraille.analysis import analyse
+    from vbraille.analysis.report.written import write_report
+
+    results = marked(analyse([task.folder for task in tasks], seed=seed))
+    for path in write_report(results, folder / REPORT):
+        if path.suffix == ".csv":
+            write_file(path, mark_rows(path.read_text("utf-8")).encode(), replace=True)
+    return folder / REPORT
+
+
+def _begin(folder: Path, about: dict[str, Any], first: PilotTask) -> None:
+    """Make the directory of a pilot, or see that it is this pilot's."""
+    path = folder / ABOUT
+    content = (json.dumps(about, ensure_ascii=False, indent=1) + "\n").encode()
+    if path.exists() and path.read_bytes() == content:
+        if (folder / REPORT).exists():
+            raise InputError(f"{folder} has this pilot already, with its report; look there")
+        return
+    check_free(folder)
+    # Made once so that what cannot be used is known before there is a directory.
+    conditions = Conditions(answers=first.answers, hand=first.hand, fast=True)
+    protocol = parse_protocol(first.text, first.where)
+    Session.create(
+        protocol, first.participant, folder=first.folder, seed=first.seed, conditions=conditions
+    ).answers()
+    folder.mkdir(parents=True, exist_ok=True)
+    write_file(path, content)
+    write_file(folder / "README.txt", _TOLD.encode())
+
+
+def _kept(folder: Path, tasks: list[PilotTask]) -> KeptResults:
+    """Sessions of the pilot that have ended, by the numbers of their tasks."""
+    from vbraille.sessions.record.folder import load
+    from vbraille.sessions.record.progress import Progress
+
+    kept = KeptResults(None, {})
+    for number, task in enumerate(tasks):
+        if (folder / task.participant).exists():
+            record = load(Path(task.folder))
+            if Progress(record.plan, record.told.events, record.procedure).ended:
+                kept.found[number] = len(record.plan.trials)
+    return kept
+
+
+def marked(results: Results) -> Results:
+    """Results in which every title says that no people were asked."""
+
+    def table(one: ResultTable) -> ResultTable:
+        return replace(one, schema=replace(one.schema, title=f"{one.schema.title} ({MARK})"))
+
+    chapters = tuple(
+        replace(
+            chapter,
+            title=f"{chapter.title} ({MARK})",
+            tables=tuple(map(table, chapter.tables)),
+            figures=tuple(
+                replace(
+                    figure,
+                    title=f"{figure.title} ({MARK})",
+                    chart=replace(figure.chart, title=f"{figure.chart.title} ({MARK})"),
+                )
+                for figure in chapter.figures
+            ),
+        )
+        for chapter in results.chapters
+    )
+    return replace(results, title=f"{results.title} ({MARK})", chapters=chapters)
+
+
+def mark_rows(text: str) -> str:
+    """Table in CSV with a column in each row that says that no people were asked."""
+    rows = list(csv.reader(io.StringIO(text)))
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    for number, row in enumerate(rows):
+        writer.writerow([*row, "yes" if number else MARK])
+    return out.getvalue()

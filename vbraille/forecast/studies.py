@@ -1,0 +1,211 @@
+"""Studies of a design simulated and tested, thousands at a time.
+
+Of each participant, the log odds of a right answer in a condition are
+
+    η = a_c + σ z + τ z_c,                                                        (1)
+
+with a_c of the condition, and z and z_c standard normal: σ is how much participants differ, τ how
+much the effect of a condition differs between them. a_c is chosen so that the share of right
+answers, averaged over the population, is the one that was asked for. Each trial is drawn by
+itself.
+
+A study has a random generator of its own, which follows from the seed and from the study's number
+alone, and a participant draws before the next one does. So the studies are the same in whatever
+portions they are made, and a study of 12 participants is the beginning of the one of 13.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import expit, ndtri
+
+from vbraille.analysis.statistics.correction import adjust
+from vbraille.analysis.statistics.marginalmeans import separate_cells
+from vbraille.analysis.statistics.paired import paired_p_values
+from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+_NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(80)
+_MOST_LOG_ODDS = 40.0
+
+
+@dataclass(frozen=True, slots=True)
+class StudyPlan:
+    """What is simulated and tested, the same in every study.
+
+    Parameters
+    ----------
+    trials : tuple[participants][conditions]
+        Trials of each participant in each condition, of as many participants as the largest
+        study has.
+    log_odds
+        a_c of each condition, by equation 1.
+    between, differing
+        σ and τ of equation 1.
+    sizes
+        Numbers of participants, each a study of its own.
+    test
+        "model" for the logistic model of trials; "paired" for a paired t-test of shares; "half"
+        for a t-test of shares in the first condition against one half.
+    correction
+        How the p-values of a study's pairs are corrected: a key of `correction.METHODS`.
+    alpha
+        Level at which a difference counts as found.
+    """
+
+    trials: tuple[tuple[int, ...], ...]
+    log_odds: tuple[float, ...]
+    between: float
+    differing: float
+    sizes: tuple[int, ...]
+    test: str
+    correction: str
+    alpha: float
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Conditions that are compared, first and second; one pair if shares are held to half."""
+        if self.test == "half":
+            return [(0, 0)]
+        return list(combinations(range(len(self.log_odds)), 2))
+
+
+@dataclass(frozen=True, slots=True)
+class StudyTask:
+    """Some studies of a plan, numbered from `first` on, drawn by `seed`."""
+
+    plan: StudyPlan
+    seed: int
+    first: int
+    studies: int
+
+
+def log_odds_of(share: float, spread: float) -> float:
+    """Log odds whose share of right answers is this when people's log odds differ by an s.d.
+
+    Parameters
+    ----------
+    share
+        Share of right answers averaged over the population, between 0 and 1.
+    spread
+        Standard deviation of people's log odds.
+    """
+    weights = _WEIGHTS / _WEIGHTS.sum()
+
+    def off(middle: float) -> float:
+        return float(expit(middle + spread * _NODES) @ weights) - share
+
+    return float(brentq(off, -_MOST_LOG_ODDS, _MOST_LOG_ODDS))  # pyright: ignore[reportArgumentType]
+
+
+def simulate(task: StudyTask) -> NDArray[np.int64]:
+    """Right answers of each participant in each condition; int64[studies, participants, c]."""
+    plan = task.plan
+    trials = np.asarray(plan.trials)
+    people, conditions = trials.shape
+    # The condition of each trial of each participant; conditions that are too many mean no trial.
+    place = np.arange(trials.sum(axis=1).max())
+    which = (place >= np.cumsum(trials, axis=1)[:, :, None]).sum(axis=1)
+    draws = np.empty((task.studies, people, 1 + conditions + place.size))
+    for study in range(task.studies):
+        sequence = np.random.SeedSequence(task.seed, spawn_key=(task.first + study,))
+        np.random.Generator(np.random.PCG64(sequence)).random(out=draws[study])
+    normal = ndtri(np.maximum(draws[..., : 1 + conditions], np.finfo(float).tiny))
+    log_odds = np.asarray(plan.log_odds) + plan.between * normal[..., :1]
+    shares = expit(log_odds + plan.differing * normal[..., 1:])
+    correct = np.empty((task.studies, people, conditions), np.int64)
+    for condition in range(conditions):
+        right = draws[..., 1 + conditions :] < shares[..., condition, None]
+        correct[..., condition] = (right & (which == condition)).sum(axis=-1)
+    return correct
+
+
+def count_found(task: StudyTask) -> list[list[list[int]]]:
+    """Simulate studies, test each, and count.
+
+    Returns
+    -------
+    list[sizes][pairs] of [found, untested]
+        Number of studies of each size whose corrected p is below the level, by pair; and of
+        those in which there is no p, since the participants do not differ.
+    """
+    plan, correct = task.plan, simulate(task)
+    trials = np.asarray(plan.trials)
+    counts = []
+    for size in plan.sizes:
+        p = _p_values(plan, correct[:, :size], trials[:size])
+        untested = np.isnan(p)
+        found = _corrected(p, plan.correction) < plan.alpha
+        counts.append(np.column_stack([found.sum(axis=0), untested.sum(axis=0)]).tolist())
+    return counts
+
+
+def _p_values(
+    plan: StudyPlan, correct: NDArray[np.int64], trials: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """P of each pair before correction; float64[studies, pairs], NaN where there is none."""
+    if plan.test == "model":
+        asked = np.broadcast_to(trials, correct.shape)
+        fit = fit_trials(correct, asked, separate_cells(*trials.shape))
+        unit = np.eye(trials.shape[1])
+        tested = [combine(fit, unit[one] - unit[two]).p_values() for one, two in plan.pairs]
+    else:
+        shares = correct / trials
+        if plan.test == "half":
+            return paired_p_values(shares[..., 0] - 0.5)[:, None]
+        tested = [paired_p_values(shares[..., one] - shares[..., two]) for one, two in plan.pairs]
+    return np.column_stack(tested)
+
+
+def _corrected(p: NDArray[np.float64], method: str) -> NDArray[np.float64]:
+    """p-values corrected in each study for the number of those that it has."""
+    if p.shape[1] == 1 or method == "none":
+        return p
+    corrected = np.full_like(p, np.nan)
+    known = ~np.isnan(p)
+    if method == "holm" and known.all():  # as `adjust` does, for all studies at once
+        order = np.argsort(p, axis=1, kind="stable")
+        steps = np.take_along_axis(p, order, axis=1) * np.arange(p.shape[1], 0, -1)
+        np.put_along_axis(corrected, order, np.maximum.accumulate(steps, axis=1), axis=1)
+        return np.minimum(corrected, 1.0)
+    for study, own in enumerate(known):
+        corrected[study, own] = adjust(p[study, own], method)
+    return corrected
+
+
+def mean_and_spread(
+    plan: StudyPlan, first: int, second: int | None, trials: Sequence[int]
+) -> tuple[float, float]:
+    """Mean and s.d. over people of a difference of shares, exactly; by equation 1.
+
+    Parameters
+    ----------
+    plan
+        What is simulated.
+    first, second
+        Conditions; the second is None for the difference of the first to one half.
+    trials
+        Trials of a participant in each condition.
+    """
+    weights = _WEIGHTS / _WEIGHTS.sum()
+    own: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
+    for condition in (first,) if second is None else (first, second):
+        # Shares given a participant's z, and what varies beside it.
+        log_odds = plan.log_odds[condition] + plan.between * _NODES
+        shares = expit(log_odds[:, None] + plan.differing * _NODES)
+        mean = shares @ weights
+        within = (shares * (1 - shares)) @ weights / trials[condition]
+        own.append((mean, within + (shares - mean[:, None]) ** 2 @ weights))
+    apart = own[0][0] - (0.5 if second is None else own[1][0])
+    mean = float(apart @ weights)
+    variance = sum(of[1] for of in own) @ weights + (apart - mean) ** 2 @ weights
+    return mean, float(np.sqrt(variance))
