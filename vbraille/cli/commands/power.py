@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.csv:
         rows = csv.DictWriter(sys.stdout, [field.name for field in fields(PowerRow)])
         rows.writeheader()
-        rows.writerows(map(asdict, table.rows))
+        rows.writerows([asdict(row) for row in table.rows])
     else:
         for line in _lines(table):
             print(printable(line))

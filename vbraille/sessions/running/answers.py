@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.simulated.observer import Parameter
+    from vbraille.sessions.simulated.observer import Skin
     from vbraille.sessions.simulated.skin import Exploration
 
 PROGRAM = "program"  # name that the record has for answers given by a program
@@ -234,13 +235,13 @@ class Simulated:
                 f"cannot; type the answers, or give a file of them"
             )
 
-        def told(condition: Condition) -> Observer:
+        def told(condition: Condition, skin: Skin) -> Observer:
             style = protocol.style_of(condition)
             style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
-            return Observer(model.display, style, noise=noise, skin=chosen)
+            return Observer(model.display, style, noise=noise, skin=skin)
 
         self._noise = noise
-        self._observers = {c.name: told(c) for c in protocol.conditions}
+        self._observers = {c.name: told(c, chosen) for c in protocol.conditions}
         self._lead_cells = protocol.lead_cells
         self._compared: Parameter | None = _COMPARED.get(protocol.parameter or "")
         self._question = protocol.asks
