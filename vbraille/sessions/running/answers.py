@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol as Design
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.simulated.observer import Parameter
-    from vbraille.sessions.simulated.observer import Skin
+    from vbraille.sessions.simulated.observer import Parameter, Skin
     from vbraille.sessions.simulated.skin import Exploration
 
 PROGRAM = "program"  # name that the record has for answers given by a program
@@ -213,7 +212,7 @@ class Simulated:
     def __init__(
         self, protocol: Design, plan: Plan, noise: float = 0.0, skin: str = SKINS[0]
     ) -> None:
-        chosen = next((one for one in SKINS if one == skin), None)
+        chosen: Skin | None = next((one for one in SKINS if one == skin), None)
         if chosen is None:
             raise InputError(
                 f"there is no skin {skin!r}; give {' or '.join(SKINS)}, as in "
