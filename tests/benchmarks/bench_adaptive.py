@@ -10,8 +10,8 @@ import numpy as np
 
 from tests.benchmarks.timing import Result
 from tests.benchmarks.tuned_people import KINDS, tune
-from vbraille.sessions.adaptive.estimates import GridAxis
-from vbraille.sessions.adaptive.questplus import (
+from vbraille.adaptive.estimates import GridAxis
+from vbraille.adaptive.questplus import (
     detection_quest,
     geometric,
     nearer_quest,
@@ -24,7 +24,7 @@ from vbraille.sessions.planning.protocolfiles import load_protocol
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.sessions.adaptive.questplus import GridQuest
+    from vbraille.adaptive.questplus import GridQuest
 
 PEOPLE, SEED = 500, 15
 TRIALS = 200

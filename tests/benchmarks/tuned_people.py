@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.sessions.adaptive.questplus import nearer_quest, ordered_pairs
+from vbraille.adaptive.questplus import nearer_quest, ordered_pairs
 from vbraille.sessions.planning.procedures import PREFERRED, QuestProcedure
 from vbraille.sessions.planning.protocolfiles import load_protocol
 
 if TYPE_CHECKING:
-    from vbraille.sessions.adaptive.questplus import GridQuest
+    from vbraille.adaptive.questplus import GridQuest
 
 ADAPTIVE_TRIALS, FIXED_REPEATS = 30, 6  # of the 15 pairs of six values, in either order: 90 trials
 

@@ -1,80 +1,132 @@
-"""Find out how braille feels best: two ways at a time, from far apart to close together.
+"""Find out how braille feels best, two ways at a time: whichever two tell most.
 
-Knob after knob, an interval is narrowed by golden sections: of two values in it the reader chooses
-one, and what lies beyond the other is given up. One of the two is felt again in the next choice. A
-course is a value that follows from the choices alone, so that it is undone, kept and taken up
-again by its list of choices.
+Knob after knob, of two values the reader chooses the one that is nearer to what is liked. Which two
+come next, and what is liked, follow from the choices so far by QUEST+ (`vbraille.adaptive`): a
+reader who is not sure, or errs, is asked again about what is in doubt. A course is a value that
+follows from the choices alone, so that it is undone, kept and taken up again by its list of
+choices.
 """
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from vbraille.adaptive.estimates import GridAxis
+from vbraille.adaptive.questplus import geometric, nearer_quest, ordered_pairs
 from vbraille.errors import InputError
 from vbraille.render.braille.knobs import KNOBS, StyleKnob, kept_values, obstacle, with_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from vbraille.adaptive.questplus import GridQuest
     from vbraille.render import Model
     from vbraille.render.braille.style import BrailleStyle
 
     Which = Literal[1, 2]
+    Compared = tuple[tuple[tuple[float, float], int], ...]
 
 ORDER = ("texture", "contrast", "dot_width_mm", "dot_spacing_mm")
-CHOICES_PER_KNOB = 5  # which narrow an interval to 9 % of its width
-FORMAT = 1
-_GOLDEN = 0.618033988749895
+CHOICES_PER_KNOB = 7  # at ten seconds each, the four knobs take five minutes
+FORMAT = 2
 _PLACES = 2  # decimal places of a value that is felt
 # Least and largest value of each knob: as it is, or as a multiple of what the style begins with.
 _LEAST_CONTRAST = 0.2
 _SHARES = {"dot_width_mm": (0.5, 2.0), "dot_spacing_mm": (0.6, 1.8)}
+# Ours: the model's grid. Values stand so many steps apart; how sure a reader is, as the standard
+# deviation of what is felt, is so many parts of the interval; and one choice in so many is a slip.
+_STEPS = 24
+_UNSURE = geometric(0.03, 0.4, 6)
+_SLIPS = 0.03
+_FARTHEST = 0.5  # between two values, as a part of the interval: no two are a world apart
+_LIKED = "liked"
+
+
+class TunedKnob(NamedTuple):
+    """What was found of a knob.
+
+    Parameters
+    ----------
+    knob
+        The knob.
+    value
+        Value that is liked best.
+    low, high
+        Ends of the interval that holds it with 95 %.
+    """
+
+    knob: StyleKnob
+    value: float
+    low: float
+    high: float
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """An interval in which the best value of a knob is looked for.
+    """Values of a knob among which the best is looked for, and the choices made of them.
 
     Parameters
     ----------
     low, high
         Ends of the interval.
-    least, most
-        Ends that it began with.
-    best
-        Value chosen last; None before the first choice.
+    asked
+        Pairs that were compared, as shares of the interval, the lower first, each with whether the
+        lower was chosen, 1 or 0.
     """
 
     low: float
     high: float
-    least: float
-    most: float
-    best: float | None = None
+    asked: Compared = ()
 
     @property
     def pair(self) -> tuple[float, float]:
         """The two values that are compared next, the lower first."""
-        part = _GOLDEN * (self.high - self.low)
-        return round(self.high - part, _PLACES), round(self.low + part, _PLACES)
+        return self._scaled(_next(self.asked))
 
     def after(self, *, lower: bool) -> Span:
-        """Interval after a choice of the lower or the higher of the two."""
-        part = _GOLDEN * (self.high - self.low)
-        best = self.pair[0 if lower else 1]
-        if lower:
-            return replace(self, high=self.low + part, best=best)
-        return replace(self, low=self.high - part, best=best)
+        """Values and choices after a choice of the lower or the higher of the two."""
+        return replace(self, asked=(*self.asked, (_next(self.asked), int(lower))))
 
-    @property
-    def result(self) -> float:
-        """Value that was found; an end from which every choice led nowhere else is it."""
-        if self.best is None:
-            return round((self.low + self.high) / 2, _PLACES)
-        if self.high == self.most:
-            return self.most
-        return self.least if self.low == self.least else self.best
+    def found(self, knob: StyleKnob) -> TunedKnob:
+        """Value that is liked best; an end from which every choice led nowhere else is it."""
+        told = _quest().estimate(self.asked, _LIKED)
+        low, high = self._scaled((told.low, told.high))
+        value, _ = self._scaled((told.mean, told.mean))
+        lower = {chosen for _, chosen in self.asked}
+        if lower == {1}:
+            value = low = self.low
+        elif lower == {0}:
+            value = high = self.high
+        return TunedKnob(knob, value, low, high)
+
+    def _scaled(self, shares: tuple[float, float]) -> tuple[float, float]:
+        """Values at two shares of the interval, as they are felt."""
+        width = self.high - self.low
+        low, high = (round(self.low + share * width, _PLACES) for share in shares)
+        return low, high
+
+
+@lru_cache(maxsize=1)
+def _quest() -> GridQuest:
+    """Model of a reader who compares shares of an interval, 0 to 1."""
+    shares = tuple(n / _STEPS for n in range(_STEPS + 1))
+    return nearer_quest(
+        [(low, high) for low, high in ordered_pairs(shares) if high - low <= _FARTHEST],
+        GridAxis(_LIKED, shares),
+        GridAxis("unsure", _UNSURE),
+        GridAxis("slips", (_SLIPS,)),
+        about=_LIKED,
+    )
+
+
+@lru_cache(maxsize=256)
+def _next(asked: Compared) -> tuple[float, float]:
+    """Shares that are compared after some choices."""
+    low, high = _quest().next(asked)
+    return low, high
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +134,7 @@ class _Stand:
     """How far the choices have brought a course."""
 
     style: BrailleStyle
-    found: tuple[tuple[StyleKnob, float], ...]
+    found: tuple[TunedKnob, ...]
     knob: StyleKnob | None
     span: Span | None
 
@@ -118,7 +170,7 @@ class TuningCourse:
         return self._stand().knob
 
     @property
-    def found(self) -> tuple[tuple[StyleKnob, float], ...]:
+    def found(self) -> tuple[TunedKnob, ...]:
         """Knobs that are settled so far, with their values."""
         return self._stand().found
 
@@ -167,8 +219,9 @@ class TuningCourse:
                     return _Stand(style, tuple(found), knob, span)
                 number, which = made
                 span = span.after(lower=(which == 1) == _lower_first(number))
-            style = style.replace(**{knob.field: span.result})
-            found.append((knob, span.result))
+            settled = span.found(knob)
+            style = style.replace(**{knob.field: settled.value})
+            found.append(settled)
         return _Stand(style, tuple(found), None, None)
 
 
@@ -194,7 +247,7 @@ def _span(knob: StyleKnob, style: BrailleStyle, start: Model) -> Span:
         if not obstacle(knob, style.geometry, start.display, end):
             low = end
             break
-    return Span(low, high, low, high)
+    return Span(low, high)
 
 
 def _halves(end: float, other: float) -> Iterator[float]:

@@ -40,9 +40,12 @@ class TestBuiltIns:
     def test_names(self):
         assert builtin_names() == [
             "control",
+            "detection",
             "factors",
             "legibility",
             "letters",
+            "rating",
+            "same-different",
             "tuning-spacing",
             "tuning-spacing-adaptive",
             "tuning-width",
@@ -55,7 +58,7 @@ class TestBuiltIns:
         protocol = load_protocol(name)
         assert protocol.name == name
         assert protocol.text == builtin_text(name)
-        assert protocol.source.startswith("Lévesque 2009, ")
+        assert protocol.source == "ours" or protocol.source.startswith("Lévesque 2009, ")
         assert [field.name for field in protocol.fields] == ["finger", "hand", "masking_noise"]
 
     @pytest.mark.parametrize("name", builtin_names())

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.adaptive.estimates import GridAxis
+from vbraille.adaptive.questplus import geometric, nearer_quest, steps
 from vbraille.analysis.input.trials import chosen
 from vbraille.analysis.schemas import Column, Kind, Schema
-from vbraille.sessions.adaptive.estimates import GridAxis
-from vbraille.sessions.adaptive.questplus import geometric, nearer_quest, steps
 from vbraille.sessions.planning.procedures import PREFERRED, QuestProcedure
 
 if TYPE_CHECKING:

@@ -186,8 +186,9 @@ class _Guided:
         settled = len(self.course.found)
         self.course = course
         self._keep()
-        for knob, value in course.found[settled:]:
-            say_line(knob.said(value))
+        for found in course.found[settled:]:
+            say_line(found.knob.said(found.value))
+            say_line(f"95 % interval: {found.low:g} to {found.high:g} {found.knob.unit}".rstrip())
         if not course.done:
             self._which = 1
             self._ask(device)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from msgspec import structs
 
+from vbraille.adaptive.stopping import Asked
 from vbraille.errors import VbrailleError
-from vbraille.sessions.adaptive.stopping import Asked
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.knobs import KNOBS, value_at, with_value
 from vbraille.sessions.planning.procedure import FixedOrder
@@ -30,9 +30,9 @@ from vbraille.sessions.planning.stimuli import Stimuli
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from vbraille.sessions.adaptive.questplus import GridQuest
-    from vbraille.sessions.adaptive.staircase import Staircases
-    from vbraille.sessions.adaptive.stopping import StopRule
+    from vbraille.adaptive.questplus import GridQuest
+    from vbraille.adaptive.staircase import Staircases
+    from vbraille.adaptive.stopping import StopRule
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.procedure import Answered, Procedure
     from vbraille.sessions.planning.protocol import Protocol

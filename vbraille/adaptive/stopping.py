@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.sessions.adaptive.estimates import GridEstimate
+    from vbraille.adaptive.estimates import GridEstimate
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,15 +22,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.sessions.adaptive.estimates import GridEstimate, estimate
-from vbraille.sessions.adaptive.psychometric import detected, limited, nearer
+from vbraille.adaptive.estimates import GridEstimate, estimate
+from vbraille.adaptive.psychometric import detected, limited, nearer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.sessions.adaptive.estimates import GridAxis
+    from vbraille.adaptive.estimates import GridAxis
 
     Stimulus = tuple[float, ...]
 
@@ -238,7 +238,7 @@ def detection_quest(
     Parameters
     ----------
     shape
-        Name of a shape of `vbraille.sessions.adaptive.psychometric.SHAPES`.
+        Name of a shape of `vbraille.adaptive.psychometric.SHAPES`.
     values
         Values that may be asked.
     threshold, spread, guess, lapse
@@ -280,7 +280,7 @@ def nearer_quest(
     pairs
         Pairs that may be asked.
     centre, spread, lapse
-        Possible values of the parameters of `vbraille.sessions.adaptive.psychometric.nearer`.
+        Possible values of the parameters of `vbraille.adaptive.psychometric.nearer`.
     log
         Whether distances are judged on a log scale.
     about

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
-from vbraille.sessions.adaptive.estimates import GridAxis, estimate
-from vbraille.sessions.adaptive.questplus import (
+from vbraille.adaptive.estimates import GridAxis, estimate
+from vbraille.adaptive.questplus import (
     GridQuest,
     detection_quest,
     geometric,

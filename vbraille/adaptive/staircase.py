@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vbraille.sessions.adaptive.stopping import Asked
+    from vbraille.adaptive.stopping import Asked
 
 _PLACES = 9
 

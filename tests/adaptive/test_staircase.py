@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from vbraille.sessions.adaptive.estimates import GridEstimate
-from vbraille.sessions.adaptive.staircase import StaircaseRule, Staircases
-from vbraille.sessions.adaptive.stopping import Asked, StopRule
+from vbraille.adaptive.estimates import GridEstimate
+from vbraille.adaptive.staircase import StaircaseRule, Staircases
+from vbraille.adaptive.stopping import Asked, StopRule
 
 
 def rule(**changed):
