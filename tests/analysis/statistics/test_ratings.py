@@ -41,7 +41,8 @@ def test_the_interval_of_the_mean_holds_the_truth(people):
     truth = np.clip(np.round(many), 1, 7).mean()
     who = np.repeat(np.arange(people), 10)
     ends = [summarise_ratings(one.ravel(), who).interval for one in rated]
-    held = np.mean([end.low <= truth <= end.high for end in ends])
+    # There is none where all people have rated alike.
+    held = np.mean([end.low <= truth <= end.high for end in ends if end is not None])
     assert 0.92 < held < 0.985
 
 

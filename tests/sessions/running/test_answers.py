@@ -93,7 +93,8 @@ def test_a_spec_may_choose_the_skin():
     names = ["simulated:0.2:strain", "simulated:0.2:halfspace"]
     answers = [parse_answers(name, given, plan) for name in names]
     assert [one.name for one in answers] == names
-    assert [one._observer.skin for one in answers] == ["strain", "halfspace"]
+    skins = [{reader.skin for reader in one._observers.values()} for one in answers]
+    assert skins == [{"strain"}, {"halfspace"}]
     with pytest.raises(InputError, match="no skin 'leather'; give strain or halfspace"):
         parse_answers("simulated:0.2:leather", given, plan)
 

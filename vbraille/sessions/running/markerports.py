@@ -79,7 +79,7 @@ class MarkerPort(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MarkerSpec:
-    """What ``--markers`` names.
+    """A recorder that is sent markers, as somebody names it.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class MarkerSpec:
 
 
 def parse_markers(text: str) -> MarkerSpec:
-    """Read what ``--markers`` was given.
+    """Read how somebody names a recorder.
 
     Raises
     ------
