@@ -6,15 +6,13 @@ import json
 
 import pytest
 
-from vbraille.cli.main import main
-
 ASKED = ["power", "letters", "--effect", "T0=0.3,T25=0.5,T100=0.9", "--participants", "4,8"]
 FEW = [*ASKED, "--studies", "60"]
 
 
-def test_each_comparison_has_a_line(capsys):
-    assert main(FEW) == 0
-    said = capsys.readouterr()
+def test_each_comparison_has_a_line(call):
+    said = call(*FEW)
+    assert said.code == 0
     assert said.out.splitlines()[:2] == [
         "protocol: letters, 78 trials of each participant",
         "assumed: T0 30.0 % right, T25 50.0 % right, T100 90.0 % right",
@@ -24,11 +22,9 @@ def test_each_comparison_has_a_line(capsys):
     assert said.err.splitlines()[-1] == "100 percent"
 
 
-def test_the_numbers_are_the_same_as_json_and_as_csv(capsys):
-    assert main([*FEW, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["rows"]
-    assert main([*FEW, "--csv"]) == 0
-    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+def test_the_numbers_are_the_same_as_json_and_as_csv(call):
+    found = json.loads(call(*FEW, "--json").out)["rows"]
+    rows = list(csv.DictReader(io.StringIO(call(*FEW, "--csv").out)))
     assert [float(row["power"]) for row in rows] == [row["power"] for row in found]
     assert len(rows) == 6
 
@@ -47,10 +43,9 @@ def test_the_numbers_are_the_same_as_json_and_as_csv(capsys):
         (["--keep", "/"], "--keep / cannot be used: Is a directory"),
     ],
 )
-def test_what_cannot_be_used_is_said_in_one_sentence(options, sentence, capsys):
-    assert main([*FEW, *options]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
+def test_what_cannot_be_used_is_said_in_one_sentence(options, sentence, call):
+    said = call(*FEW, *options)
+    assert (said.code, said.out) == (2, "")
     assert said.err.startswith("vbraille: ")
     assert said.err.count("\n") == 1
     assert sentence in said.err
