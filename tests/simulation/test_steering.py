@@ -81,11 +81,11 @@ def test_an_answer_to_another_order_is_none(ends):
 def test_an_order_in_the_writing_is_left_for_later(ends):
     ours, theirs = ends
     ours.give(ReadLine(1.0))
-    whole = bytes(ours._memory)
+    whole = bytes(ours._slots.memory)
     for at in range(64, len(whole)):  # its slot, or one that does not matter
-        ours._memory[at] ^= 1
+        ours._slots.memory[at] ^= 1
         assert theirs.take() in (None, ReadLine(1.0))
-        ours._memory[at] ^= 1
+        ours._slots.memory[at] ^= 1
         theirs._taken = 0
     assert theirs.take() == ReadLine(1.0)
 

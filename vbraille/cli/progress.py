@@ -10,11 +10,23 @@ if TYPE_CHECKING:
 
 
 class WorkProgress:
-    """Teller of how many parts of some work are done."""
+    """Teller of how much of some work is done. A context manager.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    bar
+        Whether to draw a bar at a terminal.
+    lines
+        Whether to print lines where there is no bar.
+    """
+
+    def __init__(self, *, bar: bool = True, lines: bool = True) -> None:
         self._bar: tqdm | None = None
-        self._said = 0
+        self._said = 0 if lines else 100
+        if sys.stderr.isatty() and bar:
+            from tqdm import tqdm
+
+            self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
 
     def __enter__(self) -> Self:
         return self
@@ -23,15 +35,15 @@ class WorkProgress:
         if self._bar is not None:
             self._bar.close()
 
-    def at(self, done: int, parts: int) -> None:
-        """Tell that so many of all parts are done."""
-        percent = 100 * done // parts
-        if sys.stderr.isatty():
-            if self._bar is None:
-                from tqdm import tqdm
-
-                self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
+    def at(self, share: float) -> None:
+        """Tell that a share of the work is done, 0 to 1."""
+        percent = round(100 * share)
+        if self._bar is not None:
             self._bar.update(percent - self._bar.n)
         elif percent >= self._said + 10:
             self._said = percent - percent % 10
             print(f"{self._said} percent", file=sys.stderr, flush=True)
+
+    def of(self, done: int, parts: int) -> None:
+        """Tell that so many of all parts of the work are done."""
+        self.at(done / parts)

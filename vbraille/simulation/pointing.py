@@ -2,29 +2,22 @@
 
 Whoever watches a simulated device may be its hand: the device asks at each read whether somebody
 holds the hand, and where. That goes ahead of the orders of `vbraille.simulation.steering`, which
-wait until the hand is let go. As there, the memory has no name, and neither side waits: places go
-into two slots in turn, each with a checksum, so that one that is being written is taken later. A
-hold ends with the process that holds, so that nobody who is gone keeps a hand from reading.
+wait until the hand is let go. As there, neither side waits. A hold ends with the process that
+holds, so that nobody who is gone keeps a hand from reading.
 """
 
 from __future__ import annotations
 
-import mmap
 import os
 import select
-import struct
-import weakref
 from typing import Final
-from zlib import crc32
 
 from vbraille.simulation.steering import BeAt
+from vbraille.simulation.twoslots import TwoSlots
 
-_COUNT: Final = 0  # word of 8 bytes: how often the hand was moved or let go
-_HEADER_BYTES: Final = 64
-# Checksum, number, whether the hand is held, process that holds it, x, y and θ.
-_SLOT: Final = struct.Struct("<4q3d")
+_COUNT: Final = 0  # word of the memory: how often the hand was moved or let go
 # Not as large as the memory of a `Steering`, for which it cannot be taken by mistake.
-_MEMORY_BYTES: Final = _HEADER_BYTES + 2 * _SLOT.size + 8
+_SPARE_BYTES: Final = 8
 # So many times the holder is taken to be alive before it is looked at again: a look takes longer.
 _LOOKS: Final = 64
 
@@ -49,20 +42,10 @@ class Pointer:
     """
 
     def __init__(self, descriptor: int | None = None) -> None:
-        if descriptor is None:
-            descriptor = os.memfd_create("vbraille pointer")
-            weakref.finalize(self, os.close, descriptor)
-            os.ftruncate(descriptor, _MEMORY_BYTES)
-        self.descriptor = descriptor
-        try:
-            if os.fstat(descriptor).st_size != _MEMORY_BYTES:
-                raise ValueError(f"descriptor {descriptor} is not of memory that holds a hand")
-            self._memory = memoryview(mmap.mmap(descriptor, _MEMORY_BYTES))
-        except OSError as error:
-            raise ValueError(
-                f"descriptor {descriptor} is not of memory that holds a hand: {error.strerror}"
-            ) from None
-        self._words = self._memory[:_HEADER_BYTES].cast("q")
+        # What is told is whether the hand is held, by which process, and where: x, y and θ.
+        self._slots = TwoSlots("holds a hand", "2q3d", descriptor, spare_bytes=_SPARE_BYTES)
+        self.descriptor = self._slots.descriptor
+        self._words = self._slots.words
         self._seen = 0
         self._at: BeAt | None = None
         self._holder = 0
@@ -94,27 +77,17 @@ class Pointer:
         return self.at() is not None
 
     def _write(self, at: BeAt | None) -> None:
-        number = self._words[_COUNT] + 1
         place = (0.0, 0.0, 0.0) if at is None else (at.x_mm, at.y_mm, at.theta_rad)
-        slot = _SLOT.pack(0, number, at is not None, os.getpid(), *place)
-        begin = _place(number)
-        self._memory[begin : begin + _SLOT.size] = crc32(slot).to_bytes(8, "little") + slot[8:]
-        self._words[_COUNT] = number
+        self._slots.tell(at is not None, os.getpid(), *place)
 
     def _read(self, number: int) -> None:
         """Take what was written last; nothing, if that is being written."""
-        begin = _place(number)
-        slot = bytes(self._memory[begin : begin + _SLOT.size])
-        checksum, there, held, holder, *place = _SLOT.unpack(slot)
-        if there != number or checksum != crc32(bytes(8) + slot[8:]):
+        told = self._slots.take(number)
+        if told is None:
             return
+        held, holder, *place = told
         self._seen, self._holder, self._looks = number, holder, 0
         self._at = BeAt(*place) if held else None
-
-
-def _place(number: int) -> int:
-    """Place in the memory of the slot that is written by this number."""
-    return _HEADER_BYTES + number % 2 * _SLOT.size
 
 
 def _lives(process: int) -> bool:

@@ -2,29 +2,21 @@
 
 Whoever runs a simulated device tells its hand from outside what to do next, and sees when that is
 done; the engine between the two knows nothing of it. One side gives orders and the other takes
-them; neither waits for the other. Orders go into two slots in turn, each with a checksum: one that
-is in the writing, or seen in the wrong order, is taken later. The memory has no name: a descriptor
-of it goes into the spec of the device (``sim:?hand=HAND&steering=DESCRIPTOR``), and is inherited
-where the device is in another process.
+them; neither waits for the other. A descriptor of the memory goes into the spec of the device
+(``sim:?hand=HAND&steering=DESCRIPTOR``), and is inherited where the device is in another process.
 """
 
 from __future__ import annotations
 
 import math
-import mmap
-import os
-import struct
-import weakref
 from dataclasses import astuple, dataclass
 from typing import Final
-from zlib import crc32
 
-# Words of 8 bytes: number of the last order given, number of the last one done, time it was done.
+from vbraille.simulation.twoslots import TwoSlots
+
+# Words of the memory: number of the last order given, number of the last one done, and when it was.
 _GIVEN, _DONE, _DONE_NS = range(3)
-_HEADER_BYTES: Final = 64
 _MOST_NUMBERS: Final = 4
-_SLOT: Final = struct.Struct(f"<3q{_MOST_NUMBERS}d")  # checksum, number of the order, its kind
-_MEMORY_BYTES: Final = _HEADER_BYTES + 2 * _SLOT.size
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,20 +112,10 @@ class Steering:
     """
 
     def __init__(self, descriptor: int | None = None) -> None:
-        if descriptor is None:
-            descriptor = os.memfd_create("vbraille steering")
-            weakref.finalize(self, os.close, descriptor)
-            os.ftruncate(descriptor, _MEMORY_BYTES)
-        self.descriptor = descriptor
-        try:
-            if os.fstat(descriptor).st_size != _MEMORY_BYTES:
-                raise ValueError(f"descriptor {descriptor} is not of memory that steers a hand")
-            self._memory = memoryview(mmap.mmap(descriptor, _MEMORY_BYTES))
-        except OSError as error:
-            raise ValueError(
-                f"descriptor {descriptor} is not of memory that steers a hand: {error.strerror}"
-            ) from None
-        self._words = self._memory[:_HEADER_BYTES].cast("q")
+        # An order is its kind and its numbers.
+        self._slots = TwoSlots("steers a hand", f"q{_MOST_NUMBERS}d", descriptor)
+        self.descriptor = self._slots.descriptor
+        self._words = self._slots.words
         # Orders that were given before this is opened are not for whoever takes orders from now on.
         self._taken = self._words[_GIVEN]
 
@@ -142,12 +124,8 @@ class Steering:
 
         The hand sets out at once: show what it is to read first.
         """
-        number = self._words[_GIVEN] + 1
         numbers = (*astuple(order), *[0.0] * _MOST_NUMBERS)[:_MOST_NUMBERS]
-        slot = _SLOT.pack(0, number, _KINDS.index(type(order)), *numbers)
-        at = _place(number)
-        self._memory[at : at + _SLOT.size] = crc32(slot).to_bytes(8, "little") + slot[8:]
-        self._words[_GIVEN] = number
+        self._slots.tell(_KINDS.index(type(order)), *numbers)
 
     def done_at(self, time_ns: int) -> bool:
         """Whether the hand had followed all orders by a time of the device's clock."""
@@ -159,11 +137,10 @@ class Steering:
         number = self._words[_GIVEN]
         if number == self._taken:
             return None
-        at = _place(number)
-        slot = bytes(self._memory[at : at + _SLOT.size])
-        checksum, there, kind, *numbers = _SLOT.unpack(slot)
-        if there != number or checksum != crc32(bytes(8) + slot[8:]):
+        told = self._slots.take(number)
+        if told is None:
             return None
+        kind, *numbers = told
         self._taken = number
         order = _KINDS[kind]
         return order(*numbers[: len(order.__slots__)])
@@ -172,8 +149,3 @@ class Steering:
         """Tell, for the device, when the order taken last was done, by its clock."""
         self._words[_DONE_NS] = time_ns
         self._words[_DONE] = self._taken
-
-
-def _place(number: int) -> int:
-    """Place of an order's slot in the memory."""
-    return _HEADER_BYTES + number % 2 * _SLOT.size

@@ -6,14 +6,16 @@ import csv
 import json
 import sys
 from dataclasses import asdict, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.progress import WorkProgress
+from vbraille.cli.terminal import say_line
 from vbraille.forecast.power import ENOUGH, SEED, PowerQuestion, PowerRow, power
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import load_protocol
-from vbraille.wording import count, printable
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     import argparse
@@ -35,10 +37,10 @@ def run(arguments: argparse.Namespace) -> int:
         studies=arguments.studies,
         seed=SEED if arguments.seed is None else arguments.seed,
     )
-    workers = Workers(arguments.workers, arguments.cluster).available(_warn)
+    workers = Workers(arguments.workers, arguments.cluster).available(partial(say_line, aside=True))
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
-        table = power(question, workers, keep=keep, told=progress.at)
+        table = power(question, workers, keep=keep, told=progress.of)
     if arguments.json:
         json.dump(table.to_json(), sys.stdout, ensure_ascii=False, indent=1)
         print()
@@ -48,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows.writerows([asdict(row) for row in table.rows])
     else:
         for line in _lines(table):
-            print(printable(line))
+            say_line(line)
     if table.unfinished is not None:
         sys.stdout.flush()
         raise table.unfinished
@@ -70,7 +72,3 @@ def _lines(table: PowerTable) -> Iterator[str]:
     for (first, second), least in table.enough().items():
         who = f"more than {largest}" if least is None else f"{least}"
         yield f"for a power of {100 * ENOUGH:.0f} %: {first} against {second}; {who} participants"
-
-
-def _warn(sentence: str) -> None:
-    print(printable(sentence), file=sys.stderr, flush=True)

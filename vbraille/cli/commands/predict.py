@@ -6,14 +6,15 @@ import csv
 import io
 import json
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.cli.progress import WorkProgress
+from vbraille.cli.terminal import say_line
 from vbraille.files import check_free, write_folder
 from vbraille.forecast.grids import predict, to_json
 from vbraille.forecast.workers import Workers
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -26,10 +27,10 @@ def run(arguments: argparse.Namespace) -> int:
     out = None if arguments.out is None else Path(arguments.out)
     if out is not None:
         check_free(out)
-    workers = Workers(arguments.workers, arguments.cluster).available(_warn)
+    workers = Workers(arguments.workers, arguments.cluster).available(partial(say_line, aside=True))
     keep = None if arguments.keep is None else Path(arguments.keep)
     with WorkProgress() as progress:
-        grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.at)
+        grid, found, ended = predict(arguments.grid, workers, keep=keep, told=progress.of)
     if out is not None:
         from vbraille.forecast.maps import map_of
         from vbraille.pictures.figurefiles import to_bytes
@@ -44,12 +45,12 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.csv:
         sys.stdout.write(_csv(found))
     else:
-        print("predicted: by the simulated reader, no data about people")
+        say_line("predicted: by the simulated reader, no data about people")
         for one in found:
             where = ", ".join(f"{name} {value}" for name, value in one.point.items())
-            print(printable(f"{where}: {100 * one.legibility:.1f} % of the characters right"))
+            say_line(f"{where}: {100 * one.legibility:.1f} % of the characters right")
         if out is not None:
-            print(printable(f"written: {out / 'predictions.csv'}, map.png, map.svg"))
+            say_line(f"written: {out / 'predictions.csv'}, map.png, map.svg")
     if ended is not None:
         sys.stdout.flush()
         raise ended
@@ -62,7 +63,3 @@ def _csv(found: list[Prediction]) -> str:
     rows.writeheader()
     rows.writerows(one.row() for one in found)
     return out.getvalue()
-
-
-def _warn(sentence: str) -> None:
-    print(printable(sentence), file=sys.stderr, flush=True)

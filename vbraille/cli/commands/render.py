@@ -7,7 +7,7 @@ import sys
 import time
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.progress import WorkProgress
 from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
 from vbraille.display import check_rate
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
-    from tqdm import tqdm
 
     from vbraille.cli.build import Page
     from vbraille.layout.pages import Line
@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     with (
         EAR.deferred(),
         new_file(arguments.out, replace=arguments.force) as file,
-        _Progress(plain=arguments.plain) as progress,
+        WorkProgress(bar=not arguments.plain, lines=arguments.plain) as progress,
     ):
         recorder = Recorder(file, display, page.layout.width)
         recorder.describe(
@@ -229,31 +229,3 @@ class _Estimate:
             file=sys.stderr,
             flush=True,
         )
-
-
-class _Progress:
-    """Progress of the work: a bar at a terminal, or a line for every tenth."""
-
-    def __init__(self, *, plain: bool) -> None:
-        self._bar: tqdm | None = None
-        self._said = 0 if plain else 100
-        if sys.stderr.isatty() and not plain:
-            from tqdm import tqdm
-
-            self._bar = tqdm(total=100, unit="%", bar_format="{percentage:3.0f}% |{bar}|")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-    def at(self, share: float) -> None:
-        """Tell that a share of the work is done, 0 to 1."""
-        percent = round(100 * share)
-        if self._bar is not None:
-            self._bar.update(percent - self._bar.n)
-        elif percent >= self._said + 10:
-            self._said = percent - percent % 10
-            print(f"{self._said} percent", file=sys.stderr, flush=True)

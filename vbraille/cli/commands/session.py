@@ -171,7 +171,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
             noise=arguments.noise,
             skin=arguments.skin,
             seed=arguments.seed,
-            told=progress.at,
+            told=progress.of,
         )
     _say(f"pilot: {arguments.participants} sessions of {protocol.name}; {MARK}")
     _say(f"written: {report / 'report.html'}")

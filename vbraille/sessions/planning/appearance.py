@@ -127,13 +127,13 @@ class Look(Tuned, frozen=True, kw_only=True):
         return MAPPINGS[self.mapping]
 
 
-class Condition(Look, frozen=True):
-    """One condition of a protocol: the display's style, but for the values given here.
+class NamedLook(Look, frozen=True):
+    """Any part of the way in which strings are shown, with a name.
 
     Parameters
     ----------
     name
-        Name of the condition.
+        Name that plans and tables have it by.
 
     Raises
     ------
@@ -146,6 +146,10 @@ class Condition(Look, frozen=True):
     def __post_init__(self) -> None:
         check_name("name", self.name)
         super().__post_init__()
+
+
+class Condition(NamedLook, frozen=True):
+    """One condition of a protocol: the display's style, but for the values given here."""
 
 
 class Appearance(Look, frozen=True, kw_only=True):

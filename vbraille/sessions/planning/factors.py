@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from msgspec import structs
 
-from vbraille.sessions.planning.appearance import Condition, Look
+from vbraille.sessions.planning.appearance import Condition, NamedLook
 from vbraille.sessions.planning.conduct import check_name
 from vbraille.toml.tomlfile import Table
 from vbraille.wording import nearest
@@ -20,25 +20,8 @@ Levels = tuple[str, ...]  # a level of each factor, in the order of the factors
 Cross = Literal["all"] | tuple[Levels, ...]
 
 
-class Level(Look, frozen=True, kw_only=True):
-    """One level of a factor: what it changes, by the keys of ``[display]``.
-
-    Parameters
-    ----------
-    name
-        Name of the level, which conditions or groups are named from.
-
-    Raises
-    ------
-    ValueError
-        If the name cannot be used, or a value is out of range.
-    """
-
-    name: str
-
-    def __post_init__(self) -> None:
-        check_name("name", self.name)
-        super().__post_init__()
+class Level(NamedLook, frozen=True):
+    """One level of a factor: what it changes, by the keys of ``[display]``."""
 
 
 class Factor(Table, frozen=True, kw_only=True):
