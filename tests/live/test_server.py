@@ -113,7 +113,7 @@ def test_very_many_connections_that_say_nothing():
             silent.append(stack.enter_context(socket.create_connection((host, port))))
             if len(silent) > MOST_CONNECTIONS:  # of those the server thinks no more
                 one = silent.pop()
-                # On a busy machine the first ones have been sent away by now, and this one comes in.
+                # On a busy machine the first were sent away by now, and this one comes in.
                 told += b"503" in one.recv(100)
                 one.close()
         assert told
