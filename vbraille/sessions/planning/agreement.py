@@ -11,6 +11,7 @@ from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
 from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.knobs import GAP, KNOBS, with_value
 from vbraille.sessions.planning.sequencing import CONDITION, impossible, limited
+from vbraille.sessions.planning.writing import cells_of, problem_of
 from vbraille.toml.tomlfile import which
 
 if TYPE_CHECKING:
@@ -18,8 +19,16 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
 
 
-def check_agreement(protocol: Protocol) -> None:
+def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     """Check that the tables of a protocol agree with each other, for each group.
+
+    Parameters
+    ----------
+    protocol
+        The protocol.
+    planned
+        Whether it belongs to a session, whose plan has been made. The plan then has the cells of
+        all texts, and no braille table is asked for them again.
 
     Raises
     ------
@@ -45,12 +54,14 @@ def check_agreement(protocol: Protocol) -> None:
         raise ValueError(f"[practice] {said}")
     _check_trials(protocol)
     _check_order(protocol)
-    _check_cells(protocol)
-    _check_lines(protocol)
+    _check_tables(protocol, planned=planned)
+    if not protocol.written or not (planned or _ungrouped(protocol)):
+        _check_cells(protocol)
+        _check_lines(protocol)
     _check_letters(protocol)
     _check_rules(protocol)
     if not protocol.group:
-        _check_groups(protocol)
+        _check_groups(protocol, planned=planned)
 
 
 def _check_names(protocol: Protocol) -> None:
@@ -64,12 +75,47 @@ def _check_names(protocol: Protocol) -> None:
             )
 
 
-def _check_groups(protocol: Protocol) -> None:
+def _ungrouped(protocol: Protocol) -> bool:
+    """Whether the groups of a protocol have tables of their own, and none is chosen."""
+    own = any(f.between and f.levels[0].table is not None for f in protocol.factors)
+    return own and not protocol.group
+
+
+def _check_tables(protocol: Protocol, *, planned: bool) -> None:
+    """Check that each condition has a braille table or none has, and that there are texts."""
+    if not protocol.written:
+        return
+    design = protocol.design
+    if not isinstance(design, StringList):
+        kind = "choice" if isinstance(design, Choice) else "combinations"
+        raise ValueError(
+            f"[design] kind is {kind!r}, which shows cells, and table makes cells of texts; give "
+            f"'list' or 'items', or leave table out"
+        )
+    for wrong, words in (
+        (design.reorder, "[design] reorder is of cells"),
+        (protocol.keys, "[keys] spell cells"),
+        (
+            (protocol.rules.each_letter, protocol.rules.each_letter_at_least) != (None, None),
+            "[rules] each_letter counts cells",
+        ),
+    ):
+        if wrong:
+            raise ValueError(f"{words}, and where table is given strings are texts; leave it out")
+    for condition in () if _ungrouped(protocol) else protocol.conditions:
+        table, place = protocol.table_of(condition), _place(protocol, condition)
+        if table is None:
+            raise ValueError(f"{place} has no table, and others have; give it one, or [display]")
+        if problem := "" if planned else problem_of(table):
+            raise ValueError(f"{place} table: {problem}")
+
+
+def _check_groups(protocol: Protocol, *, planned: bool) -> None:
     """Check the protocol as each group has it."""
     for group in protocol.groups:
         number = 1 + next(n for n, factor in enumerate(protocol.factors) if factor.between)
         try:
-            check_agreement(protocol.assigned(group))
+            check_agreement(protocol.assigned(group), planned=planned)
         except ValueError as error:
             raise ValueError(f"[[factors]] number {number} group {group}: {error}") from None
 
@@ -186,8 +232,7 @@ def _check_order(protocol: Protocol) -> None:
 
 def _check_cells(protocol: Protocol) -> None:
     """Check that the display can show every dot of every cell used, in every condition."""
-    model, design = protocol.model, protocol.design
-    practised = {mask for line in protocol.practice.lines(design) for mask in line}
+    model = protocol.model
     for condition in protocol.conditions:
         mapping = protocol.style_of(condition).mapping
         shown = mapping.shown_dots()
@@ -197,7 +242,7 @@ def _check_cells(protocol: Protocol) -> None:
             else f" with the mapping {mapping.name}"
         )
         only = f"the {model.title}{how} shows {name_dots(shown)} only"
-        for table, masks in (("[design]", design.masks), ("[practice]", practised)):
+        for table, (masks, _) in _cells(protocol, condition).items():
             for mask in sorted(masks):
                 if mask & ~shown:
                     cell = f"{to_braille((mask,))} ({name_dots(mask)})"
@@ -219,9 +264,12 @@ def _check_lines(protocol: Protocol) -> None:
         values = tuple(dict.fromkeys((*design.values, *protocol.procedure.values(design))))
         values += () if design.reference is None else (design.reference,)
         unit = KNOBS[design.parameter].unit
-    longest = max((design.cells, *map(len, practice.lines(design))))
-    whose = "[design]" if longest == design.cells else "[practice]"
-    for condition, value in product(protocol.conditions, (*values, *sorted(set(practice.values)))):
+    compared = (*values, *sorted(set(practice.values)))
+    longest = 0
+    for condition, value in product(protocol.conditions, compared):
+        lengths = {table: length for table, (_, length) in _cells(protocol, condition).items()}
+        whose = max(lengths, key=lambda table: lengths[table])
+        longest = max(longest, lengths[whose])
         at = "" if value is None else f" at a value of {value:g}{unit}"
         if condition.changes.keys() & set(LENGTHS):
             at += f" in the condition {condition.name}"
@@ -230,13 +278,39 @@ def _check_lines(protocol: Protocol) -> None:
             room = shown.geometry.cells_per_line(model.display.span_mm)
         except ValueError as error:
             raise ValueError(f"[design]{at}: {error}") from None
-        cells = protocol.lead_cells + longest
+        cells = protocol.lead_cells + lengths[whose]
         if cells > room:
             raise ValueError(
                 f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
                 f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
             )
     _check_varied(protocol, longest)
+
+
+def _cells(protocol: Protocol, condition: Condition) -> dict[str, tuple[frozenset[int], int]]:
+    """Cells that a condition shows, and length of its longest line, by the tables of the file.
+
+    Raises
+    ------
+    ValueError
+        If a braille table cannot make cells of a text.
+    """
+    design, practice = protocol.design, protocol.practice
+    table = protocol.table_of(condition)
+    if table is None or not isinstance(design, StringList):
+        practised = practice.lines(design)
+        masks = frozenset(mask for line in practised for mask in line)
+        length = max(map(len, practised), default=0)
+        return {"[design]": (design.masks, design.cells), "[practice]": (masks, length)}
+    found = {}
+    for name, strings in (("[design]", design.strings), ("[practice]", practice.strings)):
+        try:
+            lines = [cells_of(str(text), table) for text in strings]
+        except ValueError as error:
+            raise ValueError(f"{name} in the condition {condition.name}: {error}") from None
+        masks = frozenset(mask for line in lines for mask in line)
+        found[name] = (masks, max(map(len, lines), default=0))
+    return found
 
 
 def _check_varied(protocol: Protocol, longest: int) -> None:

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 MOST_TRIALS = 10_000
 
-Item = tuple[float, ...]  # dot masks of the cells asked for, or the values compared
+# Dot masks of the cells asked for, or the values compared, or a `WrittenText`.
+Item = tuple[float, ...]
 
 _LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
 

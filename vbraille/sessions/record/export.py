@@ -99,6 +99,12 @@ COLUMNS = {
     "trace": "file of the trace of the last attempt",
 }
 
+# Columns of protocols whose strings are texts.
+WRITTEN = {
+    "table": "braille table that made the cells of the text",
+    "text": "text that the cells asked for stand for; empty for a blank catch trial",
+}
+
 
 class Traces:
     """The traces of a session, each of which is read once, as far as it is whole.
@@ -292,10 +298,12 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
     for name, level in protocol.levels(trial.condition).items():
         cells[f"factor_{name}"] = level
     if protocol.item_columns:
-        own = protocol.told(trial.stimuli[0].masks[slice(*trial.asked)])
+        own = protocol.told(trial.item)
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch
+    if protocol.written:
+        cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("table", "text")}
     return cells
 
 
@@ -311,6 +319,8 @@ def describe_design(protocol: Protocol) -> dict[str, str]:
         told[f"item_{name}"] = f"column {name} of the protocol's file of items"
     if protocol.design.catch is not None:
         told["catch"] = "blank or repeat for a trial that only keeps watch; else empty"
+    if protocol.written:
+        told |= WRITTEN
     return told
 
 

@@ -281,7 +281,9 @@ class Console:
         question = self._course.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
-        if question.name != "identify":
+        if question.name == "identify" and self._course.protocol.written:
+            self._say("an answer: the text that was read; ? for a cell not read, or for nothing")
+        elif question.name != "identify":
             self._say(f"an answer: {question.typed}")
         else:
             keys = " ".join(self._course.protocol.keys)
