@@ -85,7 +85,7 @@ COLUMNS = {
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the participant's key, or to the answer where there "
     "was none, pauses left out",
-    "ended_by": "what ended reading: button:N, key:enter, or answer if the answer came before the "
+    "ended_by": "what ended reading: button:N, key:NAME, or answer if the answer came before the "
     "participant's key; empty if the protocol has no such key",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",

@@ -27,6 +27,7 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
+from vbraille.sessions.running.keypress import KeyPress, TerminalKey
 from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import SKINS, Observer
 from vbraille.wording import setting
@@ -91,6 +92,26 @@ class Typed:
         self._descriptor = sys.stdin.fileno() if sys.stdin else None
         self._partial = b""
         self._waiting: list[str] = []
+        self._key: TerminalKey | None = None
+        self._awaited = False
+
+    def watch(self, key: str) -> bool:
+        """Look out for a key, whose presses `lines` gives as a `KeyPress`; False if it cannot be.
+
+        Parameters
+        ----------
+        key
+            Character that the key types.
+        """
+        self._key = TerminalKey.at(self._descriptor, key)
+        return self._key is not None
+
+    def await_key(self, awaited: bool) -> None:
+        """Have the key that is looked out for told at once, or typed like all others."""
+        self._awaited = awaited
+        if self._key is not None:
+            # In a line that was begun the key is a character like any other.
+            self._key.tell(awaited and not self._partial)
 
     def lines(self, wait_s: float) -> list[str] | None:
         """Lines typed since the last call; see `Answers`."""
@@ -109,7 +130,10 @@ class Typed:
             self._descriptor = None
             last, self._partial = self._partial, b""
             return [last.decode("utf-8", "replace")] if last else None
+        if self._key is not None and not self._partial and self._key.pressed(said):
+            return [KeyPress()]
         *lines, self._partial = (self._partial + said).split(b"\n")
+        self.await_key(self._awaited)
         return [line.decode("utf-8", "replace") for line in lines]
 
     def line(self) -> str | None:
