@@ -188,3 +188,11 @@ def test_shipped_protocols_have_what_their_question_needs():
     of = load_protocol("same-different")
     told = [of.asks.looked_for(trial) for trial in make_plan(of, "P1", 1).trials]
     assert (told.count(False), len(told)) == (36, 72)
+
+
+def test_a_texture_without_cycles_is_not_compared_by_them():
+    cycles = COMPARED.replace("dot_width_mm", "texture_cycles").replace("1.0, 2.0", "3, 5")
+    said = "the texture of the VBD has a fixed wavelength, so that nothing would vary"
+    with pytest.raises(InputError, match=said):
+        parse_protocol(cycles, "p.toml")
+    assert parse_protocol(cycles.replace("vbd", "stress2"), "p.toml").parameter == "texture_cycles"

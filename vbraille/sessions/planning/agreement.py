@@ -6,6 +6,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from vbraille.braille.spelling import name_dots, to_braille
+from vbraille.render import Profile
 from vbraille.sessions.planning.appearance import LENGTHS
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
 from vbraille.sessions.planning.factors import problem
@@ -140,11 +141,25 @@ def _check_styles(protocol: Protocol) -> None:
     except ValueError as error:
         raise ValueError(f"{table} {error}") from None
     compared = protocol.parameter
+    _check_cycles(protocol)
     for condition in protocol.conditions if compared else ():
         if _sets(condition, compared):
             raise ValueError(
                 f"[design] parameter is {compared!r}, which the condition {condition.name} sets "
                 f"itself; leave it out there"
+            )
+
+
+def _check_cycles(protocol: Protocol) -> None:
+    """Check that a texture's cycles are not compared or varied where they change nothing."""
+    for table, name in (
+        ("design", protocol.parameter),
+        ("procedure", getattr(protocol.procedure, "parameter", None)),
+    ):
+        if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, and the texture of the {protocol.model.title} "
+                f"has a fixed wavelength, so that nothing would vary; choose another"
             )
 
 
