@@ -196,3 +196,25 @@ def test_a_texture_without_cycles_is_not_compared_by_them():
     with pytest.raises(InputError, match=said):
         parse_protocol(cycles, "p.toml")
     assert parse_protocol(cycles.replace("vbd", "stress2"), "p.toml").parameter == "texture_cycles"
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ('[order]\nkind = "williams"\n', "there is one condition, so that nothing can be ordered"),
+        (
+            '[procedure]\nkind = "staircase"\nparameter = "line_pitch_mm"\nleast = 8\nmost = 12\n'
+            "start = [9]\nsteps = [1]\n",
+            "'line_pitch_mm', which no actuator shows in a line of its own",
+        ),
+        (
+            '[procedure]\nkind = "staircase"\nparameter = "contrast"\nleast = 0.1\nmost = 1\n'
+            "start = [0.9, 0.5]\nsteps = [0.1]\nright = 3\nwrong = 3\n",
+            "start is of 2 staircases, and a condition has 4 trials: one of them cannot move",
+        ),
+    ],
+)
+def test_what_could_not_vary_is_refused_but_in_sessions_that_have_begun(more, said):
+    with pytest.raises(InputError, match=said):
+        parse_protocol(MINI + more, "p.toml")
+    assert parse_protocol(MINI + more, "p.toml", planned=True)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.render import Profile
 from vbraille.sessions.planning.appearance import LENGTHS
-from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
+from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, StringList
 from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.knobs import GAP, KNOBS, with_value
+from vbraille.sessions.planning.procedures import StaircaseProcedure
 from vbraille.sessions.planning.sequencing import CONDITION, impossible, limited
 from vbraille.sessions.planning.writing import cells_of, problem_of
 from vbraille.toml.tomlfile import which
@@ -56,6 +57,8 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     _check_trials(protocol)
     _check_order(protocol)
     _check_tables(protocol, planned=planned)
+    if not planned:
+        _check_varies(protocol)
     if not protocol.written or not (planned or _ungrouped(protocol)):
         _check_cells(protocol)
         _check_lines(protocol)
@@ -141,7 +144,6 @@ def _check_styles(protocol: Protocol) -> None:
     except ValueError as error:
         raise ValueError(f"{table} {error}") from None
     compared = protocol.parameter
-    _check_cycles(protocol)
     for condition in protocol.conditions if compared else ():
         if _sets(condition, compared):
             raise ValueError(
@@ -150,17 +152,37 @@ def _check_styles(protocol: Protocol) -> None:
             )
 
 
-def _check_cycles(protocol: Protocol) -> None:
-    """Check that a texture's cycles are not compared or varied where they change nothing."""
-    for table, name in (
-        ("design", protocol.parameter),
-        ("procedure", getattr(protocol.procedure, "parameter", None)),
-    ):
+def _check_varies(protocol: Protocol) -> None:
+    """Check that what is compared or chosen can be felt, and that there is something to order.
+
+    Sessions that were planned before this was checked are gone on with.
+    """
+    chosen = getattr(protocol.procedure, "parameter", None)
+    for table, name in (("design", protocol.parameter), ("procedure", chosen)):
         if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:
             raise ValueError(
                 f"[{table}] parameter is {name!r}, and the texture of the {protocol.model.title} "
                 f"has a fixed wavelength, so that nothing would vary; choose another"
             )
+        if name in UNFELT:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, which no actuator shows in a line of its own; "
+                f"give another"
+            )
+    stairs = protocol.procedure
+    if isinstance(stairs, StaircaseProcedure):
+        trials = min(stairs.trials or MOST_TRIALS, protocol.design.trials)
+        if trials < min(stairs.right, stairs.wrong) * len(stairs.start):
+            raise ValueError(
+                f"[procedure] start is of {len(stairs.start)} staircases, and a condition has "
+                f"{trials} trials: one of them cannot move; give it more trials"
+            )
+    order = protocol.order
+    if order is not None and order.kind != "listed" and len(protocol.conditions) < 2:
+        raise ValueError(
+            f"[order] kind is {order.kind!r}, and there is one condition, so that nothing can be "
+            f"ordered; leave it out, or give more conditions"
+        )
 
 
 def _sets(condition: Condition, knob: str | None) -> bool:

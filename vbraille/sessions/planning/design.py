@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.knobs import StimulusKnob
 
 MOST_TRIALS = 10_000
+UNFELT = ("row_spacing_mm", "line_pitch_mm")  # lengths that change nothing in a single line
 
 # Dot masks of the cells asked for, or the values compared, or a `WrittenText`.
 Item = tuple[float, ...]
@@ -248,7 +249,7 @@ class Choice(_Design, frozen=True, tag="choice"):
             raise ValueError("string has no cell with a gap; give one with a left and a right dot")
         if self.parameter == "cell_gap_mm" and sum(map(bool, self.string)) < 2:
             raise ValueError("string has no gap between cells; give two cells with dots or more")
-        if self.parameter in ("row_spacing_mm", "line_pitch_mm"):
+        if self.parameter in UNFELT:
             raise ValueError(
                 f"parameter is {self.parameter!r}, which no actuator shows in a line of its own; "
                 f"give another"
