@@ -248,7 +248,7 @@ class Ended(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     by
-        Which key it was: "button:N" of the device, or "key:enter".
+        Which key it was: "button:N" of the device, or "key:NAME".
     time_ns
         Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
     """
@@ -281,7 +281,7 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence_s
         Seconds from the answer to its confidence, with which it was written. From format 5 on.
     ended_by
-        What ended reading: "button:N", "key:enter", or "answer" if the answer came before the
+        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
         participant's key; left out if the protocol has no such key. From format 5 on.
     """
 
