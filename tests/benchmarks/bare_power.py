@@ -1,4 +1,4 @@
-"""Every STEP-th portion from FIRST on of MANY studies, by a bare process; prints as shared_power."""
+"""Every STEP-th portion from FIRST on of MANY studies, by a bare process; says as shared_power."""
 
 import json
 import sys

@@ -32,6 +32,5 @@ if __name__ == "__main__":
 
     Workers(workers).work(timed, tasks, done)
     own_s = process_time()
-    print(
-        json.dumps({"own": own_s, "workers": [s for pid, s in used.items() if pid != os.getpid()]})
-    )
+    used.pop(os.getpid(), None)
+    print(json.dumps({"own": own_s, "workers": list(used.values())}))

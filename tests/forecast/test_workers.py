@@ -184,5 +184,5 @@ def test_an_address_is_checked(address):
 
 @pytest.mark.skipif(find_spec("distributed") is not None, reason="distributed is installed")
 def test_a_cluster_needs_distributed():
-    with pytest.raises(InputError, match="needs distributed; pip install "):
+    with pytest.raises(InputError, match="needs distributed; pip install"):
         Workers(cluster="tcp://lab:8786")

@@ -154,7 +154,7 @@ class GridQuest:
         return self.stimuli[int(np.flatnonzero(gains >= gains.max() - _TIE)[0])]
 
     def gains(self, history: Sequence[tuple[Stimulus, int]]) -> NDArray[np.float64]:
-        """What each stimulus is expected to tell: equation (1) in nats, or (2); float64[stimuli]."""
+        """What each stimulus is expected to tell, by equation (1) or (2); float64[stimuli]."""
         posterior = self._flat(history)
         likely = self._by_outcome(posterior, 1.0)
         if self._along is None:

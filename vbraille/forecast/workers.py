@@ -28,6 +28,7 @@ Task = TypeVar("Task")
 Found = TypeVar("Found")
 
 MOST_WORKERS = 256
+HOW_TO_GET_DISTRIBUTED = "pip install 'vbraille[cluster]' installs it"
 HOW_TO_GET_DASK = "pip install 'vbraille[sweeps]' installs it"
 _ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:[\w.-]+|\[[0-9a-fA-F:]+\]):[0-9]{1,5}")
 _PATIENCE_S = 10  # for a cluster to answer
@@ -70,9 +71,7 @@ class Workers:
                 f"that the scheduler says, such as tcp://192.168.1.5:8786"
             )
         if not _is_there("distributed"):
-            raise InputError(
-                f"{setting('cluster')} needs distributed; pip install 'vbraille[cluster]' installs it"
-            )
+            raise InputError(f"{setting('cluster')} needs distributed; {HOW_TO_GET_DISTRIBUTED}")
 
     def available(self, warn: Callable[[str], None]) -> Workers:
         """These workers, or a single one if dask is not installed, which is then told."""
@@ -130,7 +129,8 @@ def _on_processes(
     from dask.callbacks import Callback  # pyright: ignore[reportMissingImports]
     from dask.multiprocessing import get  # pyright: ignore[reportMissingImports]
 
-    keys = {f"task-{number}": number for number in range(len(tasks))}
+    # dask begins with the last name of the alphabet.
+    keys = {f"task-{len(tasks) - number:07}": number for number in range(len(tasks))}
     graph = {key: (function, task) for key, task in zip(keys, tasks, strict=True)}
     finished = 0
 
