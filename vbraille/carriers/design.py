@@ -145,7 +145,7 @@ def shortest(ratio: float, demands: Demands = LETTER) -> Arms:
             f"{demands.height_mm:g} mm; give another ratio"
         )
     low_mm, high_mm = float(lengths_mm[enough - 1]), float(lengths_mm[enough])
-    a_mm = float(brentq(spare_mm, low_mm, high_mm, xtol=1e-10))
+    a_mm = float(brentq(spare_mm, low_mm, high_mm, xtol=1e-10))  # pyright: ignore[reportArgumentType]
     return Arms(a_mm, ratio * a_mm)
 
 

@@ -43,13 +43,9 @@ def resolution() -> FigureTable:
         )
     )
     error_mm = design.error_mm(tactograph.ARMS, np.hypot(x_mm, y_mm), design.PRINTED_COUNT_RAD)
-    across_mm, down_mm = tactograph.canvas_at(x_mm, y_mm)
-    on_canvas = (
-        (across_mm >= 0)
-        & (across_mm <= tactograph.WIDTH_MM)
-        & (down_mm >= 0)
-        & (down_mm <= tactograph.HEIGHT_MM)
-    )
+    left_mm, far_mm = tactograph.arms_at(0.0, 0.0)
+    right_mm, near_mm = tactograph.arms_at(tactograph.WIDTH_MM, tactograph.HEIGHT_MM)
+    on_canvas = (x_mm >= left_mm) & (x_mm <= right_mm) & (y_mm >= far_mm) & (y_mm <= near_mm)
     made = [
         design.span(design.shortest(float(ratio)), count_rad=design.PRINTED_COUNT_RAD)
         for ratio in _RATIOS

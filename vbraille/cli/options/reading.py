@@ -301,6 +301,18 @@ def device_info(parser: ArgumentParser) -> None:
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
 
 
+def device_calibrate(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille device calibrate``."""
+    device_info(parser)
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument(
+        "--show", action="store_true", help="Print what is kept of the device's actuators only."
+    )
+    chosen.add_argument(
+        "--forget", action="store_true", help="Remove what is kept of the device's actuators."
+    )
+
+
 def tables(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille tables``."""
     parser.add_argument(
