@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.tiers import examples
 
+from tests.tiers import examples
 from vbraille.devices import calibrations
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.calibration import Calibration, Correction, Tried, correction_for

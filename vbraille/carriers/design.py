@@ -150,7 +150,7 @@ def shortest(ratio: float, demands: Demands = LETTER) -> Arms:
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class ResolutionSpan:
     """How finely arms measure at the nearest and at the farthest place of the page, in mm."""
 
     arms: Arms
@@ -158,17 +158,17 @@ class Span:
     worst_mm: float
 
 
-def span(arms: Arms, demands: Demands = LETTER, count_rad: float = COUNT_RAD) -> Span:
+def span(arms: Arms, demands: Demands = LETTER, count_rad: float = COUNT_RAD) -> ResolutionSpan:
     """Resolution of arms at both ends of the page that they reach nearest to the first joint."""
     near_mm, _ = annulus_mm(arms, demands)
     far_mm = math.hypot(demands.width_mm / 2, near_mm + demands.height_mm)
     best_mm, worst_mm = error_mm(arms, np.array([near_mm, far_mm]), count_rad)
-    return Span(arms, float(best_mm), float(worst_mm))
+    return ResolutionSpan(arms, float(best_mm), float(worst_mm))
 
 
 def best_ratio(
-    of: Callable[[Span], float], demands: Demands = LETTER, count_rad: float = COUNT_RAD
-) -> Span:
+    of: Callable[[ResolutionSpan], float], demands: Demands = LETTER, count_rad: float = COUNT_RAD
+) -> ResolutionSpan:
     """The shortest arms whose resolution is best, at the near or at the far end of the page.
 
     Parameters
