@@ -195,11 +195,8 @@ class _Guided:
             case "+" | "=" | "-":
                 self._set(turn.louder(-1 if key == "-" else 1))
                 say_line(f"gain: {100 * self._round.now.gain:.0f} %")
-            case "c" if turn.reference is None:
-                say_line("compare: no other actuator was found to be well")
             case "c":
-                self._compares = True
-                self._swinging.swing(turn.reference, turn.now.place)
+                self._compare(turn)
             case "u":
                 before = turn.undo()
                 if before is None:
@@ -219,6 +216,15 @@ class _Guided:
                 self._left = True
             case _:
                 say_line(f"no command: {key!r}; h says the keys")
+
+    def _compare(self, turn: Round) -> None:
+        """Have the last actuator that was well swing, and then the one in turn."""
+        well = turn.reference
+        if well is None:
+            say_line("compare: no other actuator was found to be well")
+            return
+        self._compares = True
+        self._swinging.swing(well, turn.now.place)
 
     def _find(self, turn: Round) -> None:
         """Go on to another round, keep what it has found, and ask of its actuator."""
