@@ -37,7 +37,7 @@ import sys
 from tests.benchmarks.bench_engine import INFO
 from vbraille.cli.commands.simulate import PRIORITY
 from vbraille.engine.realtime import come_first
-from vbraille.simulation.firmware import describe
+from vbraille.simulation.described import describe
 from vbraille.simulation.hand import Sweep
 from vbraille.devices.wire.messages import Encoder
 from vbraille.simulation.pty import Link, Port

@@ -13,7 +13,8 @@ from vbraille.devices.serial.openserial import begin
 from vbraille.devices.serial.ports import parse_address
 from vbraille.devices.wire.codec import Decoder
 from vbraille.devices.wire.messages import Encoder
-from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -31,7 +31,8 @@ from vbraille.devices.wire.codec import Decoder, encode
 from vbraille.devices.wire.messages import Encoder, State
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
-from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import Controller
 
 # A run does as many ticks as there are in 20 ms: one.
 ONE_AT_A_TIME_HZ = 60.0

@@ -24,7 +24,7 @@ class Bench:
         found = []
         for _ in range(round(seconds * 1000)):
             self.now_us += 1000
-            found.append(self.carriage.way_mm(self.now_us))
+            found.append(self.carriage.at(self.now_us).way_mm)
         return np.array(found)
 
 

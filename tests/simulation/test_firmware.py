@@ -25,7 +25,8 @@ from vbraille.devices.wire.messages import (
     Watchdog,
 )
 from vbraille.display import Display
-from vbraille.simulation.firmware import MARK_MM, Controller, describe
+from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import MARK_MM, Controller
 
 TOP = 1000  # 10 bits could say more
 INFO = Info(
