@@ -127,8 +127,14 @@ class BodyCodec:
                 set_field(message, value)
             return message
         known = dict(zip(self._head, values, strict=True))
-        for name, field in self._rest:
-            known[name], at = field.unpack(body, at, known)
+        try:
+            for name, field in self._rest:
+                known[name], at = field.unpack(body, at, known)
+        except WrongLengthError:
+            # A number that cannot be, such as 200 rows, explains a length that cannot be.
+            for name, field in fields_of(self.message)[: len(self._head)]:
+                field.check(name, known[name], None)
+            raise
         return self.message(**known)
 
 
