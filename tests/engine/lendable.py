@@ -327,8 +327,11 @@ def known(device):
     talk.decoder.feed(fields["begun"] or b"")
     for part in (talk.states, talk.frames):
         fields |= {(type(part), name): getattr(part, name) for name in type(part).__slots__}
-    for part in (talk.trips, talk.delivery, talk.place, talk.time):
-        fields |= {(type(part), name): value for name, value in vars(part).items()}
+    place = talk.place
+    axes = [axis for axis in (place.x, place.y, place.turn) if axis is not None]
+    for part in (talk.trips, talk.panel, talk.delivery, place, talk.time, *axes):
+        numbers = {name: value for name, value in vars(part).items() if value not in axes}
+        fields |= {(type(part), part is place.y, name): value for name, value in numbers.items()}
     fields["moved"] = talk.drive.last_ns, talk.drive.last.tolist()
     return fields
 

@@ -157,9 +157,7 @@ def test_a_hand_reads_the_page_line_by_line_and_again_from_its_top():
     assert found[:, 0].max() == pytest.approx(TRAVEL_MM, abs=1.0)
     middles = np.unique(found[np.flatnonzero(np.diff(found[:, 0]) > 0.9), 1].round(3))
     assert middles.tolist() == [5.0, 15.0, 25.0, 35.0, 45.0, 55.0]
-    back = np.flatnonzero(
-        np.diff(found[:, 1]) < 0
-    )  # up to the first line
+    back = np.flatnonzero(np.diff(found[:, 1]) < 0)  # up to the first line
     assert back.size > 100
     assert np.abs(np.diff(found[:, 1])).max() <= APPROACH_MM_S / 1000 + 1e-9
 

@@ -55,7 +55,6 @@ class ControlEvent:
     value: float
 
     def __post_init__(self) -> None:
-        check_range("time", self.at_s, 0, LONGEST_S, " s")
         what, most = ("knob", MOST_KNOBS) if self.knob else ("button", MOST_BUTTONS)
         check_range(what, self.number, 1, most)
         check_range("position of the knob", self.value, 0, 1)
@@ -106,7 +105,7 @@ class Controls:
         if key in "12345678":
             button = int(key)
             self._do(ControlEvent(0.0, False, button, 1.0))
-            self._typed.append(ControlEvent(min(now_s + SHORT_S, LONGEST_S), False, button, 0.0))
+            self._typed.append(ControlEvent(now_s + SHORT_S, False, button, 0.0))
             self._typed = sorted(self._typed, key=_time_of)[::-1]
             return f"button {button}: pressed"
         knob = "abcd".find(key.lower())
@@ -163,6 +162,7 @@ def parse_script(text: str, name: str) -> tuple[ControlEvent, ...]:
 
 def _event(found: re.Match[str]) -> ControlEvent:
     at_s = float(found["time"]) / (1000 if found["unit"] == "ms" else 1)
+    check_range("time", at_s, 0, LONGEST_S, " s")
     if found["knob"]:
         return ControlEvent(at_s, True, int(found["knob"]), float(found["value"]))
     return ControlEvent(at_s, False, int(found["button"]), float(found["what"] == "press"))

@@ -34,7 +34,6 @@ from vbraille.devices.wire.messages import (
     State2,
     Watchdog,
 )
-from vbraille.pose import Pose
 from vbraille.simulation.firmware import Controller
 
 NS_PER_MS = 1_000_000
@@ -95,7 +94,7 @@ class Beside(Conversation):
         self.steady_reads += 1
         assert self.is_as(lending) == received[consumed:].tobytes()
         assert (pose is None) == (states == 0)
-        assert pose is None or pose == Pose(talk.device_ns, talk.x_mm)
+        assert pose is None or pose == (talk.device_ns, talk.x_mm, talk.y_mm, talk.theta_rad)
         return pose
 
     def show(self, frame, now_ns):

@@ -98,7 +98,10 @@ def _display(arguments: argparse.Namespace) -> Display:
 def _height_mm(arguments: argparse.Namespace) -> float:
     """How far the carriage goes across the lines; 0 for one axis."""
     if "y" in arguments.axes:
-        return HEIGHT_MM if arguments.height is None else arguments.height
+        height_mm = HEIGHT_MM if arguments.height is None else arguments.height
+        if not height_mm > 0:
+            raise InputError(f"height is {height_mm:g} mm; it must be above 0")
+        return height_mm
     if arguments.height is not None:
         raise InputError("--height is for a carriage of two axes; add --axes xy or --axes xyθ")
     return 0.0

@@ -115,9 +115,12 @@ class Lending:
         states, frames, time = conversation.states, conversation.frames, conversation.time
         states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])
         states.missed = int(talk["missed"])
-        conversation.place.x.count = int(talk["count"])
-        if conversation.place.y is not None:
-            conversation.place.y.count = int(talk["y_count"])
+        place = conversation.place
+        place.x.count = int(talk["count"])
+        if place.y is not None:
+            place.y.count = int(talk["y_count"])
+        if place.turn is not None:
+            place.turn.count = int(talk["theta_count"])
         time.us, time.last_ns = int(talk["device_us"]), int(talk["device_ns"])
         time.host_ns = states.heard_ns
         frames.sequence, frames.felt_ns = int(talk["sequence"]), int(talk["felt_ns"])
@@ -162,7 +165,7 @@ def _lend_place(talk: np.void, place: Place) -> None:
     talk["counts_per_turn"] = 0 if turn is None else turn.counts_per_turn
     if turn is not None:
         talk["straight"], talk["rad_per_count"] = turn.straight, turn.rad_per_count
-        talk["theta_rad"] = turn.theta_rad
+        talk["theta_count"], talk["theta_rad"] = turn.count, turn.theta_rad
 
 
 def example(display: Display) -> Lent:

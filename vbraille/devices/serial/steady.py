@@ -61,6 +61,7 @@ CONVERSATION = np.dtype(
         ("y_mm_per_count", "<f8"),
         ("y_mm", "<f8"),
         ("counts_per_turn", "<i8"),  # 0 if no angle is measured
+        ("theta_count", "<i8"),  # of the angle, in the last STATE
         ("straight", "<i8"),  # count where the array is not turned
         ("rad_per_count", "<f8"),
         ("theta_rad", "<f8"),
@@ -178,7 +179,7 @@ def take(received, size, now_ns, talk, work):
         return SOMETHING_ELSE, 0
     state_sequence, missed = talk.state_sequence, talk.missed
     count, device_us = talk.count, talk.device_us
-    y_count, theta_count = talk.y_count, talk.straight
+    y_count, theta_count = talk.y_count, talk.theta_count
     device_ns = talk.device_ns
     acknowledged = False
     states = 0
@@ -227,6 +228,7 @@ def take(received, size, now_ns, talk, work):
         talk.y_count = y_count
         talk.y_mm = talk.y_mm_per_count * (y_count - talk.y_zero)
     if talk.counts_per_turn != 0:
+        talk.theta_count = theta_count
         half = talk.counts_per_turn // 2
         away = (theta_count - talk.straight + half) % talk.counts_per_turn - half
         talk.theta_rad = talk.rad_per_count * away
