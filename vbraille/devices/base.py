@@ -44,6 +44,10 @@ class Particulars:
     disabled, inverted
         Row and column, from 0, of each actuator that is broken, not fitted or without a swing,
         and of each whose rest is the highest level.
+    protocol
+        What the device speaks, with the version; empty if it does not say.
+    buttons, knobs
+        Number of buttons and of knobs that it has; None if it does not say.
     """
 
     firmware: str
@@ -51,6 +55,9 @@ class Particulars:
     largest_slew_per_s: float
     disabled: tuple[tuple[int, int], ...]
     inverted: tuple[tuple[int, int], ...]
+    protocol: str = ""
+    buttons: int | None = None
+    knobs: int | None = None
 
 
 class Device(ABC):

@@ -72,15 +72,30 @@ def _describe(device: Device) -> None:
     say_line(f"levels: {info.levels}")
     say_line(f"rest side: {info.rest_side}")
     say_line(f"travel: {info.travel_mm:g} mm")
+    say_line(f"axes: {_axes(info)}")
+    if info.contactor_mm is not None:
+        width_mm, height_mm = info.contactor_mm
+        say_line(f"contactor: {width_mm:g} mm wide, {height_mm:g} mm high")
     say_line(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
     say_line(f"rate: {info.rate_hz:g} Hz")
     if told is None:
         return
     slew = told.largest_slew_per_s
+    if told.protocol:
+        say_line(f"protocol: {told.protocol}")
+    if told.buttons is not None and told.knobs is not None:
+        say_line(f"buttons: {told.buttons}")
+        say_line(f"knobs: {told.knobs}")
     say_line(f"firmware: {told.firmware or 'it does not say'}")
     say_line(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
     say_line(f"disabled actuators: {_places(told.disabled, info)}")
     say_line(f"inverted actuators: {_places(told.inverted, info)}")
+
+
+def _axes(info: Display) -> str:
+    """Axes along which the carriage is measured, in words."""
+    across = f" and across, {info.height_mm:g} mm" if info.height_mm else ""
+    return f"along the line{across}{', and the angle' * info.turns}"
 
 
 def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:

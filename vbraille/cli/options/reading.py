@@ -253,6 +253,32 @@ def simulate(parser: ArgumentParser) -> None:
         "--travel", type=number, metavar="MM", help="Let the carriage go so far (default: 300 mm)."
     )
     parser.add_argument(
+        "--axes",
+        choices=("x", "xy", "xyθ"),
+        default="x",
+        help="Measure the carriage along the line only, or across the lines as well, or the angle "
+        "of the array as well; the hand then reads a page (default: x).",
+    )
+    parser.add_argument(
+        "--height",
+        type=number,
+        metavar="MM",
+        help="Let a carriage of two axes go so far across the lines (default: 200 mm).",
+    )
+    parser.add_argument(
+        "--protocol",
+        choices=("1", "2"),
+        default="2",
+        help="Speak this version of the wire protocol and no other; version 1 has one axis and no "
+        "knobs (default: 2).",
+    )
+    parser.add_argument(
+        "--script",
+        metavar="FILE",
+        help="Move buttons and knobs as this file says, with a time after the first greeting and "
+        "an event in each line: 2.5s press 1, 3s release 1, 4s knob 1 0.8 (default: nothing).",
+    )
+    parser.add_argument(
         "--press",
         default="",
         metavar="N@TIME,…",
