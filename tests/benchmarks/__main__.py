@@ -13,6 +13,7 @@ PARTS = (
     "wire",
     "engine",
     "tick",
+    "protocols",
     "faults",
     "jumps",
     "sessions",

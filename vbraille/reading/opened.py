@@ -16,8 +16,9 @@ from vbraille.errors import DeviceError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
 from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
-from vbraille.reading.commands.table import press_button, turn_knob
+from vbraille.reading.commands.table import press_button
 from vbraille.reading.echo import Echo
+from vbraille.reading.knobturns import KnobTurns
 from vbraille.reading.openhand import OpenHand
 from vbraille.reading.reader import Reader
 from vbraille.reading.underhand import MOST_CELLS
@@ -110,6 +111,7 @@ class OpenDevice:
         self._say = say
         self._attended = attended
         self._reader: Reader | None = None
+        self._knobs = KnobTurns()
         self._newest: np.void | None = None
         self._model: Model | None = None
         self._device = device if isinstance(device, Device) else None
@@ -299,7 +301,9 @@ class OpenDevice:
             if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
                 press_button(self.reader, event.number)
             elif isinstance(event, Knob):
-                turn_knob(self.reader, event.number, event.value)
+                self._knobs.turn(self.reader, event.number, event.value, time.monotonic())
+        if self._reader is not None:
+            self._knobs.settle(self.reader, time.monotonic())
 
     def _step(self, reader: Reader, ticks: NDArray[np.void]) -> None:
         """Have the reader look at ticks, and help a simulated hand that cannot go on by itself."""

@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-PLOTS = ("profile", "mapping", "wave", "strain", "page")
+PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 
 
 def nothing(_parser: ArgumentParser) -> None:
@@ -202,7 +202,8 @@ def plot(parser: ArgumentParser) -> None:
         metavar="KIND",
         help="Choose the picture: profile (how far an actuator leans along a dot), mapping (which "
         "row of actuators shows which row of dots), wave (the actuators as the array passes a "
-        "dot), strain (between neighbouring actuators) or page (lines with the array on one).",
+        "dot), strain (between neighbouring actuators), page (lines with the array on one) or "
+        "resolution (how finely the arms of the Tactograph measure, over its tray).",
     )
     groups.text(parser, optional=True)
     groups.show(parser)
@@ -252,6 +253,32 @@ def simulate(parser: ArgumentParser) -> None:
         "--travel", type=number, metavar="MM", help="Let the carriage go so far (default: 300 mm)."
     )
     parser.add_argument(
+        "--axes",
+        choices=("x", "xy", "xyθ"),
+        default="x",
+        help="Measure the carriage along the line only, or across the lines as well, or the angle "
+        "of the array as well; the hand then reads a page (default: x).",
+    )
+    parser.add_argument(
+        "--height",
+        type=number,
+        metavar="MM",
+        help="Let a carriage of two axes go so far across the lines (default: 200 mm).",
+    )
+    parser.add_argument(
+        "--protocol",
+        choices=("1", "2"),
+        default="2",
+        help="Speak this version of the wire protocol and no other; version 1 has one axis and no "
+        "knobs (default: 2).",
+    )
+    parser.add_argument(
+        "--script",
+        metavar="FILE",
+        help="Move buttons and knobs as this file says, with a time after the first greeting and "
+        "an event in each line: 2.5s press 1, 3s release 1, 4s knob 1 0.8 (default: nothing).",
+    )
+    parser.add_argument(
         "--press",
         default="",
         metavar="N@TIME,…",
@@ -298,6 +325,18 @@ def device_info(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille device info`` and ``check``."""
     parser.add_argument("spec", metavar="SPEC", help=f"{SPEC}.")
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
+
+
+def device_calibrate(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille device calibrate``."""
+    device_info(parser)
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument(
+        "--show", action="store_true", help="Print what is kept of the device's actuators only."
+    )
+    chosen.add_argument(
+        "--forget", action="store_true", help="Remove what is kept of the device's actuators."
+    )
 
 
 def tables(parser: ArgumentParser) -> None:

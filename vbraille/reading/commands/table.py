@@ -97,23 +97,29 @@ def press_button(reader: Reader, number: int) -> None:
         reader.say(f"button {number}: not now; answer first")
 
 
-def turn_knob(reader: Reader, number: int, share: float) -> None:
+def turn_knob(reader: Reader, number: int, share: float) -> str:
     """Give the value of the tuning that a knob of the device turns its place in the knob's range.
 
     Parameters
     ----------
     share
         Place of the knob, 0 to 1.
+
+    Returns
+    -------
+    str
+        Sentence that tells the new value, for whoever says it; empty if nothing has changed.
     """
     name = (reader.bound or BOUND).knobs.get(number)
     if reader.context is Context.LEARNING:
         says = "no value" if name is None else TURNED[name].replace("_", " ")
-        reader.say(f"knob {number}: {says}")
-    elif name is not None:
+        return f"knob {number}: {says}"
+    if name is not None:
         value = round(share, 2)
         if getattr(reader.style.tuning, TURNED[name]) != value:
             reader.tune(**{TURNED[name]: value})
-            reader.say(f"{TURNED[name]}: {value:g}")
+            return f"{TURNED[name]}: {value:g}"
+    return ""
 
 
 def say_keys(reader: Reader) -> None:

@@ -171,6 +171,12 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     monitor
         What the live view shows: whether it is `blind`, the `host` at which it is served, and
         whether its `pointer` may be the hand; left out without a live view. From format 5 on.
+    calibration
+        What was made up for in the device's actuators, after the frame that the trace keeps:
+        `scale`, by which each deflection was multiplied (below 0: the actuator is inverted, and
+        sent 1 more), which are `dead` and which `weak`, by row and column from 0, and how many of
+        the `actuators` were `tried`; left out if deflections were sent as they are. From format 6
+        on.
     """
 
     durable: ClassVar[bool] = True
@@ -192,6 +198,7 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     torn_bytes: int = 0
     torn_file: dict[str, Any] = {}
     monitor: LiveView | None = None
+    calibration: dict[str, Any] | None = None
 
 
 class Presented(WithStimulus, frozen=True, kw_only=True):

@@ -160,7 +160,11 @@ class Course:
         self._watched = {"monitor": started["monitor"]} if "monitor" in started else {}
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
-            started |= {"trace": trace, "device": asdict(display.engine.display)}
+            started |= {
+                "trace": trace,
+                "device": asdict(display.engine.display),
+                "calibration": display.engine.calibration,
+            }
             while not display.now_ns:  # the session runs by the device's clock, which has to start
                 display.poll()
                 self.sleep()
