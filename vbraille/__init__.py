@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.models import STRESS2 as STRESS2
     from vbraille.render.braille.models import VBD as VBD
     from vbraille.render.braille.models import Model as Model
+    from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
     from vbraille.render.braille.tuning import Tuning as Tuning
     from vbraille.sessions.conditions import Conditions as Conditions
@@ -54,6 +55,7 @@ _PLACES = {
     "Results": "vbraille.analysis.results",
     "STRESS2": "vbraille.render.braille.models",
     "Session": "vbraille.sessions.session",
+    "Straying": "vbraille.render.braille.straying",
     "Tuning": "vbraille.render.braille.tuning",
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
@@ -78,6 +80,7 @@ __all__ = [
     "RenderedLine",
     "Results",
     "Session",
+    "Straying",
     "Tuning",
     "VbrailleError",
     "analyse",

@@ -7,6 +7,7 @@ made, not when this is imported.
 from vbraille.render.braille.mappings import MAPPINGS, Mapping, single_row
 from vbraille.render.braille.models import MODELS, STRESS2, VBD, Model, model_of
 from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.straying import Straying
 from vbraille.render.braille.style import BrailleStyle
 from vbraille.render.braille.tuning import Tuning
 
@@ -19,6 +20,7 @@ __all__ = [
     "Mapping",
     "Model",
     "Profile",
+    "Straying",
     "Tuning",
     "model_of",
     "single_row",

@@ -82,6 +82,10 @@ class Mapping:
         return bits
 
 
+_ALL = tuple(range(DOT_ROWS))
+# Which rows of dots each cell has in its left and in its right dot column; uint16[256, 2].
+DOT_BITS = Mapping("dots", _ALL, _ALL, (False,) * DOT_ROWS).row_bits()
+
 _NO = (False,) * 6
 _PAIRS = (0, 0, 1, 1, 2, 2)
 _EVEN = (0, NONE, 1, NONE, 2, NONE)
