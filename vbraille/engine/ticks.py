@@ -184,8 +184,8 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
     wanted = _wanted(state, now_ns, taking, numbers)
-    same = now["shown"] != 0 and now["shown"] == wanted
-    part = part_of(numbers, y_mm, now["part"] if same else work.NO_PART)
+    # A finger at the edge of its line stays on it when the page comes in another style, too.
+    part = part_of(numbers, y_mm, now["part"] if now["shown"] != 0 else work.NO_PART)
     if wanted != now["shown"]:
         if wanted != now["begun"] and wanted != 0:
             now["begun"] = wanted

@@ -91,6 +91,7 @@ _PAIRS = (0, 0, 1, 1, 2, 2)
 _EVEN = (0, NONE, 1, NONE, 2, NONE)
 _ODD = (NONE, 0, NONE, 1, NONE, 2)
 _TOP = (0, 1, 2, NONE, NONE, NONE)
+_EIGHT = (0, NONE, 1, NONE, 2, NONE, 3, NONE)
 
 MAPPINGS = {
     mapping.name: mapping
@@ -109,6 +110,9 @@ MAPPINGS = {
         Mapping("compact", _TOP, _TOP, _NO),
         # Our own: as compact, in the middle of any array of three rows or more.
         Mapping("three-rows", (0, 1, 2), (0, 1, 2), (False,) * 3),
+        # For arrays of eight rows: alternate from the first row on, as the later code has it there.
+        # What is left are two rows, of which one takes dots 7 and 8: our own.
+        Mapping("eight-dots", _EIGHT, _EIGHT, (False,) * 8),
     )
 }
 

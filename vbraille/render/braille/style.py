@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
 
 
+_USUAL = Straying()
+
+
 @dataclass(frozen=True, slots=True)
 class BrailleStyle:
     """How braille is shown on a display.
@@ -52,7 +55,7 @@ class BrailleStyle:
     geometry: Geometry
     tuning: Tuning
     first_row: int | None = None
-    straying: Straying = Straying()
+    straying: Straying = _USUAL
 
     def replace(self, **changes: Any) -> Self:
         """Make a style that differs from this one in the given fields.
