@@ -262,7 +262,7 @@ class LineReader:
         return True
 
     def turn_page(self, step: int) -> bool:
-        """Turn to the next page, or to the one before, and say which lines it has if they are many.
+        """Turn to the next page, or to the one before, and say which lines that has.
 
         Where one line is shown, that is the page.
         """
@@ -275,7 +275,8 @@ class LineReader:
         first, last = (sheet.there[end].line for end in (0, -1))
         if is_counted(self.layout):
             numbers = self.layout.number_of(first), self.layout.number_of(last)
-            self.say(f"page: lines {numbers[0]} to {numbers[1]}")
+            named = f"line {numbers[0]}" if first is last else "lines {} to {}".format(*numbers)
+            self.say(f"page: {named}")
         else:
             self.say(place_sentence(self.layout, first))
         return True

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from vbraille.simulation.steering import Steering
 
 MOST_CELLS = 512  # that can be shown at once, however close they stand
+# A finger that goes across lines is on none of them: nothing of one has faded in before.
+_STAY_NS = 120_000_000
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PAUSED, _HELD, _TURNED = int(Flag.PAUSED), int(Flag.HELD), int(Flag.TURNED)
 
@@ -87,6 +89,7 @@ class UnderHand:
         self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
         self._part = -1
+        self._near, self._near_ns = -1, 0  # the row that the finger came to last, and when
         self._foot: Foot
         self._steering = steering
         self._say = say
@@ -174,7 +177,7 @@ class UnderHand:
         self._waiting = Waiting(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
 
     def come_to(self, ticks: NDArray[np.void], name: Callable[[Line], str]) -> bool:
-        """Take from ticks which line of a page the finger is on.
+        """Take from ticks which line of a page the finger is on, once it has stayed there a moment.
 
         Parameters
         ----------
@@ -189,7 +192,16 @@ class UnderHand:
             Whether it is another line than before.
         """
         sheet, row = self.sheet, int(ticks["part"][-1])
-        if sheet is None or not sheet.paged or row == self._row or not sheet.has(row):
+        if sheet is None or not sheet.paged:
+            return False
+        others = np.flatnonzero(ticks["part"] != row)
+        if others.size or row != self._near:
+            self._near = row
+            begun = others[-1] + 1 if others.size else 0
+            self._near_ns = int(ticks["time_ns"][begun])
+        if row == self._row or not sheet.has(row):
+            return False
+        if int(ticks["time_ns"][-1]) - self._near_ns < _STAY_NS:
             return False
         window = sheet.windows[row]
         assert window is not None

@@ -75,21 +75,30 @@ class Drift:
     ----------
     random
         Generator that draws the drift; each drift is a different one.
+    pitches, tilt_rad
+        How far the hand goes at most, in line pitches, and how far it turns.
     """
 
-    def __init__(self, random: np.random.Generator) -> None:
+    def __init__(
+        self,
+        random: np.random.Generator,
+        pitches: float = DRIFT_PITCHES,
+        tilt_rad: float = TILT_RAD,
+    ) -> None:
+        self._pitches = pitches
+        self._tilt_rad = tilt_rad
         self._waves = [self._draw(random) for _ in range(2)]
 
     def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far below the middle of the line the hand is at some times, in line pitches.
 
-        Values are in -`DRIFT_PITCHES` … `DRIFT_PITCHES`.
+        Values are within the bounds that were given.
         """
-        return DRIFT_PITCHES * self._wave(0, t_s)
+        return self._pitches * self._wave(0, t_s)
 
     def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the hand is turned at some times, -`TILT_RAD` … `TILT_RAD`."""
-        return TILT_RAD * self._wave(1, t_s)
+        """How far the hand is turned at some times, within the bound that was given."""
+        return self._tilt_rad * self._wave(1, t_s)
 
     @staticmethod
     def _draw(random: np.random.Generator) -> list[tuple[float, float, float]]:

@@ -214,7 +214,7 @@ COMMANDS = (
         "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
     ),
     Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
-    Command("STRAYING", ("|",), "keep the finger on its line, or show all", paging.change_straying),
+    Command("STRAYING", ("=",), "keep the finger on its line, or show all", paging.change_straying),
     Command("BAND_UP", (")",), "leave a line of a page later", made(paging.turn_band, 1)),
     Command("BAND_DOWN", ("(",), "leave a line of a page sooner", made(paging.turn_band, -1)),
     Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
