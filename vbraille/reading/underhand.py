@@ -210,6 +210,8 @@ class UnderHand:
 
     def show_in(self, style: BrailleStyle) -> None:
         """Show lines in another style from now on, this one too."""
+        if style.geometry.line_pitch_mm != self.style.geometry.line_pitch_mm:
+            self._part = -1  # lines will stand elsewhere
         self.style = style
         self.width = self.width_in(style)
         self.rows = rows_on(self._display, style)

@@ -266,25 +266,27 @@ def _free(numbers, table, at, out):
             line = y / numbers[LINE_PITCH]
             line = line if line > -1.0 else -1.0
             line = math.floor(line if line < lines else lines)
-            below = y - (line + 0.5) * numbers[LINE_PITCH] + numbers[DOT_ROW_PITCH]
             cell = x * numbers[CELLS_PER_MM]
             cell = cell if cell > -1.0 else -1.0
             cell = math.floor(cell if cell < cells else cells)
-            base = int(line + 1) * int(numbers[SLOTS])
             swing = 0.0
-            for dot_row in range(_DOT_ROWS):
-                dy = below - dot_row * numbers[DOT_ROW_PITCH]
-                if abs(dy) >= radius:
-                    continue
-                # The dots of this cell, and the right ones of the cell before, which may reach in.
-                for which in range(-1, 2):
-                    slot = int(2 * (cell + 1)) + which
-                    edge = cell * pitch + numbers[DOT_SPACING] * (which & 1)
-                    edge -= pitch if which < 0 else 0.0
-                    dx = x - edge - radius
-                    q = (dx * dx + dy * dy) * numbers[DOTS_PER_MM] ** 2
-                    if q < 0.25 and slot >= 0:
-                        swing = max(swing, _dot(numbers, table, base + slot, dot_row, dx, q))
+            # The lines above and below may reach in, if lines are close or cells have eight dots.
+            for near in range(max(int(line) - 1, 0), min(int(line) + 2, lines)):
+                below = y - (near + 0.5) * numbers[LINE_PITCH] + numbers[DOT_ROW_PITCH]
+                base = (near + 1) * int(numbers[SLOTS])
+                for dot_row in range(_DOT_ROWS):
+                    dy = below - dot_row * numbers[DOT_ROW_PITCH]
+                    if abs(dy) >= radius:
+                        continue
+                    # The dots of this cell, and the right one of the cell before.
+                    for which in range(-1, 2):
+                        slot = int(2 * (cell + 1)) + which
+                        edge = cell * pitch + numbers[DOT_SPACING] * (which & 1)
+                        edge -= pitch if which < 0 else 0.0
+                        dx = x - edge - radius
+                        q = (dx * dx + dy * dy) * numbers[DOTS_PER_MM] ** 2
+                        if q < 0.25 and slot >= 0:
+                            swing = max(swing, _dot(numbers, table, base + slot, dot_row, dx, q))
             out[row, column] = idle + gain * swing
 
 

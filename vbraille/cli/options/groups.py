@@ -229,7 +229,7 @@ def page(parser: ArgumentParser) -> None:
         "--band",
         type=number,
         metavar="0…0.9",
-        help="Leave a line of a page half so far beyond its edge, in line pitches (default: 0.5).",
+        help="Leave a line of a page half so far beyond its edge, in line pitches (default: 0.25).",
     )
 
 

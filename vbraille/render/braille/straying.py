@@ -13,7 +13,7 @@ Manner = Literal["line", "free"]
 MANNERS: Final[tuple[Manner, ...]] = ("line", "free")
 
 # Measured with hands that drift: `python -m tests.measures.straying`, and docs/measured.md.
-BAND: Final = 0.5
+BAND: Final = 0.25
 BAND_BOUNDS: Final = (0.0, 0.9)
 # Farther turned than this, an array shows no braille. Measured likewise, in the same table: the
 # ends of a row of actuators then lie over another row of dots than the one that they show.
