@@ -73,8 +73,8 @@ class Bench:
 
     @property
     def page(self):
-        sheet = self.reader.under.sheet
-        return [None if part is None else part.line.number for part in sheet.windows]
+        surface = self.reader.under.surface
+        return [None if part is None else part.line.number for part in surface.windows]
 
     def run(self, seconds):
         for _ in range(math.ceil(seconds * RATE_HZ / 2)):
@@ -107,7 +107,7 @@ def test_a_page_has_as_many_lines_as_there_is_room_for_with_a_foot_below_them():
     assert Bench(rows=20).page == list(range(1, LINES + 1))
     bench = Bench(rows=0)  # less than a line: one line, wherever along y the array is
     assert bench.page == [1]
-    assert not bench.reader.under.sheet.paged
+    assert not bench.reader.under.surface.paged
 
 
 def test_the_line_under_the_finger_is_where_somebody_is():
@@ -322,7 +322,7 @@ def test_lines_that_are_longer_than_the_surface_are_panned_together():
     bench.to_row(2)
     assert bench.reader.pan(1)
     assert (bench.page, bench.line) == ([1, 2, 3, 4], 3)
-    offsets = [part.offset for part in bench.reader.under.sheet.windows]
+    offsets = [part.offset for part in bench.reader.under.surface.windows]
     assert offsets == [wide] * ROWS
     bench.reader.jump(41 * 3)
     bench.reader.go_on()

@@ -9,7 +9,7 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.ranged import LineRange
-from vbraille.reading.sheet import Sheet, around, turned
+from vbraille.reading.surface import Surface, around, turned
 from vbraille.reading.underhand import UnderHand
 from vbraille.reading.upright import Upright
 from vbraille.reading.whereabouts import (
@@ -217,9 +217,9 @@ class LineReader:
             return Cue.LINE_END
         if following.block.kind is BlockKind.PAGE:
             return Cue.PAGE_END
-        sheet = self.under.sheet
-        if sheet is not None and sheet.paged:
-            return Cue.PAGE_END if self.window is sheet.windows[-1] else Cue.LINE_END
+        surface = self.under.surface
+        if surface is not None and surface.paged:
+            return Cue.PAGE_END if self.window is surface.windows[-1] else Cue.LINE_END
         number = 0 if self.line is None else self.layout.number_of(self.line)
         return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
 
@@ -239,61 +239,53 @@ class LineReader:
         On a page the parts of all lines are put there.
         """
         here = self._here
-        sheet = None if here is None else here.panned(step)
-        if sheet is not None:
-            self._put(sheet)
-        return sheet is not None
+        surface = None if here is None else here.panned(step)
+        if surface is not None:
+            self._put(surface)
+        return surface is not None
 
-    def turn(self, step: int) -> bool:
+    def turn_page(self, step: int) -> bool:
         """Put the next page under the hand, or the one before; False if there is none.
 
-        Where one line is shown, that is the page.
+        It is said which lines a page has. Where one line is shown, that is the page.
         """
-        here = self.under.sheet
+        here = self.under.surface
         if here is None:
             return False
         if not here.paged:
             return self.go_by(step)
-        sheet = turned(self.range, here, step, self.under.rows, skip_blank=self.skip_blank)
-        if sheet is None:
+        page = turned(self.range, here, step, self.under.rows, skip_blank=self.skip_blank)
+        if page is None:
             return False
-        row = self.under.row
-        self._put(replace(sheet, row=row) if sheet.has(row) else sheet)
-        return True
-
-    def turn_page(self, step: int) -> bool:
-        """Turn to the next page, or to the one before, and say which lines that has.
-
-        Where one line is shown, that is the page.
-        """
-        if not self.turn(step):
-            return False
-        sheet = self.under.sheet
-        if sheet is None or not sheet.paged:
-            return True
         self.cue(Cue.PAGE_END)
-        first, last = (sheet.there[end].line for end in (0, -1))
-        if is_counted(self.layout):
-            numbers = self.layout.number_of(first), self.layout.number_of(last)
-            named = f"line {numbers[0]}" if first is last else "lines {} to {}".format(*numbers)
-            self.say(f"page: {named}")
-        else:
-            self.say(place_sentence(self.layout, first))
+        self.say(self._page_sentence(page))
+        row = self.under.row
+        self._put(replace(page, row=row) if page.has(row) else page)
         return True
+
+    def _page_sentence(self, page: Surface) -> str:
+        """Which lines a page has, or where it begins while lines are not counted."""
+        first, last = page.there[0].line, page.there[-1].line
+        if not is_counted(self.layout):
+            return place_sentence(self.layout, first)
+        numbers = [self.layout.number_of(line) for line in (first, last)]
+        return (
+            f"page: line {numbers[0]}" if first is last else "page: lines {} to {}".format(*numbers)
+        )
 
     @property
     def _paged(self) -> bool:
-        return self.under.sheet is not None and self.under.sheet.paged
+        return self.under.surface is not None and self.under.surface.paged
 
     @property
-    def _here(self) -> Sheet | None:
+    def _here(self) -> Surface | None:
         """What is under the hand, with the row that the finger is in as the one that is meant."""
-        sheet, window = self.under.sheet, self.window
-        return None if sheet is None else replace(sheet, row=sheet.windows.index(window))
+        surface, window = self.under.surface, self.window
+        return None if surface is None else replace(surface, row=surface.windows.index(window))
 
     def _prefetch(self) -> None:
         """Lay out what comes next."""
-        here = self.under.sheet
+        here = self.under.surface
         if here is None:
             return
         if here.paged:
@@ -360,11 +352,11 @@ class LineReader:
             row = self.under.row
             self._put(around(self.range, window, row, rows, skip_blank=self.skip_blank))
         else:
-            self._put(Sheet((window,)))
+            self._put(Surface((window,)))
 
-    def _put(self, sheet: Sheet) -> None:
-        another = self.line is None or self.line.number != sheet.window.line.number
-        self.under.put(sheet, line_name(self.layout, sheet.window.line))
+    def _put(self, surface: Surface) -> None:
+        another = self.line is None or self.line.number != surface.window.line.number
+        self.under.put(surface, line_name(self.layout, surface.window.line))
         self._finished = False
         self._came(another=another)
 

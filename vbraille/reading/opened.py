@@ -20,7 +20,7 @@ from vbraille.reading.echo import Echo
 from vbraille.reading.inuse import DeviceInUse
 from vbraille.reading.openhand import OpenHand
 from vbraille.reading.reader import Reader
-from vbraille.reading.sheet import MOST_LINES
+from vbraille.reading.surface import MOST_LINES
 from vbraille.reading.underhand import MOST_CELLS
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (

@@ -11,8 +11,8 @@ from vbraille.engine.advance import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.texts import cells_per_line
 from vbraille.reading.foot import Foot
-from vbraille.reading.sheet import Sheet, below_pitches, rows_on
 from vbraille.reading.speed import too_fast_note
+from vbraille.reading.surface import Surface, below_pitches, rows_on
 from vbraille.reading.waiting import Waiting
 from vbraille.simulation.steering import ReadLine, ReadPage
 
@@ -54,7 +54,7 @@ class UnderHand:
 
     Attributes
     ----------
-    sheet : Sheet or None
+    surface : Surface or None
         What lies on the surface; None before the first.
     style : BrailleStyle
         How lines are shown.
@@ -78,7 +78,7 @@ class UnderHand:
         by_hand: bool,
         key: str,
     ) -> None:
-        self.sheet: Sheet | None = None
+        self.surface: Surface | None = None
         self.style = model.style
         self.shown = 0
         self.patient = False
@@ -104,19 +104,19 @@ class UnderHand:
     @property
     def window(self) -> Window | None:
         """Part of the line that the finger is on, or was on last; None before the first."""
-        return None if self.sheet is None else self.sheet.windows[self._row]
+        return None if self.surface is None else self.surface.windows[self._row]
 
     @property
     def number(self) -> int:
         """Number by which records call what is shown; 0 before the first."""
-        return 0 if self.sheet is None else self.sheet.number
+        return 0 if self.surface is None else self.surface.number
 
     @property
     def row(self) -> int:
         """Row of a page that the finger is in now; the first if it is not on the page."""
         if self._y_mm is None:
             return 0
-        if self.sheet is not None and 0 <= self._part < len(self.sheet.windows):
+        if self.surface is not None and 0 <= self._part < len(self.surface.windows):
             return self._part
         row = math.floor(self._y_mm / self.style.geometry.line_pitch_mm)
         return row if 0 <= row < self.rows else 0
@@ -124,7 +124,7 @@ class UnderHand:
     @property
     def cells(self) -> int:
         """Number of cells that are shown."""
-        return 0 if self.sheet is None else sum(map(len, self.sheet.there))
+        return 0 if self.surface is None else sum(map(len, self.surface.there))
 
     @property
     def hopeless(self) -> str | None:
@@ -146,21 +146,21 @@ class UnderHand:
         """
         return min(cells_per_line(style.geometry, self._display), MOST_CELLS)
 
-    def put(self, sheet: Sheet, name: str) -> None:
+    def put(self, surface: Surface, name: str) -> None:
         """Put something else under the hand.
 
         Parameters
         ----------
-        sheet
+        surface
             What it is.
         name
             What the line that is meant is called, such as "line 12".
         """
-        self.sheet = sheet
+        self.surface = surface
         self.shown += 1
-        self._foot = Foot(len(sheet.windows))
-        self._enter(sheet.row, name)
-        self._render(sheet)
+        self._foot = Foot(len(surface.windows))
+        self._enter(surface.row, name)
+        self._render(surface)
         self.steer()
 
     def _enter(self, row: int, name: str) -> None:
@@ -168,12 +168,12 @@ class UnderHand:
         self._row = row
         self._begun = False
         window = self.window
-        assert self.sheet is not None
+        assert self.surface is not None
         assert window is not None
         span_mm = self._display.span_mm
         self._end_mm = self._end_of(window)
         self._end = EndOfLine(span_mm, self._end_mm)
-        by_hand = self._by_hand and not self.sheet.paged
+        by_hand = self._by_hand and not self.surface.paged
         self._waiting = Waiting(span_mm, self._end_mm, name, by_hand=by_hand, key=self._key)
 
     def come_to(self, ticks: NDArray[np.void], name: Callable[[Line], str]) -> bool:
@@ -191,19 +191,19 @@ class UnderHand:
         bool
             Whether it is another line than before.
         """
-        sheet, row = self.sheet, int(ticks["part"][-1])
-        if sheet is None or not sheet.paged:
+        surface, row = self.surface, int(ticks["part"][-1])
+        if surface is None or not surface.paged:
             return False
         others = np.flatnonzero(ticks["part"] != row)
         if others.size or row != self._near:
             self._near = row
             begun = others[-1] + 1 if others.size else 0
             self._near_ns = int(ticks["time_ns"][begun])
-        if row == self._row or not sheet.has(row):
+        if row == self._row or not surface.has(row):
             return False
         if int(ticks["time_ns"][-1]) - self._near_ns < _STAY_NS:
             return False
-        window = sheet.windows[row]
+        window = surface.windows[row]
         assert window is not None
         self._enter(row, name(window.line))
         return True
@@ -216,18 +216,18 @@ class UnderHand:
         self.width = self.width_in(style)
         self.rows = rows_on(self._display, style)
         self._too_fast_said = False
-        if self.sheet is not None:
-            self._render(self.sheet)
+        if self.surface is not None:
+            self._render(self.surface)
 
     def steer(self) -> None:
         """Have a simulated hand read the line under it; a person's hand does so by itself."""
-        if self._steering is None or self.sheet is None:
+        if self._steering is None or self.surface is None:
             return
-        if not self.sheet.paged:
+        if not self.surface.paged:
             self._steering.give(ReadLine(self._end_mm))
             return
-        pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.sheet.windows)
-        end_mm = max(map(self._end_of, self.sheet.there))
+        pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.surface.windows)
+        end_mm = max(map(self._end_of, self.surface.there))
         below_mm = self._display.height_mm - lines * pitch_mm
         foot_mm = min(below_mm, (below_pitches(self.style) + 0.5) * pitch_mm) * self._by_hand
         self._steering.give(ReadPage(lines, pitch_mm, end_mm, foot_mm))
@@ -238,7 +238,7 @@ class UnderHand:
 
     def felt(self, ticks: NDArray[np.void]) -> NDArray[np.void]:
         """Take of some ticks those in which the line was to be felt."""
-        if self.sheet is None:
+        if self.surface is None:
             return ticks[:0]
         if ticks.size and not math.isnan(ticks["y_mm"][-1]):
             self._y_mm, self._part = float(ticks["y_mm"][-1]), int(ticks["part"][-1])
@@ -254,7 +254,7 @@ class UnderHand:
         """
         # What the device did not take was not felt, and neither was anything beside the line.
         felt = ticks["flags"] & (_HELD | _TURNED) == 0
-        paged = self.sheet is not None and self.sheet.paged
+        paged = self.surface is not None and self.surface.paged
         if paged:
             felt &= ticks["part"] == self._row
         felt_mm = ticks["x_mm"][felt]
@@ -282,14 +282,14 @@ class UnderHand:
         """Place where the last dot of a part of a line ends."""
         return window.start_mm + self.style.geometry.extent_mm(len(window))
 
-    def _render(self, sheet: Sheet) -> None:
-        if sheet.paged:
+    def _render(self, surface: Surface) -> None:
+        if surface.paged:
             blank = np.zeros(0, np.uint8)
-            masks = [blank if part is None else part.masks for part in sheet.windows]
+            masks = [blank if part is None else part.masks for part in surface.windows]
             program = self.style.render_page(masks, self._display)
         else:
-            program = self.style.render(sheet.window.masks, self._display)
-        start_mm = sheet.window.start_mm
+            program = self.style.render(surface.window.masks, self._display)
+        start_mm = surface.window.start_mm
         if start_mm:
             program = program.with_anchor(self._display.span_mm / 2 + start_mm)
-        self._engine.show(program, sheet.number)
+        self._engine.show(program, surface.number)

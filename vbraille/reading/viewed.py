@@ -169,12 +169,12 @@ class Viewed:
     def _lines(self, line: Line) -> Iterable[LineShown]:
         """Lines to be drawn, from top to bottom."""
         reader = self._device.reader
-        window, layout, sheet = reader.window, reader.layout, reader.under.sheet
+        window, layout, surface = reader.window, reader.layout, reader.under.surface
         assert window is not None, "a line is under the hand"
-        assert sheet is not None
+        assert surface is not None
         pitch_mm = reader.style.geometry.line_pitch_mm
-        if sheet.paged:
-            for row, part in enumerate(sheet.windows):
+        if surface.paged:
+            for row, part in enumerate(surface.windows):
                 if part is not None:
                     yield _part_shown(part, top_mm=row * pitch_mm, under=part is window)
             return

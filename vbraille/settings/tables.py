@@ -45,7 +45,7 @@ class ReadTable(Table, frozen=True):
     band: float | None = None
 
     def __post_init__(self) -> None:
-        check_range("band", self.band, *BAND_BOUNDS, " line pitches")
+        check_range("band", self.band, *BAND_BOUNDS)
         if self.profile is not None:
             check_name(self.profile)
         if self.table is not None and (self.language is not None or self.grade is not None):

@@ -45,4 +45,4 @@ class Straying:
     def __post_init__(self) -> None:
         if self.manner not in MANNERS:
             raise ValueError(f"straying is {self.manner!r}; it must be line or free")
-        check_range("band", self.band, *BAND_BOUNDS, " line pitches")
+        check_range("band", self.band, *BAND_BOUNDS)

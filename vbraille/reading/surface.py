@@ -23,7 +23,7 @@ FOOT_PITCHES: Final = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sheet:
+class Surface:
     """Parts of lines, one below the other, and the one that the finger is meant to be on.
 
     Parameters
@@ -54,7 +54,7 @@ class Sheet:
 
     @property
     def number(self) -> int:
-        """Number by which records call the sheet: of a page, the number that its top row has."""
+        """Number by which records call the surface: of a page, the number that its top row has."""
         top = self.there[0].line.number - (len(self.windows) - len(self.there))
         return top if top > 0 else top - 1  # 0 means that nothing was shown yet
 
@@ -62,7 +62,7 @@ class Sheet:
         """Whether there is a line in a row."""
         return 0 <= row < len(self.windows) and self.windows[row] is not None
 
-    def panned(self, step: int) -> Sheet | None:
+    def panned(self, step: int) -> Surface | None:
         """The parts after these, or before them where the step is -1; None if there are none."""
         here = self.window
         if not self.paged:
@@ -92,7 +92,7 @@ def below_pitches(style: BrailleStyle) -> float:
 
 def around(
     lines: LineRange, window: Window, row: int, rows: int, *, skip_blank: bool = False
-) -> Sheet:
+) -> Surface:
     """Make a page with a part of a line in a row, and what is before and after it around it.
 
     Parameters
@@ -116,26 +116,26 @@ def around(
     above = list(islice(_walk(lines, number, -1, skip_blank=skip_blank), row))
     below = islice(_walk(lines, number, 1, skip_blank=skip_blank), rows - row - 1)
     before = (*[None] * (row - len(above)), *map(part, reversed(above)))
-    return Sheet((*before, window, *map(part, below)), row, paged=True)
+    return Surface((*before, window, *map(part, below)), row, paged=True)
 
 
 def turned(
-    lines: LineRange, sheet: Sheet, step: int, rows: int, *, skip_blank: bool = False
-) -> Sheet | None:
+    lines: LineRange, surface: Surface, step: int, rows: int, *, skip_blank: bool = False
+) -> Surface | None:
     """Make the page after one, or before it where the step is -1; None if there are no lines.
 
     Parameters
     ----------
     lines
         Lines that are read.
-    sheet
+    surface
         The page.
     rows
         Number of rows of a page.
     skip_blank
         Whether lines without dots are left out.
     """
-    at = sheet.there[-1 if step > 0 else 0]
+    at = surface.there[-1 if step > 0 else 0]
     found = list(islice(_walk(lines, at.line.number, step, skip_blank=skip_blank), rows))
     if not found:
         return None
@@ -143,7 +143,7 @@ def turned(
         found.reverse()
         more = _walk(lines, found[-1].number, 1, skip_blank=skip_blank)
         found += islice(more, rows - len(found))  # the first page is a whole one
-    return Sheet(tuple(Window(line, at.width) for line in found), paged=True)
+    return Surface(tuple(Window(line, at.width) for line in found), paged=True)
 
 
 def _walk(lines: LineRange, number: int, step: int, *, skip_blank: bool) -> Iterator[Line]:
