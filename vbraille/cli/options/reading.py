@@ -96,6 +96,7 @@ def _reading(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--verbose", action="store_true", help="Say more, such as how far a search has come."
     )
+    groups.page(parser)
     groups.hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
@@ -179,13 +180,7 @@ def render(parser: ArgumentParser) -> None:
     groups.show(parser)
     groups.hand(parser)
     parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
-    parser.add_argument(
-        "--height",
-        type=number,
-        metavar="MM",
-        help="Let the carriage go so far down the page, too: the hand reads pages of lines "
-        "(default: it goes along a line only).",
-    )
+    groups.page(parser)
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
@@ -232,7 +227,8 @@ def simulate(parser: ArgumentParser) -> None:
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Be this display: the STReSS² or the VBD (default: stress2).",
+        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, or the VBD "
+        "(default: stress2).",
     )
     groups.hand(parser)
     parser.set_defaults(rate=1000)
