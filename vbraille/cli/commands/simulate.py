@@ -19,15 +19,24 @@ from vbraille.simulation.specs import parse_hand
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping
 
     from vbraille.devices.wire.messages import Info
 
+# Options that only a simulated Latero has, and what they are when they are not given.
+LATERO_ONLY = {"port": None, "lines": None, "wait": None}
+LATERO_ONLY |= {"late": None, "double": None, "foreign": None}
 # Above the engine's 40: a real controller has a processor of its own.
 PRIORITY = 41
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Be a device until a signal says to stop."""
+    if arguments.what == "latero":
+        from vbraille.cli.commands import simulate_latero
+
+        return simulate_latero.run(arguments)
+    refuse_others(arguments, LATERO_ONLY)
     info = _info(arguments)
     hand = parse_hand(arguments.hand, arguments.seed)
     presses = parse_presses(arguments.press)
@@ -57,6 +66,16 @@ def run(arguments: argparse.Namespace) -> int:
             port.unplug()
     say_line(_summary(simulator))
     return 0
+
+
+def refuse_others(arguments: argparse.Namespace, others: Mapping[str, object]) -> None:
+    """Raise InputError if an option is given that another kind of device has."""
+    for name, left_out in others.items():
+        if getattr(arguments, name) != left_out:
+            raise InputError(
+                f"--{name.replace('_', '-')} is not for a simulated {arguments.what} device; leave "
+                f"it out"
+            )
 
 
 def _info(arguments: argparse.Namespace) -> Info:

@@ -97,7 +97,7 @@ class LateroConversation(LateroHearing):
             Present time.
         """
         self._now_ns = now_ns
-        self._heard_ns = now_ns  # what came meanwhile is judged by its own time
+        self._begun_ns = self._heard_ns = now_ns  # what came meanwhile is judged by its own time
         if self.stage is LateroStage.LIVE:
             self._stop()
             self._tell(WatchdogTripped(trips))

@@ -22,6 +22,8 @@ import sys
 import time
 
 WATCHDOG_NS = 50_000_000
+# A driver that is stopped with all blades at rest has this long.
+REST_WATCHDOG_NS = 1_000_000_000
 RAMP_NS = 20_000_000
 STEP_NS = 1_000_000
 # How often what was not answered is said again, and for how long.
@@ -192,11 +194,16 @@ def watch(board, lifeline, socket):
                 return
             guardian.begin(now_ns)
             continue
-        elif beat_ns != tripped_ns and now_ns - beat_ns >= WATCHDOG_NS:
-            guardian.begin(now_ns)
-            continue
+        elif beat_ns == tripped_ns:
+            due_ns = now_ns + LOOK_NS
         else:
-            due_ns = beat_ns + WATCHDOG_NS if beat_ns != tripped_ns else now_ns + LOOK_NS
+            felt = min(board.levels) < REST
+            due_ns = beat_ns + (WATCHDOG_NS if felt else REST_WATCHDOG_NS)
+            if now_ns >= due_ns:
+                guardian.begin(now_ns)
+                continue
+            if not felt:
+                due_ns = min(due_ns, now_ns + WATCHDOG_NS // 2)
         waits = [socket] if guardian.acting else []
         if not ended:
             waits.append(lifeline)

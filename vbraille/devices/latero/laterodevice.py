@@ -161,7 +161,7 @@ class LateroDevice(Device):
         stopped = now_ns - self._called_ns >= STALL_NS
         self._called_ns = now_ns
         trips = self.guarding.trips
-        if stopped or trips != self._trips:
+        if trips != self._trips or (stopped and not self.conversation.blades.rests):
             self._trips = trips
             self.guarding.beat(now_ns)
             self.conversation.stall(self.guarding.board.levels, trips, now_ns)
