@@ -54,7 +54,8 @@ class Blades:
         np.multiply(frame, -float(REST), out=room)
         np.rint(room, out=room)
         np.add(room, float(REST), out=room)
-        np.clip(room, 0.0, float(REST), out=room)
+        np.minimum(room, float(REST), out=room)
+        np.maximum(room, 0.0, out=room)
         np.copyto(self._grid, room, casting="unsafe")
         self.at_rest = False
 
