@@ -1,9 +1,9 @@
 """The Latero's carrier: three arms whose encoders tell where its array is.
 
 Lengths, offsets and signs are those of the author's own client of the Latero; Lévesque 2009 does
-not know the device. The first joint is behind the tray, to its right. In the frame of the arms x
-grows to the reader's left and y towards the reader; on the tray x grows to the right, and its origin
-is where the array's centre is when the disc under it touches the left and the far edge.
+not know the device. The first joint is behind the tray, near its right edge. In the frame of the
+arms x grows to the reader's left and y towards the reader. On the tray x grows to the right, and
+the origin is where the array's centre is when the disc under it touches the left and the far edge.
 Angles grow against the clock as the reader sees it, in both.
 """
 

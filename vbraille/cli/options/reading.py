@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-PLOTS = ("profile", "mapping", "wave", "strain", "page")
+PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 
 
 def nothing(_parser: ArgumentParser) -> None:
@@ -202,7 +202,8 @@ def plot(parser: ArgumentParser) -> None:
         metavar="KIND",
         help="Choose the picture: profile (how far an actuator leans along a dot), mapping (which "
         "row of actuators shows which row of dots), wave (the actuators as the array passes a "
-        "dot), strain (between neighbouring actuators) or page (lines with the array on one).",
+        "dot), strain (between neighbouring actuators), page (lines with the array on one) or "
+        "resolution (how finely the arms of the Tactograph measure, over its tray).",
     )
     groups.text(parser, optional=True)
     groups.show(parser)
