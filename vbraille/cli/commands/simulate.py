@@ -23,9 +23,18 @@ if TYPE_CHECKING:
 
     from vbraille.devices.wire.messages import Info
 
-# Options that only a simulated Latero has, and what they are when they are not given.
-LATERO_ONLY = {"port": None, "lines": None, "wait": None}
-LATERO_ONLY |= {"late": None, "double": None, "foreign": None}
+# Options that only one kind of device has, and what they are when they are not given.
+LATERO_ONLY = dict.fromkeys(("port", "lines", "wait", "late", "double", "foreign"))
+SERIAL_ONLY = {
+    "model": "stress2",
+    "link": None,
+    "encoder": "absolute",
+    "travel": None,
+    "corrupt": 0.0,
+    "stall": 0.0,
+    "unplug_every": 0.0,
+    "defect": None,
+}
 # Above the engine's 40: a real controller has a processor of its own.
 PRIORITY = 41
 
@@ -35,8 +44,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.what == "latero":
         from vbraille.cli.commands import simulate_latero
 
-        return simulate_latero.run(arguments)
-    refuse_others(arguments, LATERO_ONLY)
+        _refuse(arguments, SERIAL_ONLY)
+        return simulate_latero.run(arguments, PRIORITY)
+    _refuse(arguments, LATERO_ONLY)
     info = _info(arguments)
     hand = parse_hand(arguments.hand, arguments.seed)
     presses = parse_presses(arguments.press)
@@ -68,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def refuse_others(arguments: argparse.Namespace, others: Mapping[str, object]) -> None:
+def _refuse(arguments: argparse.Namespace, others: Mapping[str, object]) -> None:
     """Raise InputError if an option is given that another kind of device has."""
     for name, left_out in others.items():
         if getattr(arguments, name) != left_out:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from vbraille.cli.commands.simulate import PRIORITY, refuse_others
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.latero.datagrams import BUTTONS, PORT
@@ -19,25 +18,13 @@ from vbraille.simulation.tray import Tray
 if TYPE_CHECKING:
     import argparse
 
-# What only a device at a serial port has, and what it is when it is not given.
-SERIAL_ONLY: Final = {
-    "model": "stress2",
-    "link": None,
-    "encoder": "absolute",
-    "travel": None,
-    "corrupt": 0.0,
-    "stall": 0.0,
-    "unplug_every": 0.0,
-    "defect": None,
-}
 _PITCH_MM: Final = 10.0
 _MOST_LINES: Final = 21  # as many as the tray has room for
 _MOST_PORT: Final = 0xFFFF
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Be a Latero until a signal says to stop."""
-    refuse_others(arguments, SERIAL_ONLY)
+def run(arguments: argparse.Namespace, priority: int) -> int:
+    """Be a Latero until a signal says to stop, with this real-time priority if it may."""
     hand = parse_hand(arguments.hand, arguments.seed)
     presses = parse_presses(arguments.press)
     for press in presses:
@@ -70,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
         try:
             say_line(f"device: {simulator.spec}")
-            come_first(PRIORITY)
+            come_first(priority)
             simulator.run(stopped=lambda: EAR.heard)
         finally:
             simulator.close()

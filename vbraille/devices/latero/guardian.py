@@ -83,6 +83,8 @@ class Guardian:
     ----------
     acting : bool
         Whether blades are being brought to rest.
+    beat_ns : int
+        Last beat of the driver before it fell silent.
     """
 
     def __init__(self, board, send, receive):
@@ -90,7 +92,7 @@ class Guardian:
         self._board = board
         self._send = send
         self._receive = receive
-        self._begun_ns = self._due_ns = self._beat_ns = 0
+        self._begun_ns = self._due_ns = self.beat_ns = 0
         self._from = b""
         self._request = bytearray(REQUEST_BYTES)
         self._sequence = 0
@@ -101,7 +103,7 @@ class Guardian:
         """Begin to bring the blades to rest."""
         board = self._board
         self.acting, self._begun_ns, self._due_ns = True, now_ns, now_ns
-        self._beat_ns = board.words[BEAT]
+        self.beat_ns = board.words[BEAT]
         self._request[:] = board.full
         self._from = bytes(board.levels)
         self._sequence = (board.words[TRIPS] * 4096 + 0x8000) & 0xFFFF
@@ -118,7 +120,7 @@ class Guardian:
         if (self._rested and self._unpowered) or passed_ns > PATIENCE_NS:
             self._end()
             return None
-        if self._board.words[BEAT] != self._beat_ns:  # the driver is back, and does it itself
+        if self._board.words[BEAT] != self.beat_ns:  # the driver is back, and does it itself
             self._end()
             return None
         if now_ns < self._due_ns:
@@ -178,7 +180,7 @@ def watch(board, lifeline, socket):
 
     guardian = Guardian(board, send, receive)
     words = board.words
-    ended, tripped_ns = False, None
+    ended, tripped_ns = False, 0  # without any beat there is nothing to bring to rest
     while True:
         now_ns = time.monotonic_ns()
         beat_ns = words[BEAT]
@@ -187,7 +189,7 @@ def watch(board, lifeline, socket):
             if due_ns is None:
                 if ended:
                     return
-                tripped_ns = beat_ns
+                tripped_ns = guardian.beat_ns
                 continue
         elif ended:
             if words[STATE] == CLOSED:
