@@ -28,8 +28,8 @@ from vbraille.devices.latero.datagrams import (
     REST,
     WRITE,
     Answer,
+    LateroRequest,
     RawAnswer,
-    Request,
     pack_answer,
     pack_raw_answer,
     parse_request,
@@ -41,7 +41,7 @@ _VERSION: Final = 0x0100
 # real Latero's motor power is not published.
 STATUS: Final = 0x00
 DIO, DIO_DIRECTION, DIO_DIRECTION_TOO = 0x10, 0x11, 0x18
-_VOLTS_HALF: Final = 0x8000
+_HALF: Final = 0x8000
 
 
 class LateroBoard:
@@ -71,7 +71,7 @@ class LateroBoard:
     def __init__(self, register: int | None = STATUS) -> None:
         self.levels = np.full(BLADES, REST, np.uint8)
         self.powered = True
-        self.encoders = (0, 0, 0, 0)
+        self.encoders: tuple[int, int, int, int] = (0, 0, 0, 0)
         self.buttons = 0
         self.interface = True
         self.encoder_errors = 0
@@ -116,7 +116,7 @@ class LateroBoard:
             controller=self.status,
             interface=interface,
             encoders=self.encoders,
-            adc=(_VOLTS_HALF,) * 4,
+            adc=(_HALF, _HALF, _HALF, _HALF),
         )
 
     @property
@@ -126,7 +126,7 @@ class LateroBoard:
         pressed = sum(mask for n, mask in enumerate(BUTTONS) if self.buttons >> n & 1)
         return NO_BUTTON & ~pressed
 
-    def _do(self, request: Request) -> RawAnswer:
+    def _do(self, request: LateroRequest) -> RawAnswer:
         """Read or write a register; one that is not there holds what was written to it."""
         board = request.command & (CONTROLLER | INTERFACE)
         at = board, request.address

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
@@ -24,8 +24,15 @@ if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Info
 
 # Options that only one kind of device has, and what they are when they are not given.
-LATERO_ONLY = dict.fromkeys(("port", "lines", "wait", "late", "double", "foreign"))
-SERIAL_ONLY = {
+_LATERO_ONLY: Final[dict[str, object]] = {
+    "port": None,
+    "lines": None,
+    "wait": None,
+    "late": None,
+    "double": None,
+    "foreign": None,
+}
+_SERIAL_ONLY: Final[dict[str, object]] = {
     "model": "stress2",
     "link": None,
     "encoder": "absolute",
@@ -44,9 +51,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.what == "latero":
         from vbraille.cli.commands import simulate_latero
 
-        _refuse(arguments, SERIAL_ONLY)
+        _refuse(arguments, _SERIAL_ONLY)
         return simulate_latero.run(arguments, PRIORITY)
-    _refuse(arguments, LATERO_ONLY)
+    _refuse(arguments, _LATERO_ONLY)
     info = _info(arguments)
     hand = parse_hand(arguments.hand, arguments.seed)
     presses = parse_presses(arguments.press)

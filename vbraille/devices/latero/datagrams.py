@@ -94,7 +94,7 @@ class RawAnswer(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Request:
+class LateroRequest:
     """A request, as the device gets it.
 
     Parameters
@@ -122,7 +122,7 @@ class Request:
 
 
 def blank(kind: int) -> bytearray:
-    """Request of a kind without its contents: head and padding, number 0."""
+    """LateroRequest of a kind without its contents: head and padding, number 0."""
     request = bytearray((PADDING,)) * REQUEST_BYTES
     _HEAD.pack_into(request, 0, MAGIC, VERSION, kind, 0)
     return request
@@ -166,8 +166,8 @@ def parse_answer(datagram: bytes | bytearray | memoryview) -> Answer | RawAnswer
     return Foreign.OTHER
 
 
-def parse_request(datagram: bytes) -> Request | None:
-    """Request that a datagram is; None if it is none."""
+def parse_request(datagram: bytes) -> LateroRequest | None:
+    """LateroRequest that a datagram is; None if it is none."""
     if len(datagram) != REQUEST_BYTES:
         return None
     magic, version, kind, sequence = _HEAD.unpack_from(datagram)
@@ -175,12 +175,12 @@ def parse_request(datagram: bytes) -> Request | None:
         return None
     if kind == RAW:
         command, address, content = _RAW.unpack_from(datagram, _HEAD.size)
-        return Request(kind, sequence, command=command, address=address, data=content)
+        return LateroRequest(kind, sequence, command=command, address=address, data=content)
     if kind not in (FULL, IO):
         return None
     dio_out, *dac = _FULL.unpack_from(datagram, _HEAD.size)
     blades = datagram[BLADES_AT : BLADES_AT + BLADES] if kind == FULL else b""
-    return Request(kind, sequence, dio_out, tuple(dac), blades)
+    return LateroRequest(kind, sequence, dio_out, tuple(dac), blades)
 
 
 def pack_answer(answer: Answer, kind: int) -> bytes:
