@@ -224,6 +224,13 @@ def plot(parser: ArgumentParser) -> None:
 def simulate(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille simulate``."""
     parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("serial", "latero"),
+        default="serial",
+        help="Be a device at a serial port, or a Latero on the network (default: serial).",
+    )
+    parser.add_argument(
         "--model",
         choices=MODELS,
         default="stress2",
@@ -315,6 +322,38 @@ def simulate(parser: ArgumentParser) -> None:
         ),
         help="Be built wrong in this way, which vbraille device check finds (default: none).",
     )
+
+    simulate_latero(parser)
+
+
+def simulate_latero(parser: ArgumentParser) -> None:
+    """Add the options that only a simulated Latero has."""
+    latero = parser.add_argument_group("a Latero's own options")
+    latero.add_argument(
+        "--port",
+        type=whole,
+        metavar="N",
+        help="Listen at this UDP port, 0 for any that is free (default: 8900).",
+    )
+    latero.add_argument(
+        "--lines",
+        type=whole,
+        metavar="N",
+        help="Have the hand read so many lines of a page, 10 mm apart (default: 1).",
+    )
+    latero.add_argument(
+        "--wait",
+        type=duration,
+        metavar="DURATION",
+        help="Have the hand wait so long at the lower left when a program comes, such as 5s "
+        "(default: 1s).",
+    )
+    for name, text in (
+        ("late", "Send this share of the answers 20 ms late"),
+        ("double", "Have this share of the datagrams come twice, both ways"),
+        ("foreign", "Send somebody else's datagram along with this share of the answers"),
+    ):
+        latero.add_argument(f"--{name}", type=number, metavar="0…1", help=f"{text} (default: 0).")
 
 
 def device_info(parser: ArgumentParser) -> None:
