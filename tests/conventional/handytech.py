@@ -13,7 +13,6 @@ import subprocess
 import threading
 import time
 import tty
-from contextlib import suppress
 
 import pytest
 
@@ -67,9 +66,8 @@ class HandyTech:
         self._master, self._port = pty.openpty()
         tty.setraw(self._master)
         tty.setraw(self._port)
-        with suppress(FileNotFoundError):
-            os.unlink(self.link)
-        os.symlink(os.ttyname(self._port), self.link)
+        self.link.unlink(missing_ok=True)
+        self.link.symlink_to(os.ttyname(self._port))
         stop, self._end = os.pipe()
         self._thread = threading.Thread(target=self._serve, args=(stop,))
         self._thread.start()
@@ -80,7 +78,7 @@ class HandyTech:
             return
         os.write(self._end, b"x")
         self._thread.join()
-        os.unlink(self.link)
+        self.link.unlink()
         for descriptor in (self._master, self._port, self._end):
             os.close(descriptor)
         self._end = None
@@ -168,8 +166,8 @@ class Brltty:
             f"braille-driver {self._driver}\nbraille-device serial:{self._port}\n"
             f"screen-driver no\nspeech-driver no\napi-parameters {api}\n"
         )
-        where = [f"-{flag}{self._folder / name}" for flag, name in
-                 (("f", file.name), ("U", "updatable"), ("W", "writable"), ("P", "pid"))]  # fmt: skip
+        files = (("f", file.name), ("U", "updatable"), ("W", "writable"), ("P", "pid"))
+        where = [f"-{flag}{self._folder / name}" for flag, name in files]
         with (self._folder / "brltty.log").open("ab") as log:
             self.process = subprocess.Popen(
                 ["brltty", "-n", "-e", "-q", *where, "-A", api], stdout=log, stderr=log

@@ -65,6 +65,7 @@ class ConventionalDisplay:
         self._now_s = now_s
         self._heard_s = now_s()
         self._number = 0
+        self._given_back = False
         self._newest: bytes | None = None  # what should stand on the display, as a line of JSON
         self._left: bytes | None = None  # what of that waits for room in the pipe
         self._begun = b""
@@ -103,6 +104,16 @@ class ConventionalDisplay:
         int
             Number by which `CellsTaken` names what is shown.
         """
+        self._given_back = False
+        return self._want(cells)
+
+    def rest(self) -> None:
+        """Give the display back to whoever else shows something on it, until `show` is called."""
+        self._given_back = True
+        self.standing = None
+        self._want(None)
+
+    def _want(self, cells: bytes | None) -> int:
         self._number += 1
         # Of several that wait only the newest is worth to be shown.
         self._left = self._newest = TO_JSON.encode(CellsWanted(self._number, cells)) + b"\n"
@@ -122,7 +133,9 @@ class ConventionalDisplay:
                 *lines, self._begun = (self._begun + chunk).split(b"\n")
                 for line in lines:
                     happened += self._take(TOLD_FROM_JSON.decode(line))
-        if self._now_s() - self._heard_s > SILENT_S:
+        if self._given_back:
+            self._heard_s = self._now_s()
+        elif self._now_s() - self._heard_s > SILENT_S:
             happened += self._take(DisplayAway(_STILL))
             if self._process is not None and self._process.poll() is not None:
                 self._close_pipes()

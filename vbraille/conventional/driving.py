@@ -61,6 +61,9 @@ class Driving:
     def run(self) -> None:
         """Drive the display until the orders end."""
         while not self._ended:
+            if self._wanted.cells is None:
+                self._take()
+                continue
             try:
                 display = self._open_display()
             except DisplayGoneError as error:
@@ -77,7 +80,7 @@ class Driving:
                 display.close()
 
     def _drive(self, display: CellDriver) -> None:
-        """Show what is wanted until the orders end, or the display goes away."""
+        """Show what is wanted until the display goes away, is to be given back, or orders end."""
         self._tell(display.check())
         self._show(display)
         due_s = time.monotonic() + CHECK_S
@@ -88,6 +91,8 @@ class Driving:
                 changed = self._take()
                 if self._ended:
                     display.write(b"")
+                    return
+                if self._wanted.cells is None:
                     return
                 if changed:
                     self._show(display)
@@ -107,7 +112,7 @@ class Driving:
         return bool(lines)
 
     def _show(self, display: CellDriver) -> None:
-        display.write(self._wanted.cells)
+        display.write(self._wanted.cells or b"")
         self._tell(CellsTaken(self._wanted.number, time.monotonic_ns()))
 
 

@@ -13,11 +13,12 @@ class CellsWanted(msgspec.Struct, frozen=True):
     number
         Number of what is shown; it grows.
     cells
-        Dot masks of the cells from the left, as many as there are; the others are blank.
+        Dot masks of the cells from the left, as many as there are; the others are blank. None to
+        give the display back to whoever else shows something on it, until cells are wanted again.
     """
 
     number: int
-    cells: bytes
+    cells: bytes | None
 
 
 class DisplayStands(msgspec.Struct, frozen=True, tag=True):

@@ -27,6 +27,7 @@ USUAL = {
     "echo": "none at a terminal, otherwise both",
     "speech": "no",
     "cues": "none",
+    "also": "none",
     "verbose": "no",
 }
 

@@ -22,6 +22,8 @@ class ReadTable(Table, frozen=True):
         Whether what is said is spoken too.
     cues
         How signals are given.
+    also
+        Conventional display that shows the lines, too.
     """
 
     profile: str | None = None
@@ -36,6 +38,7 @@ class ReadTable(Table, frozen=True):
     echo: Literal["none", "text", "cells", "both"] | None = None
     speech: bool | None = None
     cues: Literal["sound", "bell", "none"] | None = None
+    also: str | None = None
     verbose: bool | None = None
 
     def __post_init__(self) -> None:

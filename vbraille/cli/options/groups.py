@@ -24,6 +24,7 @@ SETTLED = (
     "echo",
     "speech",
     "cues",
+    "also",
     "verbose",
 )
 
