@@ -6,6 +6,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from vbraille.braille.spelling import name_dots, to_braille
+from vbraille.sessions.planning import standing
 from vbraille.sessions.planning.appearance import LENGTHS
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
 from vbraille.sessions.planning.factors import problem
@@ -39,6 +40,9 @@ def check_agreement(protocol: Protocol) -> None:
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
+    said = standing.problem(protocol)
+    if said:
+        raise ValueError(said)
     _check_question(protocol)
     said = protocol.practice.problem(protocol.design)
     if said:
@@ -184,11 +188,16 @@ def _check_order(protocol: Protocol) -> None:
         )
 
 
+def _on_device(protocol: Protocol) -> list[Condition]:
+    """Conditions whose strings are put under the hand on the device."""
+    return [c for c in protocol.conditions if protocol.place_of(c) != standing.CONVENTIONAL]
+
+
 def _check_cells(protocol: Protocol) -> None:
     """Check that the display can show every dot of every cell used, in every condition."""
     model, design = protocol.model, protocol.design
     practised = {mask for line in protocol.practice.lines(design) for mask in line}
-    for condition in protocol.conditions:
+    for condition in _on_device(protocol):
         mapping = protocol.style_of(condition).mapping
         shown = mapping.shown_dots()
         how = (
@@ -221,7 +230,7 @@ def _check_lines(protocol: Protocol) -> None:
         unit = KNOBS[design.parameter].unit
     longest = max((design.cells, *map(len, practice.lines(design))))
     whose = "[design]" if longest == design.cells else "[practice]"
-    for condition, value in product(protocol.conditions, (*values, *sorted(set(practice.values)))):
+    for condition, value in product(_on_device(protocol), (*values, *sorted(set(practice.values)))):
         at = "" if value is None else f" at a value of {value:g}{unit}"
         if condition.changes.keys() & set(LENGTHS):
             at += f" in the condition {condition.name}"

@@ -60,6 +60,9 @@ class Stimulus:
         Value of the parameter that is compared, in mm if it is a length; None if none is compared.
     mapping
         Name of the mapping, where conditions differ in it; None for the display's.
+    on
+        "brlapi" if it stands on the conventional display that BRLTTY drives; None if it is put
+        under the hand on the device.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class Stimulus:
     geometry: Geometry
     value: float | None = None
     mapping: str | None = None
+    on: str | None = None
 
     def __post_init__(self) -> None:
         if not self.masks:

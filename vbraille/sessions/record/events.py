@@ -212,6 +212,46 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     shown: dict[str, Any] = {}
 
 
+class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
+    """A conventional display stands ready, or another one than before; from format 6 on.
+
+    Parameters
+    ----------
+    driver, model
+        Name of its driver, and what that calls its model.
+    columns, rows
+        Number of its cells in a row, and of its rows.
+    spec
+        Display that was asked for.
+    """
+
+    durable: ClassVar[bool] = True
+
+    driver: str
+    model: str
+    columns: int
+    rows: int
+    spec: str
+
+
+class Stood(WithStimulus, frozen=True, kw_only=True):
+    """Cells were put on the conventional display; from format 6 on.
+
+    Parameters
+    ----------
+    cells
+        What stands on it from its left, in Unicode braille; left out if nothing does any more.
+    reference
+        Whether that is what the stimuli are compared with, and not the stimulus itself.
+    time_ns
+        Time at which the display's driver had taken it, by the host's monotonic clock.
+    """
+
+    cells: str = ""
+    reference: bool = False
+    time_ns: int
+
+
 class Cue(InTrial, frozen=True):
     """The start signal sounded."""
 
@@ -476,8 +516,8 @@ class Lost(JournalEvent, frozen=True):
 
 
 AnyEvent = (
-    Session | Run | Presented | Cue | Contact | Read | Ended | Warning | Answer | Undo | Repeat
-    | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
+    Session | Run | Presented | DisplayBeside | Stood | Cue | Contact | Read | Ended | Warning
+    | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
     | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)

@@ -27,6 +27,7 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
+from vbraille.sessions.planning.standing import CONVENTIONAL
 from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import SKINS, Observer
 from vbraille.wording import setting
@@ -222,6 +223,11 @@ class Simulated:
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
                 f"type the answers, or give a file of them"
+            )
+        if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
+            raise InputError(
+                f"{protocol.name} is read on a conventional display too, which the simulated "
+                f"reader cannot feel; type the answers, or give a file of them"
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
