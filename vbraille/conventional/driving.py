@@ -89,10 +89,8 @@ class Driving:
             ready = select.select([self._orders, display.descriptor], [], [], wait_s)[0]
             if self._orders in ready:
                 changed = self._take()
-                if self._ended:
+                if self._ended or self._wanted.cells is None:
                     display.write(b"")
-                    return
-                if self._wanted.cells is None:
                     return
                 if changed:
                     self._show(display)

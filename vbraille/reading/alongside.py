@@ -86,6 +86,15 @@ class Pane:
         self.offset, self._panned_at = offset, cell
         return True
 
+    def reset(self) -> None:
+        """Begin anew where the finger is, or the hand's part of the line."""
+        self._line = None
+
+    def end(self, line: Line, cell: int | None) -> None:
+        """Show the last part of another line, and stay there until the finger goes on."""
+        self._line, self._panned_at = line, cell
+        self.offset = max(len(line) - 1, 0) // max(self._width, 1) * self._width
+
     @property
     def cells(self) -> bytes:
         """Dot masks of what is shown."""
@@ -156,8 +165,14 @@ class Alongside:
             return
         command = (reader.bound or BOUND).display_keys.get(key.name)
         step = 0 if command is None else _ALONG.get(command.name, 0)
-        if not (step and reading and self._pan(reader, step)):
-            press_display_key(reader, key.name)
+        if step and reading and self._pan(reader, step):
+            return
+        window, line = reader.window, reader.line
+        press_display_key(reader, key.name)
+        if step < 0 and reader.line is not None and reader.line is not line:
+            self._pane.end(reader.line, reader.cell)
+        elif reader.window is not window:
+            self._pane.reset()
 
     def _pan(self, reader: Reader, step: int) -> bool:
         """Go along the line by the display's width, the hand too; False if the line ends here."""

@@ -14,7 +14,8 @@ from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.choosing import procedure_of
-from vbraille.sessions.planning.standing import CONVENTIONAL, cells_needed, stands_beside
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
+from vbraille.sessions.planning.standing import cells_needed, stands_beside
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
 from vbraille.sessions.record.progress import Progress

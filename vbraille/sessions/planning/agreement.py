@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.sessions.planning import standing
 from vbraille.sessions.planning.appearance import LENGTHS
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
 from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.knobs import GAP, KNOBS, with_value
@@ -190,7 +191,7 @@ def _check_order(protocol: Protocol) -> None:
 
 def _on_device(protocol: Protocol) -> list[Condition]:
     """Conditions whose strings are put under the hand on the device."""
-    return [c for c in protocol.conditions if protocol.place_of(c) != standing.CONVENTIONAL]
+    return [c for c in protocol.conditions if protocol.place_of(c) != CONVENTIONAL]
 
 
 def _check_cells(protocol: Protocol) -> None:

@@ -10,7 +10,7 @@ from msgspec import field
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
 from vbraille.sessions.planning.conduct import check_name
-from vbraille.sessions.planning.standing import Where
+from vbraille.sessions.planning.conventionaltable import Where
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:

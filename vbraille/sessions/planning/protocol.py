@@ -23,6 +23,7 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL, ConventionalTable
 from vbraille.sessions.planning.design import (
     Choice,
     Combinations,
@@ -49,7 +50,6 @@ from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, usual_question
 from vbraille.sessions.planning.ruletable import Rules
 from vbraille.sessions.planning.spellings import SpellingKeys
-from vbraille.sessions.planning.standing import CONVENTIONAL, ConventionalTable
 from vbraille.sessions.planning.stimuli import Stimulus
 from vbraille.toml.tomlfile import Table, which
 

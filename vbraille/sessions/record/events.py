@@ -200,7 +200,8 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     line
-        Number of the showing, which the trace has as `line`; left out on paper.
+        Number of the showing, which the trace has as `line`; left out on paper, and on a
+        conventional display.
     tuning
         Contrast or texture that the experimenter has set instead of the stimulus's own.
     shown
@@ -270,12 +271,12 @@ class Contact(WithStimulus, frozen=True, kw_only=True):
 
 
 class Read(WithStimulus, frozen=True, kw_only=True):
-    """The stimulus was read: the hand went to its end and back, or on paper a key was pressed.
+    """The stimulus was read: the hand went to its end and back, or off the device Enter said so.
 
     Parameters
     ----------
     tick, time_ns
-        Number and time of the tick at which it was read, as in the trace; left out on paper.
+        Number and time of the tick at which it was read, as in the trace; left out off the device.
     """
 
     tick: int | None = None
@@ -517,8 +518,8 @@ class Lost(JournalEvent, frozen=True):
 
 AnyEvent = (
     Session | Run | Presented | DisplayBeside | Stood | Cue | Contact | Read | Ended | Warning
-    | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
-    | Begin | Tuning | Note | Stop | End | Closed
+    | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go
+    | BreakWanted | Break | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)
 _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")

@@ -15,6 +15,7 @@ import numpy as np
 
 from vbraille.braille.spelling import to_answer
 from vbraille.errors import InputError
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.questions import (
     DIFFERENT,
     NO,
@@ -27,7 +28,6 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
-from vbraille.sessions.planning.standing import CONVENTIONAL
 from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import SKINS, Observer
 from vbraille.wording import setting

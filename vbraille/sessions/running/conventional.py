@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.conventional.display import ConventionalDisplay
-    from vbraille.sessions.planning.standing import ConventionalTable
+    from vbraille.sessions.planning.conventionaltable import ConventionalTable
     from vbraille.sessions.planning.stimuli import Stimulus
 
 _COMES_S = 10.0  # by then a display that is there has said so
