@@ -2,6 +2,7 @@
 
 import pytest
 
+from vbraille.conventional.brlapi import load_library
 from vbraille.conventional.spec import opener_of
 from vbraille.errors import InputError
 from vbraille.wording import spelled
@@ -21,3 +22,12 @@ def test_what_is_none_is_one_sentence(spec, why):
     with pytest.raises(InputError) as raised:
         opener_of(spec)
     assert why in spelled(str(raised.value))
+
+
+def test_without_the_library_it_is_said_what_to_install():
+    with pytest.raises(InputError) as raised:
+        load_library("libbrlapi-of-nobody.so")
+    assert spelled(str(raised.value)) == (
+        "--also brlapi needs BRLTTY's library libbrlapi-of-nobody.so; install Debian's packages "
+        "brltty and libbrlapi0.8, or leave it out"
+    )

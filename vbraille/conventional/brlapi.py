@@ -83,8 +83,13 @@ _Handler = ctypes.CFUNCTYPE(
 
 
 @cache
-def load_library() -> Any:
+def load_library(name: str = LIBRARY) -> Any:
     """Load BRLTTY's library.
+
+    Parameters
+    ----------
+    name
+        File name of the library.
 
     Raises
     ------
@@ -92,10 +97,10 @@ def load_library() -> Any:
         If it is not installed.
     """
     try:
-        library = ctypes.CDLL(LIBRARY)
+        library = ctypes.CDLL(name)
     except OSError:
         raise InputError(
-            f"{setting('also')} brlapi needs BRLTTY's library {LIBRARY}; install Debian's "
+            f"{setting('also')} brlapi needs BRLTTY's library {name}; install Debian's "
             f"packages brltty and libbrlapi0.8, or leave it out"
         ) from None
     library.brlapi_getHandleSize.restype = ctypes.c_size_t

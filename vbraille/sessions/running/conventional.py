@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Stimulus
 
 _COMES_S = 10.0  # by then a display that is there has said so
+_GONE_S = 2.0  # so long one may come that is not there yet
 _POLL_S = 0.02
 
 
@@ -86,11 +87,12 @@ class OnConventional:
         InputError
             If it has too few cells.
         """
-        waited_s = 0.0
-        while self._display.standing is None and waited_s < _COMES_S:
-            self._early += self.poll()
+        waited_s = gone_s = 0.0
+        while self._display.standing is None and waited_s < _COMES_S and gone_s < _GONE_S:
+            self._early = self.poll()
             sleep(_POLL_S)
             waited_s += _POLL_S
+            gone_s += _POLL_S if self._display.away else 0.0
         standing = self._display.standing
         if standing is None:
             raise DeviceError(
