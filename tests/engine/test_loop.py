@@ -135,7 +135,9 @@ def test_position_is_to_the_encoder_s_count(clock, device):
     assert abs(counts - round(counts)) < 1e-6
 
 
-@pytest.mark.parametrize("mapping", sorted(MAPPINGS))
+@pytest.mark.parametrize(
+    "mapping", sorted(name for name, each in MAPPINGS.items() if each.rows <= 6)
+)
 @pytest.mark.parametrize("change", ["start", "line", "tuning", "pause", "jump", "leave"])
 def test_nothing_jumps(clock, device, mapping, change):
     device.move(straight((0, 3.0), (20, 3.0)))  # the hand holds still, on a dot
@@ -310,7 +312,7 @@ def test_a_pose_of_two_axes_is_motion_and_is_recorded(clock):
     device.read = lambda: None
     run(loop, 0.05)
     # Along y alone, to the reader, at 20 mm/s.
-    device.read = lambda: Pose(clock.now_ns(), 3.0, clock.now_ns() / NS_PER_S * 20, 0.5)
+    device.read = lambda: Pose(clock.now_ns(), 3.0, clock.now_ns() / NS_PER_S * 20, 0.3)
     run(loop, 8.0)
     assert not loop.resting  # a hand that stands still rests after 5 s
     ring.publish()
@@ -319,7 +321,7 @@ def test_a_pose_of_two_axes_is_motion_and_is_recorded(clock):
         assert np.isnan(ticks[name][:50]).all()
     ticks = ticks[50:]
     np.testing.assert_array_equal(ticks["y_mm"], ticks["device_ns"] / NS_PER_S * 20)
-    assert set(zip(ticks["x_mm"].tolist(), ticks["theta_rad"].tolist(), strict=True)) == {(3, 0.5)}
+    assert set(zip(ticks["x_mm"].tolist(), ticks["theta_rad"].tolist(), strict=True)) == {(3, 0.3)}
     assert not ticks["vx_mm_s"].any()
     assert ticks["vy_mm_s"][100:] == pytest.approx(20)
     assert not ticks["forward_mm"].any()  # way to the right

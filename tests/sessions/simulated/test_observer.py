@@ -21,7 +21,7 @@ from vbraille.sessions.simulated.skin import Exploration, reference_per_mm2, smo
 from vbraille.simulation.specs import parse_hand
 
 MARGIN_MM = 2.0
-WAYS = [(STRESS2, mapping) for mapping in MAPPINGS.values()]
+WAYS = [(STRESS2, mapping) for mapping in MAPPINGS.values() if mapping.rows <= 6]
 WAYS += [(VBD, single_row(dot_row)) for dot_row in (1, 2, 3)]
 # Without compiled kernels a slow hand's ticks take too long.
 HANDS = ["sweep:20", "sweep:73", "sweep:200", "device", "fluent"] if JIT else ["sweep:200"]

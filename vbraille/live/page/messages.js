@@ -165,6 +165,7 @@ const FLAGS = /** @type {[number, string][]} */ ([
   [32, "resting"],
   [256, "the device is at rest by itself"],
   [512, "rests: it has moved by itself for as long as it may"],
+  [1024, "rests: the array is turned too far"],
 ]);
 
 /**
