@@ -140,7 +140,13 @@ class Look(Tuned, frozen=True, kw_only=True):
             return None
         if self.mapping not in MAPPINGS:
             raise ValueError(f"mapping is {self.mapping!r}{which(self.mapping, MAPPINGS)}")
-        return MAPPINGS[self.mapping]
+        mapping = MAPPINGS[self.mapping]
+        if mapping.rows > model.display.rows:
+            raise ValueError(
+                f"mapping {mapping.name} is for {mapping.rows} rows of actuators; the "
+                f"{model.title} has {model.display.rows}"
+            )
+        return mapping
 
 
 class NamedLook(Look, frozen=True):
