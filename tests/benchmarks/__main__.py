@@ -24,6 +24,7 @@ PARTS = (
     "reader",
     "turning",
     "live",
+    "conventional",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

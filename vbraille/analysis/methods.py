@@ -10,8 +10,10 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from vbraille.analysis.input.trials import natural
+from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
 from vbraille.sessions.planning.choosing import describe
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.version import __version__
 from vbraille.wording import count
 
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sittings import SessionTrials
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import LeftOut
+    from vbraille.sessions.planning.protocol import Protocol
 
 _DISTANCES = {
     "dot_width_mm": "dots {} mm wide",
@@ -139,7 +142,24 @@ def _display(sittings: Sequence[SessionTrials]) -> str:
             f"{head['rate_hz']:g} frames a second, with the mapping {head['mapping']}, "
             f"{', '.join(lengths)}"
         )
-    return f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+    shown = f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+    return f"{shown}{_beside(sittings[0].protocol)}"
+
+
+def _beside(protocol: Protocol) -> str:
+    """What stood on a conventional display instead, or beside."""
+    there = [c.name for c in protocol.conditions if protocol.place_of(c) == CONVENTIONAL]
+    if there:
+        return (
+            f"; those in {' and '.join(there)} on a conventional braille display, where reading "
+            f"was timed by key"
+        )
+    reference = protocol.conventional.reference
+    return (
+        f"; {to_braille(reference)} stood on a conventional braille display, for comparison"
+        if reference
+        else ""
+    )
 
 
 def _conditions(answered: Sequence[Sequence[dict]]) -> Iterable[str]:
