@@ -13,6 +13,7 @@ PARTS = (
     "wire",
     "engine",
     "tick",
+    "protocols",
     "faults",
     "jumps",
     "sessions",
@@ -25,6 +26,7 @@ PARTS = (
     "turning",
     "live",
     "conventional",
+    "straying",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
