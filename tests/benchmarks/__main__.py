@@ -25,6 +25,7 @@ PARTS = (
     "reader",
     "turning",
     "live",
+    "conventional",
     "straying",
 )
 

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.analysis import taskwords
 from vbraille.analysis.input.trials import natural
+from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.factors import within
 from vbraille.sessions.planning.knobs import GAP, KNOBS
 from vbraille.version import __version__
@@ -158,7 +160,24 @@ def _display(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> str:
         how = ", ".join([f"at {head['rate_hz']:g} frames a second", *mapping, *lengths])
         size = f"{array['rows']} × {array['columns']} actuators"
         told.append(f"the {model} ({size}, {where}) {how}")
-    return f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+    shown = f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+    return f"{shown}{_beside(sittings[0].protocol)}"
+
+
+def _beside(protocol: Protocol) -> str:
+    """What stood on a conventional display instead, or beside."""
+    there = [c.name for c in protocol.conditions if protocol.place_of(c) == CONVENTIONAL]
+    if there:
+        return (
+            f"; those in {' and '.join(there)} on a conventional braille display, where reading "
+            f"was timed by key"
+        )
+    reference = protocol.conventional.reference
+    return (
+        f"; {to_braille(reference)} stood on a conventional braille display, for comparison"
+        if reference
+        else ""
+    )
 
 
 def _texts(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:

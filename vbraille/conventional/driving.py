@@ -10,6 +10,7 @@ import os
 import select
 import sys
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 from vbraille.conventional.driver import DisplayGoneError
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 CHECK_S: Final = 0.5  # from one question whether the display is still there to the next
 _PIPE_BYTES: Final = 1 << 16  # all that a pipe holds
+_URGENT: Final = -10
 
 
 class Driving:
@@ -120,6 +122,9 @@ def main() -> int:
     def tell(message: FromDisplay) -> None:
         os.write(1, TO_JSON.encode(message) + b"\n")
 
+    # As BRLTTY itself has it: what is told now is to be felt now, however busy the machine is.
+    with suppress(PermissionError):
+        os.nice(_URGENT)
     try:
         Driving(sys.stdin.fileno(), tell, opener_of(sys.argv[1])).run()
     except BrokenPipeError:  # whoever was told is gone

@@ -46,6 +46,17 @@ def test_a_condition_says_where_its_strings_stand_and_the_plan_keeps_it():
     assert not stands_beside(load_protocol("legibility"))
 
 
+def test_texts_stand_there_in_the_table_of_the_condition():
+    texts = '[design]\nkind = "list"\nstrings = ["the"]\n[display]\nlead_cells = 1\n'
+    both = BOTH.replace('name = "virtual"', 'name = "virtual"\ntable = "en-ueb-g1.ctb"')
+    protocol = parse_protocol(
+        HEAD.replace("vbd", "stress2") + texts + both + 'table = "en-ueb-g2.ctb"\n', "test"
+    )
+    shown = {t.condition: t.stimuli[0] for t in make_plan(protocol, "P1", 1).trials}
+    assert (shown["conventional"].on, shown["conventional"].table) == ("brlapi", "en-ueb-g2.ctb")
+    assert len(shown["conventional"].masks) == 1 < len(shown["virtual"].masks)
+
+
 def test_its_cells_are_not_bound_to_the_rows_or_the_travel_of_the_device():
     letters = '[design]\nkind = "list"\nstrings = ["strings", "quickly"]\n'
     on = '[display]\non = "brlapi"\ntravel_mm = 30\n'

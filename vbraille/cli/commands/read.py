@@ -199,6 +199,7 @@ class _Reading:
             for key in self._pressed():
                 self._press(key)
             self._obey()
+            self._show_also()  # what a key has brought is shown at once
             placing = device.placing
             try:
                 events = device.poll(0.0)
@@ -207,8 +208,7 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
-            if self._also is not None:
-                self._also.attend(device.reader)
+            self._show_also()
             self._hearing.see(device.line)
             if device.reader.layout is self._page.layout:
                 self._page.see(device.reader.line_number)
@@ -232,6 +232,11 @@ class _Reading:
         """Say what is to be said of the text and of its table, which may have changed."""
         for note in self._device.reader.layout.book.notes():
             say_line(spelled(note), aside=True)
+
+    def _show_also(self) -> None:
+        """Have what is under the hand stand on the conventional display, and obey its keys."""
+        if self._also is not None:
+            self._also.attend(self._device.reader)
 
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:

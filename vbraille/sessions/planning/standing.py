@@ -46,7 +46,7 @@ def problem(protocol: Protocol) -> str:
             f"strings; leave one of the two out"
         )
     for condition in there:
-        if own := sorted(condition.changes.keys() - {"on"}):
+        if own := sorted(condition.changes.keys() - {"on", "table"}):
             return (
                 f"the condition {condition.name} stands on a conventional display, which has no "
                 f"{own[0]}; leave it out there"
