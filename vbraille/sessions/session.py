@@ -25,7 +25,7 @@ from vbraille.sessions.running.answers import (
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.sessions.running.markerports import parse_markers
-from vbraille.sessions.simulated.reader import seed_of
+from vbraille.sessions.running.reader import seed_of
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
