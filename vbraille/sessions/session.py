@@ -7,12 +7,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
+from vbraille.sessions.equipment import check_live, usual_engine, usual_markers, usual_onlookers
 from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.sounds import Sound
@@ -119,7 +118,7 @@ class Session:
         self._steering = steering_of(conditions.device)
         self._pointer: Pointer | None = None
         if conditions.live is not None:
-            _check_live(protocol, conditions, engine)
+            check_live(protocol, conditions, usual=engine is None)
             self._pointer = Pointer() if has_hand(conditions.device) else None
         if conditions.markers is not None:
             parse_markers(conditions.markers)
@@ -133,7 +132,13 @@ class Session:
         self._engine: RunEngine | None = None
         if protocol.medium == "device":
             wanted = protocol.model.on(protocol.geometry, conditions.rate_hz)
-            self._engine = (engine or self._usual_engine)(spec, wanted)
+            if engine is None:
+                channels = [channel for channel in (self._steering, self._pointer) if channel]
+                self._engine = usual_engine(
+                    spec, wanted, protocol, plan, channels, fast=conditions.fast
+                )
+            else:
+                self._engine = engine(spec, wanted)
 
     @classmethod
     def create(
@@ -247,7 +252,7 @@ class Session:
     def trials(self) -> list[dict[str, Any]]:
         """A row for each planned trial, as `vbraille session export` writes them.
 
-        The columns are described in `vbraille.sessions.record.export.COLUMNS`.
+        The columns are described in `vbraille.sessions.record.columns.COLUMNS`.
         """
         from vbraille.sessions.record.export import Traces, rows
 
@@ -334,13 +339,14 @@ class Session:
         """
         given = self.answers(answers)
         begins = not self._begun
-        onlookers = self._usual_onlookers() if onlookers is None else onlookers
+        if onlookers is None:
+            onlookers = usual_onlookers(self.protocol, self.conditions, self._pointer)
         if onlookers is not None:
             say = onlookers.beside(say)
             onlookers.begin(self._engine)
         markers = None
         try:
-            markers = self._usual_markers()
+            markers = usual_markers(self.conditions)
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
@@ -383,57 +389,3 @@ class Session:
                 for sentence in markers.close():
                     say(sentence)
         return self
-
-    def _usual_markers(self) -> Markers | None:
-        """Open the other recorder that is wanted; None if none is."""
-        if self.conditions.markers is None:
-            return None
-        from vbraille.sessions.running.markers import Markers
-
-        return Markers(parse_markers(self.conditions.markers))
-
-    def _usual_onlookers(self) -> Onlookers | None:
-        """Make the pages of the live view that is wanted; None if none is."""
-        live = self.conditions.live
-        if live is None:
-            return None
-        # Imported here, since a session that nobody watches needs none of it.
-        from vbraille.live.monitor import Monitor
-        from vbraille.sessions.running.onlookers import LOOPBACK, Onlookers
-
-        blind, pointer = self.protocol.session.blind, self._pointer
-        monitor = Monitor(
-            host=live.host,
-            port=live.port,
-            pointer=pointer,
-            blind=blind,
-            steers=pointer is not None,
-        )
-        host = live.host or LOOPBACK
-        return Onlookers(monitor, blind=blind, host=host, simulated=pointer is not None)
-
-    def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
-        """Make the usual engine: a process of its own, or a loop in this one if it runs fast."""
-        if self.conditions.fast:
-            from vbraille.engine.batch import BatchEngine
-
-            return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-        most = max(len(self.protocol.line(stimulus.masks)) for stimulus in self.plan.stimuli())
-        channels = (self._steering, self._pointer)
-        inherited = [channel.descriptor for channel in channels if channel is not None]
-        return Host(spec, wanted, self.protocol.model.style.room(wanted, most), pass_fds=inherited)
-
-
-def _check_live(protocol: Protocol, conditions: Conditions, engine: MakeEngine | None) -> None:
-    """Raise InputError if there is no host process whose memory a live view could show."""
-    name = setting("monitor")
-    if protocol.medium == "paper":
-        raise InputError(
-            f"{protocol.name} is read on paper, and {name} shows a device; leave it out"
-        )
-    if conditions.fast:
-        raise InputError(
-            f"{name} is for sessions that run by the clock; leave it out, or {setting('fast')}"
-        )
-    if engine is not None:
-        raise InputError(f"{name} is for the usual engine; leave it out with one of your own")
