@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
+from vbraille.sessions.planning.standing import cells_needed, stands_beside
 from vbraille.sessions.running.markerports import parse_markers
 from vbraille.wording import setting
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.conditions import Conditions
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
@@ -92,6 +95,50 @@ def usual_onlookers(
     blind, steers = protocol.session.blind, pointer is not None
     monitor = Monitor(host=live.host, port=live.port, pointer=pointer, blind=blind, steers=steers)
     return Onlookers(monitor, blind=blind, host=live.host or LOOPBACK, simulated=steers)
+
+
+def usual_beside(
+    protocol: Protocol, plan: Plan, conditions: Conditions, *, felt: bool
+) -> OnConventional | None:
+    """Begin to drive the conventional display that the protocol needs; None if it needs none.
+
+    Parameters
+    ----------
+    protocol, plan, conditions
+        What the session shows, in which order, and what it is run with.
+    felt
+        Whether answers come from what is felt: a simulated reader compares nothing with what
+        stands there.
+    """
+    if conditions.fast or felt or not stands_beside(protocol):
+        return None
+    from vbraille.conventional.display import ConventionalDisplay
+    from vbraille.sessions.running.conventional import OnConventional
+
+    spec = conditions.also or CONVENTIONAL
+    cells = cells_needed(protocol, plan)
+    table = protocol.conventional
+    return OnConventional(ConventionalDisplay(spec), table, cells=cells, spec=spec)
+
+
+def check_beside(protocol: Protocol, conditions: Conditions) -> None:
+    """Check that the protocol and a conventional display go together.
+
+    Raises
+    ------
+    InputError
+        If they do not.
+    """
+    if conditions.also is not None and not stands_beside(protocol):
+        raise InputError(
+            f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
+        )
+    shows = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
+    if conditions.fast and shows:
+        raise InputError(
+            f"{protocol.name} shows strings on a conventional display, which takes its time; "
+            f"leave out {setting('fast')}"
+        )
 
 
 def check_live(protocol: Protocol, conditions: Conditions, *, usual: bool) -> None:

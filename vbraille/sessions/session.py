@@ -12,7 +12,14 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
-from vbraille.sessions.equipment import check_live, usual_engine, usual_markers, usual_onlookers
+from vbraille.sessions.equipment import (
+    check_beside,
+    check_live,
+    usual_beside,
+    usual_engine,
+    usual_markers,
+    usual_onlookers,
+)
 from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
@@ -122,6 +129,7 @@ class Session:
             self._pointer = Pointer() if has_hand(conditions.device) else None
         if conditions.markers is not None:
             parse_markers(conditions.markers)
+        check_beside(protocol, conditions)
         spec = device_spec(
             conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
         )
@@ -209,7 +217,7 @@ class Session:
             Function that makes the engine, as for `create`.
         changed
             Fields of the `Conditions` that differ from when the session began: device, hand,
-            answers, fast, sound, live or markers. If the answers come from elsewhere now, the
+            answers, fast, sound, live, markers or also. If the answers come from elsewhere now, the
             session is not fast unless that is asked for again.
 
         Raises
@@ -344,9 +352,10 @@ class Session:
         if onlookers is not None:
             say = onlookers.beside(say)
             onlookers.begin(self._engine)
-        markers = None
+        markers = beside = None
         try:
             markers = usual_markers(self.conditions)
+            beside = usual_beside(self.protocol, self.plan, self.conditions, felt=given.felt)
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
@@ -363,6 +372,7 @@ class Session:
                 before_rest=before_rest,
                 onlookers=onlookers,
                 markers=markers,
+                beside=beside,
             )
             if begins:
                 sitting.open(self.protocol, self.plan)
@@ -385,6 +395,8 @@ class Session:
                 self._engine.close()
             if onlookers is not None:
                 onlookers.close()
+            if beside is not None:
+                beside.close()
             if markers is not None:
                 for sentence in markers.close():
                     say(sentence)

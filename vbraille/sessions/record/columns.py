@@ -20,6 +20,7 @@ COLUMNS = {
     "contrast": "share of the full swing, 0 to 1",
     "texture_cycles": "half-cycles of texture a radius, where the model has that",
     "model": "name of the display",
+    "shown_on": "where strings stood: device, conventional for a conventional display, or paper",
     "mapping": "how dot rows are shown by actuator rows, by name",
     "dot_width_mm": "width of a dot along the line; two values where they are compared",
     "dot_spacing_mm": "between the two dot columns of a cell; two values where they are compared",
@@ -47,7 +48,7 @@ COLUMNS = {
     "it is no data about people; empty on paper",
     "attempt": "how often the trial was begun",
     "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
-    "(Levesque 2009, 3.4); on paper, by key",
+    "(Levesque 2009, 3.4); on paper and on a conventional display, by key",
     "returned": "1 if the hand went back over the leftmost dot; 0 if the duration ends with the "
     "last tick at which an actuator was off its idle end",
     "contact_s": "from the start signal to the first touch",

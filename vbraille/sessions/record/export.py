@@ -15,6 +15,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record.columns import COLUMNS, designed
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
+    from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
@@ -131,8 +133,8 @@ def walk(
         Row of the trial, as `rows` gives it.
     trajectory : Trajectory, str or None
         Trajectory that the row's duration is taken from, or the reason why there is none. None
-        for trials whose trace is not read: comparisons, trials on paper and trials without an
-        answer.
+        for trials whose trace is not read: comparisons, trials on paper or on a conventional
+        display, and trials without an answer.
     """
     progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
@@ -142,7 +144,7 @@ def walk(
         trial = told.shown
         row, seen = _row(record, trial, told), None
         row |= _noted(notes, trial.number)
-        strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
+        strings = shown_on(record.protocol, trial) == "device" and len(trial.stimuli) == 1
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
         if isinstance(seen, Trajectory):
@@ -174,6 +176,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "contrast": told.tuning.get("contrast", tuning.contrast),
         "texture_cycles": tuning.cycles if protocol.model.name == "stress2" else "",
         "model": protocol.model.name,
+        "shown_on": shown_on(protocol, trial),
         "mapping": protocol.mapping_of(trial.stimuli[0]).name,
         **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
@@ -217,9 +220,16 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     else:
         row["answered"] = told.answer or ""
         row["first_answer"] = told.first_answer or ""
-    if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
-        row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
+    if shown_on(record.protocol, trial) != "device" and "read" in t_s and "cue" in t_s:
+        row["duration_s"] = round(t_s["read"] - t_s["cue"] - told.unread_s, 6)
     return row
+
+
+def shown_on(protocol: Protocol, trial: Trial) -> str:
+    """Where a trial's string stood: "device", "conventional" for such a display, or "paper"."""
+    if is_conventional(trial.stimuli[0]):
+        return "conventional"
+    return protocol.medium
 
 
 def _compared(trial: Trial, parameter: str | None) -> dict[str, str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
 from vbraille.sessions.record.trialrecord import Showing, TrialRecord
 
@@ -236,6 +237,8 @@ class Progress:
                 record.confidence = None
             case events.Fault():
                 record.faults.append(event.what)
+            case events.Read() if record.showings and is_conventional(record.shown.stimuli[0]):
+                record.unread_s = record.paused_s
             case events.HandTaken():
                 self.pointed = True
                 record.moved_by = POINTED
@@ -257,10 +260,12 @@ class Progress:
             record.attempts = event.attempt
             record.t_s.clear()
             record.wall.clear()
-            record.paused_s = 0.0
-        trace = self.runs[-1].trace or None if self.runs else None
+            record.paused_s = record.unread_s = 0.0
+        # What stands on a conventional display is in no trace.
+        trace = self.runs[-1].trace or None if self.runs and event.line else None
         if record.moved_by != POINTED:
-            record.moved_by = POINTED if self.pointed else self._moved_by
+            moved_by = self._moved_by if event.line else ""  # no carriage is moved elsewhere
+            record.moved_by = POINTED if self.pointed and moved_by else moved_by
         record.showings.append(
             Showing(event.attempt, event.stimulus, event.line, trace, event.tuning, event.shown)
         )

@@ -28,7 +28,7 @@ class Showing:
     line
         Number of the showing in the trace.
     trace
-        Name of the trace file; None on paper.
+        Name of the trace file; None on paper and on a conventional display.
     tuning
         Contrast or texture that the experimenter had set instead of the stimulus's own.
     shown
@@ -87,6 +87,9 @@ class TrialRecord:
         Times of the same events by the wall clock.
     paused_s
         Seconds that the trial was paused after its start signal.
+    unread_s
+        Seconds of these before it was read to its end by key on the conventional display; 0 on
+        paper, which no pause takes away.
     early
         Whether the answer came before the hand had been at the end of the string.
     source
@@ -112,6 +115,7 @@ class TrialRecord:
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
+    unread_s: float = 0.0
     early: bool = False
     source: str = ""
     moved_by: str = ""

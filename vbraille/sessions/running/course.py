@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
+    from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.happened import Happened
     from vbraille.sessions.running.showing import OnDevice
 
@@ -59,6 +60,8 @@ class Course(CourseState):
         Function that plays a tone for the participant.
     real
         Whether the session runs by the clock of the machine; else by that of the display.
+    beside
+        Conventional display of the session; None without one.
 
     Attributes
     ----------
@@ -79,8 +82,9 @@ class Course(CourseState):
         say: Callable[[str], None],
         play: Callable[[Tone], None],
         real: bool = True,
+        beside: OnConventional | None = None,
     ) -> None:
-        super().__init__(protocol, plan, progress, display)
+        super().__init__(protocol, plan, progress, display, beside)
         self._waits = waits
         self._corrects = corrects
         self._say = say
@@ -92,6 +96,7 @@ class Course(CourseState):
         self._ready_ns = 0
         self._cue_ns = 0
         self._deaths = 0
+        self._told_why = ""  # what the experimenter was told that the trial waits for
         self._watched: dict[str, Any] = {}  # fields that each run's event has again
 
     def start(self, **started: Any) -> None:
@@ -100,7 +105,11 @@ class Course(CourseState):
         self._watched = {"monitor": started["monitor"]} if "monitor" in started else {}
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
-            started |= {"trace": trace, "device": asdict(display.engine.display)}
+            started |= {
+                "trace": trace,
+                "device": asdict(display.engine.display),
+                "calibration": display.engine.calibration,
+            }
             while not display.now_ns:  # the session runs by the device's clock, which has to start
                 display.poll()
                 self.sleep()
@@ -169,22 +178,53 @@ class Course(CourseState):
 
     def withdraw(self) -> None:
         """Take the stimulus away, and make sure that the trace of it is on the disk."""
+        if self.beside is not None:
+            self.beside.withdraw()
         if self.display is not None:
             self.display.withdraw()
             self.display.sync()
 
+    def rest(self) -> None:
+        """Have nothing be felt for a while."""
+        if self.display is not None:
+            self.display.rest()
+        if self.beside is not None:
+            self.beside.clear()
+
+    def go(self) -> None:
+        """Let the open trial be felt again after a rest, unless its reading was ended."""
+        trial = self.open_trial
+        if trial is None:
+            return
+        if (stands := self._stands) is not None:
+            if not self.read_said:
+                stands.show(trial.stimuli[0])
+        elif self.display is not None:
+            self.display.go()
+
     def press(self) -> None:
         """Take a key on paper: the first says that reading begins, the second that it is over."""
-        trial = self.trial
+        trial, stands = self.trial, self._stands
         if trial is None:
             return
         if self.phase is Phase.READY:
+            if stands is not None and not stands.ready:
+                if self._told_why != stands.why:
+                    self._told_why = stands.why
+                    self._say(f"display: {stands.why}; the trial waits")
+                return
+            self._told_why = ""
             self.begin()
         elif self.phase is Phase.OPEN and not self.read_said:
+            if stands is not None and not stands.taken:
+                return  # it does not stand on the display yet
             self.read_said = True
             self.book.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.told(trial)
-            self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
+            seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
+            self._say(f"read: {seconds:.1f} s; type {self._prompt}")
+            if stands is not None:
+                stands.clear()
 
     def end_reading(self, by: str, **when: int) -> None:
         """Take the participant's key, which ends reading of the stimulus that is shown."""
@@ -214,6 +254,9 @@ class Course(CourseState):
         if trial is None or self.display is None:
             self.book.log(events.Tuning, tuning=tuning)
             return
+        if self.by_key:
+            self.book.log(events.Tuning, trial, tuning=tuning)
+            return
         self.book.log(events.Tuning, trial, tuning=tuning, line=self.display.line + 1)
         self.display.retune(self._tuning(trial))
 
@@ -225,6 +268,9 @@ class Course(CourseState):
         VbrailleError
             If the device, or the disk, fails for good.
         """
+        if self.beside is not None:
+            for each in self.beside.poll():
+                self._take(each)
         if self.display is None:
             return True
         try:
@@ -252,7 +298,9 @@ class Course(CourseState):
         if self.phase is Phase.OPEN:
             self._watch(trial)
         elif self.phase is Phase.READY and display is not None and display.ready:
-            self._begin_when_due()
+            referred = self._referred
+            if not self.by_key and (referred is None or referred.ready):
+                self._begin_when_due()
 
     def _now_ns(self) -> int:
         if self._real or self.display is None:
@@ -266,7 +314,9 @@ class Course(CourseState):
     def _ready(self, trial: Trial) -> None:
         self.phase = Phase.READY
         again = ", again" if self.progress.told(trial).attempts else ""
-        how = "; Enter when reading begins" if self.display is None and self._waits else ""
+        how = "; Enter when reading begins" if self.by_key and self._waits else ""
+        if self._stands is not None:
+            how = f", on the conventional display{how}"
         self._say(f"ready: {self.name(trial)}{again}{how}")
 
     def _wait_for_end(self) -> None:
@@ -294,7 +344,7 @@ class Course(CourseState):
     def _show(self, trial: Trial, stimulus: int) -> None:
         self.stimulus = stimulus
         shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
-        if self.display is not None:
+        if self.display is not None and not self.by_key:
             # The showing gets this number next: the journal has it before the stimulus is felt.
             shown["line"] = self.display.line + 1
         if self.progress.tuning:
@@ -302,7 +352,11 @@ class Course(CourseState):
         if self.book.format >= SHOWN_FROM:
             shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
         self.book.log(events.Presented, trial, **shown)
-        if self.display is not None:
+        if (stands := self._stands) is not None:
+            stands.show(trial.stimuli[stimulus])
+        elif self.display is not None:
+            if (referred := self._referred) is not None and not stimulus:
+                referred.show_reference()
             self.display.show(trial.stimuli[stimulus], self._tuning(trial), first=not stimulus)
         self._cue_ns = self._now_ns()
         self._play(self.protocol.sound.cue)
@@ -315,10 +369,13 @@ class Course(CourseState):
     def _take(self, happened: Happened) -> None:
         kind, fields, said = happened
         trial = self.open_trial
+        if kind is events.Fault and self.half is not None:
+            return  # an answer whose confidence is waited for needs no display
         if kind is events.Ended:
             self.end_reading(**fields)
         elif said:
-            self.book.log(kind, None if kind is events.Device else trial, **fields)
+            between = issubclass(kind, events.Device | events.DisplayBeside)
+            self.book.log(kind, None if between else trial, **fields)
             self._say(said)
         elif trial is not None:
             self.book.log(kind, trial, attempt=self._attempt, stimulus=self.stimulus, **fields)
@@ -337,7 +394,7 @@ class Course(CourseState):
             self.book.log(events.Warning, trial)
             self._say(f"warning: {self.name(trial)}, {warning_s:g} s")
         display = self.display
-        if display is None or not display.read:
+        if display is None or self.by_key or not display.read:
             return
         if self.second_to_come:
             if display.ready:

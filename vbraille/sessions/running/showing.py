@@ -58,6 +58,11 @@ class RunEngine(Engine, Protocol):
         """How often each thing went wrong with the device, by name; known after `close`."""
         ...
 
+    @property
+    def calibration(self) -> dict[str, Any] | None:
+        """What is made up for in the device's actuators; known once the device is open."""
+        ...
+
     def start(self) -> None:
         """Open the device, and begin to drive it."""
         ...
