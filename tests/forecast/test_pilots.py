@@ -1,13 +1,14 @@
 """Pilots: a whole study with the simulated reader, every file of it marked."""
 
 import csv
+import pickle
 
 import pytest
 
 from tests.tiers import heavy
 from vbraille.analysis import analyse
 from vbraille.errors import InputError
-from vbraille.forecast.pilots import MARK, mark_rows, marked, pilot
+from vbraille.forecast.pilots import MARK, PilotTask, conduct, mark_rows, marked, pilot
 from vbraille.forecast.workers import Workers
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 
@@ -43,6 +44,18 @@ def test_titles_and_rows_are_marked(tmp_path):
     assert all(MARK in table.title for table in results.result_tables())
     assert all(MARK in figure.chart.title for figure in results.figures())
     assert mark_rows('a,b\n1,"x, y"\n') == f'a,b,"{MARK}"\n1,"x, y",yes\n'
+
+
+def test_a_task_has_the_files_that_stand_beside_its_protocol(tmp_path):
+    text = TEXT.replace('kind = "combinations"', 'kind = "items"')
+    text = text.replace('characters = ["a", "c"]\nlength = 1\n', "")
+    text += '[items]\nfile = "items.csv"\n'
+    files = {"items.csv": "string\na\nc\n"}
+    task = PilotTask(
+        text, "two", "SIM001", 1, "simulated:0", "sweep:150", str(tmp_path / "SIM001"), files
+    )
+    assert conduct(pickle.loads(pickle.dumps(task))) == 4
+    assert (tmp_path / "SIM001" / "items.csv").read_text() == files["items.csv"]
 
 
 @heavy

@@ -75,6 +75,7 @@ def _told(sittings: Sequence[SessionTrials]) -> Iterable[str]:
     yield from taskwords.asked(protocol, kept)
     yield from taskwords.caught([row for row in rows if watches and row["catch"]])
     yield _display(sittings, rows)
+    yield from _elsewhere(rows)
     yield from _texts(sittings, rows)
     yield from _groups(sittings)
     yield from _factors(protocol, rows)
@@ -178,6 +179,17 @@ def _beside(protocol: Protocol) -> str:
         if reference
         else ""
     )
+
+
+def _elsewhere(rows: Sequence[dict]) -> Iterable[str]:
+    """Which conditions stood on a conventional display instead."""
+    there = {row["condition"] for row in rows if row["shown_on"] == "conventional"}
+    if there:
+        what = "the condition" if len(there) == 1 else "the conditions"
+        yield (
+            f"Strings of {what} {', '.join(sorted(there, key=natural))} stood on a conventional "
+            f"display instead, and were timed by key"
+        )
 
 
 def _texts(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from vbraille.sessions.simulated.observer import SKINS
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from vbraille.analysis.results import Results
     from vbraille.analysis.schemas import ResultTable
@@ -53,6 +53,8 @@ class PilotTask:
         What moves the simulated device.
     folder
         Directory of the session.
+    files
+        Texts of the files that stand beside the protocol, by name.
     """
 
     text: str
@@ -62,6 +64,12 @@ class PilotTask:
     answers: str
     hand: str
     folder: str
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def protocol(self) -> Protocol:
+        """The protocol, made anew from its file and those beside it."""
+        return parse_protocol(self.text, self.where, beside=lambda name: self.files[name])
 
 
 def conduct(task: PilotTask) -> int:
@@ -70,9 +78,8 @@ def conduct(task: PilotTask) -> int:
     if folder.exists():
         session = Session.resume(folder)
     else:
-        protocol = parse_protocol(task.text, task.where)
         session = Session.create(
-            protocol,
+            task.protocol,
             task.participant,
             folder=folder,
             seed=task.seed,
@@ -130,11 +137,13 @@ def pilot(
             answers=answers,
             hand="slow",
             folder=str(folder / name),
+            files=protocol.files,
         )
         for name in (f"SIM{number:03}" for number in range(1, participants + 1))
     ]
     about = {"mark": MARK, "protocol": protocol.text, "participants": participants, "seed": seed,
              "answers": answers}  # fmt: skip
+    about |= {"files": protocol.files} if protocol.files else {}
     _begin(folder, about, tasks[0])
     ended = work_on(workers, conduct, tasks, _kept(folder, tasks), told)
     if ended is not None:
@@ -160,10 +169,8 @@ def _begin(folder: Path, about: dict[str, Any], first: PilotTask) -> None:
     check_free(folder)
     # Made once so that what cannot be used is known before there is a directory.
     conditions = Conditions(answers=first.answers, hand=first.hand, fast=True)
-    protocol = parse_protocol(first.text, first.where)
-    Session.create(
-        protocol, first.participant, folder=first.folder, seed=first.seed, conditions=conditions
-    ).answers()
+    given = {"folder": first.folder, "seed": first.seed, "conditions": conditions}
+    Session.create(first.protocol, first.participant, **given).answers()
     folder.mkdir(parents=True, exist_ok=True)
     write_file(path, content)
     write_file(folder / "README.txt", _TOLD.encode())

@@ -7,15 +7,20 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from vbraille.devices import open_device
 from vbraille.engine.host import Host
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
+from vbraille.sessions.equipment import (
+    check_beside,
+    check_live,
+    usual_beside,
+    usual_engine,
+    usual_markers,
+    usual_onlookers,
+)
 from vbraille.sessions.planning.choosing import procedure_of
-from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
-from vbraille.sessions.planning.standing import cells_needed, stands_beside
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
 from vbraille.sessions.record.progress import Progress
@@ -27,7 +32,7 @@ from vbraille.sessions.running.answers import (
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.sessions.running.markerports import parse_markers
-from vbraille.sessions.simulated.reader import seed_of
+from vbraille.sessions.running.reader import seed_of
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
@@ -40,8 +45,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
-    from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
     from vbraille.sounds import Sound
@@ -122,11 +125,11 @@ class Session:
         self._steering = steering_of(conditions.device)
         self._pointer: Pointer | None = None
         if conditions.live is not None:
-            _check_live(protocol, conditions, engine)
+            check_live(protocol, conditions, usual=engine is None)
             self._pointer = Pointer() if has_hand(conditions.device) else None
         if conditions.markers is not None:
             parse_markers(conditions.markers)
-        _check_beside(protocol, conditions)
+        check_beside(protocol, conditions)
         spec = device_spec(
             conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
         )
@@ -137,7 +140,13 @@ class Session:
         self._engine: RunEngine | None = None
         if protocol.medium == "device":
             wanted = protocol.model.on(protocol.geometry, conditions.rate_hz)
-            self._engine = (engine or self._usual_engine)(spec, wanted)
+            if engine is None:
+                channels = [channel for channel in (self._steering, self._pointer) if channel]
+                self._engine = usual_engine(
+                    spec, wanted, protocol, plan, channels, fast=conditions.fast
+                )
+            else:
+                self._engine = engine(spec, wanted)
 
     @classmethod
     def create(
@@ -251,7 +260,7 @@ class Session:
     def trials(self) -> list[dict[str, Any]]:
         """A row for each planned trial, as `vbraille session export` writes them.
 
-        The columns are described in `vbraille.sessions.record.export.COLUMNS`.
+        The columns are described in `vbraille.sessions.record.columns.COLUMNS`.
         """
         from vbraille.sessions.record.export import Traces, rows
 
@@ -338,14 +347,15 @@ class Session:
         """
         given = self.answers(answers)
         begins = not self._begun
-        onlookers = self._usual_onlookers() if onlookers is None else onlookers
+        if onlookers is None:
+            onlookers = usual_onlookers(self.protocol, self.conditions, self._pointer)
         if onlookers is not None:
             say = onlookers.beside(say)
             onlookers.begin(self._engine)
         markers = beside = None
         try:
-            markers = self._usual_markers()
-            beside = self._usual_beside(given)
+            markers = usual_markers(self.conditions)
+            beside = usual_beside(self.protocol, self.plan, self.conditions, felt=given.felt)
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
@@ -391,86 +401,3 @@ class Session:
                 for sentence in markers.close():
                     say(sentence)
         return self
-
-    def _usual_markers(self) -> Markers | None:
-        """Open the other recorder that is wanted; None if none is."""
-        if self.conditions.markers is None:
-            return None
-        from vbraille.sessions.running.markers import Markers
-
-        return Markers(parse_markers(self.conditions.markers))
-
-    def _usual_beside(self, answers: Answers) -> OnConventional | None:
-        """Begin to drive the conventional display that the protocol needs; None if it needs none.
-
-        A simulated reader compares nothing with what stands there.
-        """
-        if self.conditions.fast or answers.felt or not stands_beside(self.protocol):
-            return None
-        from vbraille.conventional.display import ConventionalDisplay
-        from vbraille.sessions.running.conventional import OnConventional
-
-        spec = self.conditions.also or CONVENTIONAL
-        cells = cells_needed(self.protocol, self.plan)
-        table = self.protocol.conventional
-        return OnConventional(ConventionalDisplay(spec), table, cells=cells, spec=spec)
-
-    def _usual_onlookers(self) -> Onlookers | None:
-        """Make the pages of the live view that is wanted; None if none is."""
-        live = self.conditions.live
-        if live is None:
-            return None
-        # Imported here, since a session that nobody watches needs none of it.
-        from vbraille.live.monitor import Monitor
-        from vbraille.sessions.running.onlookers import LOOPBACK, Onlookers
-
-        blind, pointer = self.protocol.session.blind, self._pointer
-        monitor = Monitor(
-            host=live.host,
-            port=live.port,
-            pointer=pointer,
-            blind=blind,
-            steers=pointer is not None,
-        )
-        host = live.host or LOOPBACK
-        return Onlookers(monitor, blind=blind, host=host, simulated=pointer is not None)
-
-    def _usual_engine(self, spec: str, wanted: Display) -> RunEngine:
-        """Make the usual engine: a process of its own, or a loop in this one if it runs fast."""
-        if self.conditions.fast:
-            from vbraille.engine.batch import BatchEngine
-
-            return BatchEngine(open_device(spec, wanted), wanted.rate_hz)
-        most = max(len(self.protocol.line(stimulus.masks)) for stimulus in self.plan.stimuli())
-        channels = (self._steering, self._pointer)
-        inherited = [channel.descriptor for channel in channels if channel is not None]
-        return Host(spec, wanted, self.protocol.model.style.room(wanted, most), pass_fds=inherited)
-
-
-def _check_beside(protocol: Protocol, conditions: Conditions) -> None:
-    """Raise InputError if the protocol and a conventional display do not go together."""
-    if conditions.also is not None and not stands_beside(protocol):
-        raise InputError(
-            f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
-        )
-    shows = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
-    if conditions.fast and shows:
-        raise InputError(
-            f"{protocol.name} shows strings on a conventional display, which takes its time; "
-            f"leave out {setting('fast')}"
-        )
-
-
-def _check_live(protocol: Protocol, conditions: Conditions, engine: MakeEngine | None) -> None:
-    """Raise InputError if there is no host process whose memory a live view could show."""
-    name = setting("monitor")
-    if protocol.medium == "paper":
-        raise InputError(
-            f"{protocol.name} is read on paper, and {name} shows a device; leave it out"
-        )
-    if conditions.fast:
-        raise InputError(
-            f"{name} is for sessions that run by the clock; leave it out, or {setting('fast')}"
-        )
-    if engine is not None:
-        raise InputError(f"{name} is for the usual engine; leave it out with one of your own")

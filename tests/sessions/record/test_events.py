@@ -10,14 +10,9 @@ import pytest
 from tests.sessions.sittings import Session as Sitting
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import events, journal
-from vbraille.sessions.record.events import (
-    AnyEvent,
-    AnyTime,
-    JournalEvent,
-    WithStimulus,
-    read,
-    to_json,
-)
+from vbraille.sessions.record.eventbase import AnyTime, JournalEvent, WithStimulus
+from vbraille.sessions.record.eventlines import read, to_json
+from vbraille.sessions.record.events import AnyEvent
 from vbraille.sessions.record.progress import Progress
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "session-format.md"

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tests.sessions.sittings import COMPARED, MINI, Session, of
-from vbraille.sessions.record.export import COLUMNS, Traces, rows, to_csv
+from vbraille.sessions.record.columns import COLUMNS
+from vbraille.sessions.record.export import Traces, rows, to_csv
 from vbraille.sessions.record.folder import load
 from vbraille.sessions.record.traces import read_trace
 

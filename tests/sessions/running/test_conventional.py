@@ -10,6 +10,8 @@ from tests.conventional.handytech import Brltty, needs_brltty
 from tests.sessions.planning.test_standing import BOTH, HEAD, STRINGS, WIDTHS
 from tests.sessions.sittings import Person, Played
 from tests.tiers import heavy
+from vbraille.analysis.input.study import load_study
+from vbraille.analysis.methods import methods
 from vbraille.errors import InputError, VbrailleError
 from vbraille.sessions.conditions import Conditions
 from vbraille.sessions.planning.making import make_plan
@@ -156,6 +158,9 @@ def test_both_displays_alternate_in_one_session(tmp_path):
             ("last: ", ""),
         )
     table = {row["condition"]: row for row in rows(session.record)}
+    there = next(name for name, row in table.items() if row["shown_on"] == "conventional")
+    said = f"Strings of the condition {there} stood on a conventional display instead, and were"
+    assert said in methods(load_study([session.folder]))
     assert (table["virtual"]["shown_on"], table["virtual"]["trace"]) == ("device", "trace-001.gz")
     assert (table["conventional"]["shown_on"], table["conventional"]["trace"]) == (
         "conventional",

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.strokes import Reading
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.notes import PlacedNote
 

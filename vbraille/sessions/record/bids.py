@@ -17,7 +17,8 @@ import numpy as np
 from vbraille.sessions.record.anonymous import anonymous, number_of
 from vbraille.sessions.record.bidsevents import EVENT_COLUMNS, runs_of
 from vbraille.sessions.record.codebook import entry_of
-from vbraille.sessions.record.export import Traces, describe_design, encode, rows, to_csv
+from vbraille.sessions.record.columns import describe_design
+from vbraille.sessions.record.export import Traces, encode, rows, to_csv
 from vbraille.sessions.record.participants import label_of
 from vbraille.sessions.record.traces import posed
 

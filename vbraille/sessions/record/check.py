@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.record.journal import JournalContents
     from vbraille.sessions.record.traces import Trace

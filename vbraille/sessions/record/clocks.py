@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Self
 from vbraille.sessions.record.journal import up_s
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.events import JournalEvent, Run
+    from vbraille.sessions.record.eventbase import JournalEvent
+    from vbraille.sessions.record.events import Run
 
 _MOVED_S = 1.0  # smaller differences are ordinary corrections of a clock
 

@@ -16,7 +16,7 @@ import io
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from vbraille.sessions.record.export import COLUMNS, WRITTEN
+from vbraille.sessions.record.columns import COLUMNS, WRITTEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

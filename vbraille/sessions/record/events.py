@@ -6,95 +6,11 @@ Whoever adds a kind or a field must raise `vbraille.sessions.record.folder.FORMA
 
 from __future__ import annotations
 
-import json
-import re
 from typing import Any, ClassVar
 
 import msgspec
 
-
-def _kind_of(name: str) -> str:
-    """Name that the journal has for a class of events, such as break_wanted for BreakWanted."""
-    return re.sub("(?<=[a-z])(?=[A-Z])", "_", name).lower()
-
-
-class JournalEvent(
-    msgspec.Struct,
-    frozen=True,
-    kw_only=True,
-    omit_defaults=True,
-    forbid_unknown_fields=True,
-    tag_field="event",
-    tag=_kind_of,
-):
-    """Something that happened in a session.
-
-    Parameters
-    ----------
-    n
-        Number of the event, from 1. It is set when the event is added to the journal.
-    t_s
-        Seconds that the session had run for, without the time between runs.
-    wall
-        Time by the wall clock, UTC. It is set when the event is added to the journal.
-    up_s
-        Seconds since the machine was started, time asleep included; not in format 1. It is set
-        when the event is added to the journal.
-    script_line
-        Number of the line in an answers file that caused the event; 0 if no such line did.
-    """
-
-    # Whether events of the kind are on the disk before the console says anything about them.
-    durable: ClassVar[bool] = False
-
-    n: int = 0
-    t_s: float
-    wall: str = ""
-    up_s: float | None = None
-    script_line: int = 0
-
-    @property
-    def kind(self) -> str:
-        """Name of the event's kind, as in the journal."""
-        return str(self.__struct_config__.tag)
-
-
-class AnyTime(JournalEvent, frozen=True, kw_only=True):
-    """Something that may happen in a trial or between trials.
-
-    Parameters
-    ----------
-    trial
-        Number of the trial that was open; 0 if none was.
-    practice
-        Whether that trial is practice.
-    """
-
-    trial: int = 0
-    practice: bool = False
-
-
-class InTrial(AnyTime, frozen=True, kw_only=True):
-    """Something that can happen in a trial only."""
-
-    def __post_init__(self) -> None:
-        if self.trial < 1:
-            raise ValueError("it is of no trial")
-
-
-class WithStimulus(InTrial, frozen=True, kw_only=True):
-    """Something that happens to a stimulus of a trial.
-
-    Parameters
-    ----------
-    attempt
-        Number of the attempt at the trial, from 1.
-    stimulus
-        Which stimulus of the trial it is: 0, or 1 for the second of two.
-    """
-
-    attempt: int
-    stimulus: int
+from vbraille.sessions.record.eventbase import AnyTime, InTrial, JournalEvent, WithStimulus
 
 
 class LiveView(msgspec.Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -183,20 +99,20 @@ class Run(JournalEvent, frozen=True, kw_only=True):
 
     why: str
     trace: str = ""
-    device: dict[str, Any] = {}
+    device: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
     spec: str = ""
     hand: str | None = None
     answers: str = ""
     clock: str = ""
     sound: str = ""
     practice: str = ""
-    versions: dict[str, str] = {}
+    versions: dict[str, str] = {}  # noqa: RUF012  (msgspec copies it)
     boot: str = ""
     gap_s: float | None = None
     gap_by: str = ""
     clock_moved_s: float | None = None
     torn_bytes: int = 0
-    torn_file: dict[str, Any] = {}
+    torn_file: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
     monitor: LiveView | None = None
     calibration: dict[str, Any] | None = None
 
@@ -216,8 +132,8 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     """
 
     line: int = 0
-    tuning: dict[str, float] = {}
-    shown: dict[str, Any] = {}
+    tuning: dict[str, float] = {}  # noqa: RUF012  (msgspec copies it)
+    shown: dict[str, Any] = {}  # noqa: RUF012  (msgspec copies it)
 
 
 class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
@@ -513,7 +429,7 @@ class Closed(JournalEvent, frozen=True, kw_only=True):
     durable: ClassVar[bool] = True
 
     lost: int | None = None
-    counts: dict[str, int] = {}
+    counts: dict[str, int] = {}  # noqa: RUF012  (msgspec copies it)
     trace: str = ""
     trace_bytes: int = 0
     trace_sha256: str = ""
@@ -528,56 +444,3 @@ AnyEvent = (
     | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go
     | BreakWanted | Break | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
-_FROM_JSON = msgspec.json.Decoder(AnyEvent)
-_FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")
-
-
-def read(line: bytes) -> JournalEvent:
-    """Read an event from a line of a journal, given as JSON without its checksum.
-
-    Raises
-    ------
-    ValueError
-        If the kind is not known, or the fields are not those of the kind. The message goes on
-        a sentence that begins with the number of the line.
-    """
-    try:
-        return _FROM_JSON.decode(line)
-    except msgspec.ValidationError as error:
-        raise ValueError(_fault(json.loads(line), str(error))) from None
-    except msgspec.DecodeError:
-        return _read_slowly(line)
-
-
-def _read_slowly(line: bytes) -> JournalEvent:
-    """Read an event that has a lone surrogate, as file names may; fail if it is not JSON."""
-    try:
-        told = json.loads(line)
-    except ValueError:
-        raise ValueError("is not JSON") from None
-    try:
-        return msgspec.convert(told, AnyEvent)
-    except msgspec.ValidationError as error:
-        raise ValueError(_fault(told, str(error))) from None
-
-
-def _fault(told: Any, why: str) -> str:
-    """Say what is wrong with JSON that is not an event."""
-    kind = told.get("event") if isinstance(told, dict) else None
-    if kind is None or why.endswith("`$.event`"):
-        return f"has an event of the kind {kind!r}, which this vbraille does not know"
-    has = f"has an event of the kind {kind!r}"
-    found = _FIELD.match(why)
-    if found is None:
-        return f"{has} that cannot be read: {why}"
-    missing = found[1] == "missing required"
-    return f"{has} {'without' if missing else 'with an unknown field,'} {found[2]!r}"
-
-
-def to_json(event: JournalEvent) -> dict[str, Any]:
-    """Event in the form that the journal has; `read` makes an equal event of it."""
-    told = msgspec.to_builtins(event)
-    # The number and the kind come first and the times last, for people who read the journal.
-    first = {"n": told.pop("n", 0), "event": told.pop("event")}
-    last = {name: told.pop(name) for name in ("t_s", "wall", "up_s") if name in told}
-    return first | told | last

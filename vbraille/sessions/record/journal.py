@@ -21,12 +21,13 @@ from zlib import crc32
 import msgspec
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.sessions.record.events import Session, read, to_json
+from vbraille.sessions.record.eventlines import read, to_json
+from vbraille.sessions.record.events import Session
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
 
 NAME = "journal.jsonl"
 TORN = "journal.torn"

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from vbraille.sessions.record.events import AnyTime, Note, Presented
+from vbraille.sessions.record.eventbase import AnyTime
+from vbraille.sessions.record.events import Note, Presented
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
 
 
 @dataclass(frozen=True, slots=True)

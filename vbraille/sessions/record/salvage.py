@@ -13,11 +13,12 @@ from zlib import crc32
 
 import msgspec
 
-from vbraille.sessions.record.events import Lost, Session, read
+from vbraille.sessions.record.eventlines import read
+from vbraille.sessions.record.events import Lost, Session
 from vbraille.sessions.record.journal import LINE, JournalContents, decode
 
 if TYPE_CHECKING:
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
 
 
 def salvage(content: bytes) -> JournalContents:

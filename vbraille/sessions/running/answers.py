@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from vbraille.errors import InputError
 from vbraille.sessions.running.keypress import KeyPress, TerminalKey
+from vbraille.sessions.running.reader import Simulated
 from vbraille.sessions.simulated.observer import SKINS
-from vbraille.sessions.simulated.reader import Simulated
 from vbraille.wording import setting
 
 if TYPE_CHECKING:

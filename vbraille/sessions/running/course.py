@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
 from vbraille.sessions.planning.planfile import stimulus_to_json
-from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import SHOWN_FROM, versions
+from vbraille.sessions.running.coursestate import CourseState
 from vbraille.sessions.running.logbook import Logbook
 from vbraille.sessions.running.phases import Phase
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
     from vbraille.sessions.running.conventional import OnConventional
-    from vbraille.sessions.running.halfanswer import HalfAnswer
     from vbraille.sessions.running.happened import Happened
     from vbraille.sessions.running.showing import OnDevice
 
@@ -38,7 +37,7 @@ POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the host is not started again
 
 
-class Course:
+class Course(CourseState):
     """Course of a session, which goes from trial to trial.
 
     Parameters
@@ -66,19 +65,8 @@ class Course:
 
     Attributes
     ----------
-    phase : Phase
-        What the session waits for.
-    paused : bool
-        Whether the session is paused, so that the array rests.
     book : Logbook
         Logbook that writes the events of the session.
-    read_said : bool
-        Whether the experimenter has been told that the trial is read; on paper, whether a key has
-        said so.
-    half : HalfAnswer or None
-        Answer whose confidence is waited for.
-    ended_by : str
-        Key by which the participant has ended reading; empty before.
     """
 
     def __init__(
@@ -96,16 +84,7 @@ class Course:
         real: bool = True,
         beside: OnConventional | None = None,
     ) -> None:
-        self.protocol = protocol
-        self.plan = plan
-        self.progress = progress
-        self.display = display
-        self.beside = beside
-        self.phase = Phase.READY
-        self.paused = False
-        self.read_said = False
-        self.half: HalfAnswer | None = None
-        self.ended_by = ""
+        super().__init__(protocol, plan, progress, display, beside)
         self._waits = waits
         self._corrects = corrects
         self._say = say
@@ -113,72 +92,12 @@ class Course:
         self._real = real
         self.book = Logbook(journal, progress, self._now_ns)
         self._break_wanted = False
-        self._stimulus = 0
         self._attempt = 0
         self._ready_ns = 0
         self._cue_ns = 0
         self._deaths = 0
         self._told_why = ""  # what the experimenter was told that the trial waits for
         self._watched: dict[str, Any] = {}  # fields that each run's event has again
-
-    @property
-    def trial(self) -> Trial | None:
-        """Trial that is open or comes next; None after the last."""
-        return self.progress.next_trial
-
-    @property
-    def open_trial(self) -> Trial | None:
-        """Trial that is open; None if none is."""
-        return self.trial if self.phase is Phase.OPEN else None
-
-    @property
-    def by_key(self) -> bool:
-        """Whether Enter times the trial that is open or comes next, since no device feels it.
-
-        It is read on paper, or on the conventional display.
-        """
-        return self.display is None or self._stands is not None
-
-    @property
-    def _stands(self) -> OnConventional | None:
-        """Conventional display, if the trial that is open or comes next stands on it."""
-        trial = self.trial
-        return self.beside if trial is not None and is_conventional(trial.stimuli[0]) else None
-
-    @property
-    def _referred(self) -> OnConventional | None:
-        """Conventional display, if what the next trial is compared with stands on it."""
-        return self.beside if self.protocol.conventional.reference and not self.by_key else None
-
-    @property
-    def read(self) -> bool:
-        """Whether the open trial has been read to its end."""
-        trial = self.open_trial
-        if trial is None or self._stimulus + 1 < len(trial.stimuli):
-            return False
-        return self.read_said if self.display is None or self.by_key else self.display.read
-
-    @property
-    def reached(self) -> bool:
-        """Whether the hand has been at the end of the open trial; on paper, whether it is read."""
-        return self.read_said if self.display is None or self.by_key else self.display.reached
-
-    @property
-    def stimulus(self) -> int:
-        """Which stimulus of the open trial is shown: 0, or 1 for the second of two."""
-        return self._stimulus
-
-    @property
-    def second_to_come(self) -> bool:
-        """Whether a stimulus of the open trial has not been shown yet."""
-        trial = self.open_trial
-        return trial is not None and self._stimulus + 1 < len(trial.stimuli)
-
-    def name(self, trial: Trial) -> str:
-        """Name of a trial in sentences for the experimenter."""
-        if trial.practice:
-            return f"practice {trial.number} of {len(self.plan.practice)}"
-        return f"trial {self.progress.of_all(trial.number)}"
 
     def start(self, **started: Any) -> None:
         """Begin a run, once the engine is started; `started` are fields for the event `Run`."""
@@ -307,21 +226,13 @@ class Course:
             if stands is not None:
                 stands.clear()
 
-    @property
-    def reading(self) -> bool:
-        """Whether a stimulus is read, so that the participant's key may end it."""
-        display = self.display
-        if self.open_trial is None or display is None or display.ended or self.by_key:
-            return False
-        return not (self.paused or self.half or self.ended_by)
-
     def end_reading(self, by: str, **when: int) -> None:
         """Take the participant's key, which ends reading of the stimulus that is shown."""
         trial, display = self.open_trial, self.display
         if trial is None or display is None or not self.reading:
             return
         self.book.log(
-            events.Ended, trial, attempt=self._attempt, stimulus=self._stimulus, by=by, **when
+            events.Ended, trial, attempt=self._attempt, stimulus=self.stimulus, by=by, **when
         )
         display.end_reading()
         key = by.replace(":", " ")
@@ -431,7 +342,7 @@ class Course:
         return not in_block or (every is not None and in_block % every == 0)
 
     def _show(self, trial: Trial, stimulus: int) -> None:
-        self._stimulus = stimulus
+        self.stimulus = stimulus
         shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
         if self.display is not None and not self.by_key:
             # The showing gets this number next: the journal has it before the stimulus is felt.
@@ -453,7 +364,7 @@ class Course:
         self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
 
     def _tuning(self, trial: Trial) -> Tuning:
-        return replace(trial.stimuli[self._stimulus].tuning, **self.progress.tuning)
+        return replace(trial.stimuli[self.stimulus].tuning, **self.progress.tuning)
 
     def _take(self, happened: Happened) -> None:
         kind, fields, said = happened
@@ -467,7 +378,7 @@ class Course:
             self.book.log(kind, None if between else trial, **fields)
             self._say(said)
         elif trial is not None:
-            self.book.log(kind, trial, attempt=self._attempt, stimulus=self._stimulus, **fields)
+            self.book.log(kind, trial, attempt=self._attempt, stimulus=self.stimulus, **fields)
             if kind is events.Fault:
                 self._repeat_faulty(trial, fields["what"])
 
@@ -487,7 +398,7 @@ class Course:
             return
         if self.second_to_come:
             if display.ready:
-                self._show(trial, self._stimulus + 1)
+                self._show(trial, self.stimulus + 1)
         elif not self.read_said and self._waits:
             self.read_said = True
             self._say(f"read: type {self._prompt}")

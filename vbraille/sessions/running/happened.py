@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from vbraille.devices.events import Event
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
 
 
 class Happened(NamedTuple):

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
 

@@ -15,7 +15,7 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.sessions.record.events import AnyTime
+from vbraille.sessions.record.eventbase import AnyTime
 from vbraille.sessions.running.markerports import Marker
 from vbraille.wording import count
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from io import TextIOWrapper
     from pathlib import Path
 
-    from vbraille.sessions.record.events import JournalEvent
+    from vbraille.sessions.record.eventbase import JournalEvent
     from vbraille.sessions.running.markerports import MarkerPort, MarkerSpec
 
 HEAD = "n,event,trial,practice,byte,late_ms,recorder\n"

@@ -15,6 +15,7 @@ from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
+from vbraille.sessions.running.faultwatch import FaultWatch, when
 from vbraille.sessions.running.happened import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
@@ -38,17 +39,10 @@ _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
     Placing.STOP: "place: move left to the stop, then press Enter",
 }
-# Flags of a device that cannot let a stimulus be felt, and of one that has just gone to rest.
 _AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
-_UNFELT = _AWAY | int(Flag.RESTED)
-# These are plain numbers because numpy, when it reads an enumeration, can swallow an exception that
+# This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
-_PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
-_WHY_HELD = int(Flag.HELD | Flag.RESTED | Flag.SILENT)
-# A fault is told at most once in so many seconds of a trial, which the first one has marked.
-_TOLD_S = 1.0
-# A device that rests because the hand stands still may take so long to accept frames again.
-_WAKING_S = 0.1
+_PAUSED = int(Flag.PAUSED)
 
 
 class RunEngine(Engine, Protocol):
@@ -144,11 +138,9 @@ class OnDevice:
         self._end: EndOfLine
         self._edge_mm: float | None = None
         self._shown_ns = 0
-        self._touched = self._read = self._away = self._ready = False
-        self._trial_line = self._shown_line = 0  # first line of the trial, of the stimulus
-        self._still = False  # whether the newest tick rested because the hand stood still
-        self._waking_ns = -(1 << 62)  # when the device last began to wake
-        self._told_ns: int | None = None  # time of the last fault of the trial
+        self._touched = self._read = self._ready = False
+        self._shown_line = 0  # first line of the stimulus
+        self._faults = FaultWatch()
         self._felt: list[list[NDArray[np.void]]] = []
 
     def open(self, run: int, line: int) -> str:
@@ -169,7 +161,7 @@ class OnDevice:
             run += 1
         self._trace = TraceWriter(self._folder / _trace_name(run), self._tie, self._left_mm)
         self._newest = self._stimulus = None
-        self._away = self._ready = False
+        self._faults.away = self._ready = False
         return _trace_name(run)
 
     @property
@@ -223,9 +215,7 @@ class OnDevice:
         self._shown_line = self.line + 1
         if first:
             self._felt = []
-            self._trial_line = self._shown_line
-            self._told_ns = None
-            self._away = False
+            self._faults.begin(self._shown_line)
         self._felt.append([])
         self._end = EndOfLine(self._span_mm, self._end_mm(stimulus))
         edge_mm = first_edge_mm(
@@ -304,7 +294,7 @@ class OnDevice:
             happened.append(reported(_PLACES[placing]))
         if self._stimulus is not None:
             happened += sorted(
-                self._unfelt(ticks, lost) + self._follow(ticks),
+                self._faults.look(ticks, lost) + self._follow(ticks),
                 key=lambda each: each.fields["tick"],
             )
         return happened + self._pressed(told)
@@ -340,47 +330,6 @@ class OnDevice:
         self._trace.close()
         return self._trace.closed()
 
-    def _unfelt(self, ticks: NDArray[np.void], lost: NDArray[np.bool_]) -> list[Happened]:
-        """Faults that begin or end in these ticks.
-
-        A tick of the trial, pauses left out, is faulty if the device was silent, did not know its
-        place, had gone to rest by itself or took no frames, or if ticks before it were lost. It is
-        no fault that the array rests while the hand stands still, nor that the device then takes
-        a moment to wake.
-        """
-        shown = (ticks["line"] >= self._trial_line) & (ticks["flags"] & _PAUSED == 0)
-        ticks, lost = ticks[shown], lost[shown]
-        if not ticks.size:
-            return []
-        unfelt = (ticks["flags"] & _UNFELT != 0) & ~self._wakes(ticks) | lost
-        at = np.flatnonzero(unfelt)
-        happened = []
-        if at.size and not self._away:
-            fault = ticks[int(at[0])]
-            time_ns = int(fault["time_ns"])
-            if self._told_ns is not None and time_ns - self._told_ns < _TOLD_S * 1e9:
-                return []
-            self._away, self._told_ns = True, time_ns
-            happened.append(Happened(events.Fault, {"what": _why(fault), **_when(fault)}))
-        if self._away and not unfelt[-1]:
-            self._away = False
-            well = int(at[-1]) + 1 if at.size else 0
-            happened.append(Happened(events.Well, _when(ticks[well])))
-        return happened
-
-    def _wakes(self, ticks: NDArray[np.void]) -> NDArray[np.bool_]:
-        """Mark ticks at which the device still wakes after the hand stood still."""
-        flags, times_ns = ticks["flags"], ticks["time_ns"]
-        held = flags & _WHY_HELD == _HELD
-        wakes = np.zeros(ticks.size, np.bool_)
-        for n in np.flatnonzero(held):
-            begins = self._still if n == 0 else bool(flags[n - 1] & _RESTING) and not held[n - 1]
-            if begins:
-                self._waking_ns = int(times_ns[n])
-            wakes[n] = times_ns[n] - self._waking_ns < _WAKING_S * 1e9
-        self._still = bool(flags[-1] & _RESTING) and not held[-1]
-        return wakes
-
     def _follow(self, ticks: NDArray[np.void]) -> list[Happened]:
         """Touch of the first dot, and end of reading, if they are in these ticks."""
         ticks = ticks[(ticks["line"] >= self._shown_line) & (ticks["flags"] & _PAUSED == 0)]
@@ -393,7 +342,7 @@ class OnDevice:
             on = np.flatnonzero(ticks["x_mm"] >= self._edge_mm)
             if on.size:
                 self._touched = True
-                happened.append(Happened(events.Contact, _when(ticks[int(on[0])])))
+                happened.append(Happened(events.Contact, when(ticks[int(on[0])])))
         steered = self._steering is not None and self._steering.done_at(int(ticks["device_ns"][-1]))
         if (
             self._by_hand
@@ -401,23 +350,9 @@ class OnDevice:
             and (self._end.find(ticks["x_mm"]) is not None or steered)
         ):
             self._read = True
-            happened.append(Happened(events.Read, _when(ticks[-1])))
+            happened.append(Happened(events.Read, when(ticks[-1])))
         return happened
 
 
 def _trace_name(run: int) -> str:
     return f"trace-{run:03}.gz"
-
-
-def _why(tick: np.void) -> str:
-    """Say why the stimulus could not be felt at a tick."""
-    flags = int(tick["flags"])
-    if flags & Flag.SILENT:
-        return "the device is silent"
-    if flags & (Flag.MARK | Flag.STOP):
-        return "the device does not know where its carriage is"
-    return "the array went to rest by itself" if flags & _UNFELT else "ticks of it were lost"
-
-
-def _when(tick: np.void) -> dict[str, Any]:
-    return {"tick": int(tick["tick"]), "time_ns": int(tick["time_ns"])}

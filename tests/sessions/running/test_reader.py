@@ -8,8 +8,8 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocolfiles import parse_protocol
 from vbraille.sessions.record.export import rows
-from vbraille.sessions.simulated.comparing import stretch_of
-from vbraille.sessions.simulated.reader import Simulated
+from vbraille.sessions.running.comparing import pair_of
+from vbraille.sessions.running.reader import Simulated
 
 MORE = '[question]\nkind = "which"\nright = "more"\n'
 NEAREST = '[question]\nkind = "which"\nright = "nearest"\nreference = {}\n'
@@ -75,10 +75,10 @@ def test_dots_that_tell_a_distance_are_found():
     protocol = parse_protocol(comparing("cell_gap_mm"), "p.toml")
     style = protocol.style
     line = protocol.line(protocol.design.string)  # a blank, c and a
-    between = stretch_of("cell_gap_mm", line, style.mapping, style.geometry)
+    between = pair_of("cell_gap_mm", line, style.mapping, style.geometry)
     assert (between.columns, between.first, between.cells) == (3, 1, 1)
     assert between.distance_mm == pytest.approx(style.geometry.cell_gap_mm)
-    within = stretch_of("dot_spacing_mm", line, style.mapping, style.geometry)
+    within = pair_of("dot_spacing_mm", line, style.mapping, style.geometry)
     assert (within.first, within.cells) == (0, 0)
     assert within.distance_mm == pytest.approx(style.geometry.dot_spacing_mm)
-    assert stretch_of("dot_spacing_mm", (1, 1), style.mapping, style.geometry) is None
+    assert pair_of("dot_spacing_mm", (1, 1), style.mapping, style.geometry) is None

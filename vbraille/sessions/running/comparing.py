@@ -34,7 +34,7 @@ def nominal_mm(parameter: str, geometry: Geometry) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class DotPair:
     """Two neighbouring dot columns of a line, whose distance tells a length.
 
     Parameters
@@ -55,9 +55,9 @@ class Stretch:
     cells: int
 
 
-def stretch_of(
+def pair_of(
     parameter: str, masks: Sequence[int], mapping: Mapping, geometry: Geometry
-) -> Stretch | None:
+) -> DotPair | None:
     """Find two dot columns by which a distance can be told; None if the line has none.
 
     Parameters
@@ -74,19 +74,19 @@ def stretch_of(
     for number, (one, two) in enumerate(pairwise(columns)):
         cells = two[0] - one[0]
         if (cells > 0) is (parameter == CELL_GAP):
-            return Stretch(len(columns), number, edges[number + 1] - edges[number], cells)
+            return DotPair(len(columns), number, edges[number + 1] - edges[number], cells)
     return None
 
 
 def felt_mm(
-    observer: Observer, parameter: str, exploration: Exploration, stretch: Stretch | None
+    observer: Observer, parameter: str, exploration: Exploration, pair: DotPair | None
 ) -> float:
     """Length that is felt of a stimulus; NaN if it is not felt."""
     if parameter in (WIDTH, GAP):
         return observer.lengths_mm(exploration)[(WIDTH, GAP).index(parameter)]
     dots_mm = observer.dots_mm(exploration)
-    if stretch is None or len(dots_mm) != stretch.columns:
+    if pair is None or len(dots_mm) != pair.columns:
         return math.nan
-    distance_mm = dots_mm[stretch.first + 1, 0] - dots_mm[stretch.first, 0]
-    more_mm = (distance_mm - stretch.distance_mm) / max(stretch.cells, 1)
+    distance_mm = dots_mm[pair.first + 1, 0] - dots_mm[pair.first, 0]
+    more_mm = (distance_mm - pair.distance_mm) / max(pair.cells, 1)
     return float(nominal_mm(parameter, observer.geometry) + more_mm)

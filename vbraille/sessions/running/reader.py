@@ -25,7 +25,8 @@ from vbraille.sessions.planning.questions import (
     SameQuestion,
     WhichQuestion,
 )
-from vbraille.sessions.simulated import comparing, judging
+from vbraille.sessions.running import comparing
+from vbraille.sessions.simulated import judging
 from vbraille.sessions.simulated.observer import SKINS, Observer
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
-    from vbraille.sessions.simulated.comparing import Stretch
+    from vbraille.sessions.running.comparing import DotPair
     from vbraille.sessions.simulated.observer import Parameter, Skin
     from vbraille.sessions.simulated.skin import Exploration
 
@@ -105,7 +106,7 @@ class Simulated:
         self._lead_cells = protocol.lead_cells
         self._parameter = protocol.parameter or ""
         self._question = protocol.asks
-        self._stretches = {c.name: _stretch(protocol, c) for c in protocol.conditions}
+        self._pairs = {c.name: _dot_pair(protocol, c) for c in protocol.conditions}
         pairs = protocol.task == "choice"
         if isinstance(self._question, FreeQuestion) or (pairs and not self._compares):
             raise InputError(
@@ -186,10 +187,8 @@ class Simulated:
         if self._parameter not in comparing.LENGTHS:
             one, two = (self._strength(trial, place, felt[place]) for place in (0, 1))
             return one, two, 1.0
-        observer, stretch = self._observers[trial.condition], self._stretches[trial.condition]
-        one, two = (
-            comparing.felt_mm(observer, self._parameter, each, stretch) for each in felt[:2]
-        )
+        observer, pair = self._observers[trial.condition], self._pairs[trial.condition]
+        one, two = (comparing.felt_mm(observer, self._parameter, each, pair) for each in felt[:2])
         return one, two, comparing.nominal_mm(self._parameter, observer.geometry)
 
     def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
@@ -198,14 +197,14 @@ class Simulated:
         return judging.strength(self._observers[trial.condition].felt(felt, places), first, stop)
 
 
-def _stretch(protocol: Protocol, condition: Condition) -> Stretch | None:
+def _dot_pair(protocol: Protocol, condition: Condition) -> DotPair | None:
     """Dots by which a distance is told in a condition; None if none is compared or can be told."""
     design = protocol.design
     if not isinstance(design, Choice) or protocol.parameter not in comparing.LENGTHS:
         return None
     style = protocol.style_of(condition)
     line = protocol.line(design.string)
-    return comparing.stretch_of(protocol.parameter, line, style.mapping, style.geometry)
+    return comparing.pair_of(protocol.parameter, line, style.mapping, style.geometry)
 
 
 def seed_of(text: str) -> int:
