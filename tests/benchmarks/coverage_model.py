@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.special import expit, logit
@@ -24,6 +25,7 @@ TRIALS = 78  # of each participant, as in the source's sessions
 APART = 0.5  # log odds that conditions, and groups, differ by where they do
 DIFFERING = 0.5  # SD over people of how conditions differ
 AT_ONCE = 2_000  # studies
+_log_likelihood = cache(log_likelihood.__wrapped__)  # of all counts there are: more than it keeps
 WHAT = ("mean share", "odds ratio", "difference of shares")
 
 
@@ -117,7 +119,7 @@ def mean_shares(correct: np.ndarray, trials: np.ndarray) -> tuple[np.ndarray, np
     for right, asked in zip(correct, trials, strict=True):
         likely = np.zeros((MEANS, SPREADS), np.float32)
         for k, n in zip(right[asked > 0].tolist(), asked[asked > 0].tolist(), strict=True):
-            likely = likely + log_likelihood(float(k), float(n))
+            likely = likely + _log_likelihood(float(k), float(n))
         ends.append(quantiles(likely[None], float(asked[asked > 0].mean()), LEVEL))
     low, high = zip(*ends, strict=True)
     return np.concatenate(low), np.concatenate(high)
