@@ -17,6 +17,7 @@ from vbraille.analysis.statistics.marginalmeans import (
     difference,
     odds_ratio,
     separate_cells,
+    tells_difference,
 )
 from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
 from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
@@ -108,6 +109,8 @@ def intervals(people: int, share: float, sd: float, kind: str, what: str, studie
         else:
             found, truth = difference(fit, [0, 1], [1, 0]), second - first
         low, high = found.low, found.high
+        if what == "difference of shares":
+            low = np.where(tells_difference(made.correct, made.trials), low, np.nan)
     given = np.isfinite(low)
     held = (low <= truth) & (truth <= high)
     return Found(int(given.sum()), int(held.sum()), studies)
