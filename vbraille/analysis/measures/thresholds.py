@@ -70,7 +70,7 @@ _SHAPES = {"detect": "logistic", "which": "weibull"}
 _GUESSES = {"detect": None, "which": 0.5}
 
 
-class Asked(NamedTuple):
+class LevelAnswers(NamedTuple):
     """Answers of one participant at the levels of one thing."""
 
     whose: Row
@@ -104,7 +104,7 @@ def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
     )
 
 
-def _detected(judgements: pd.DataFrame) -> Iterator[Asked]:
+def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:
     """Answers yes by level, for each level that varies in what was detected."""
     asked = judgements[(judgements["question"] == "detect") & (judgements["outcome"] != "")]
     for (participant, protocol), own in groups(asked, "participant", "protocol"):
@@ -116,7 +116,7 @@ def _detected(judgements: pd.DataFrame) -> Iterator[Asked]:
             yield _counted(whose | {"level": level}, part[level], part["outcome"].isin(_YES))
 
 
-def _told_apart(judgements: pd.DataFrame) -> Iterator[Asked | Row]:
+def _told_apart(judgements: pd.DataFrame) -> Iterator[LevelAnswers | Row]:
     """Right answers by difference, for each parameter of which one of two was right.
 
     A row with a note stands for what can have no threshold.
@@ -143,14 +143,14 @@ def _told_apart(judgements: pd.DataFrame) -> Iterator[Asked | Row]:
                 yield _counted(whose, part["apart"].abs(), right)
 
 
-def _counted(whose: Row, levels: pd.Series, positive: pd.Series) -> Asked:
+def _counted(whose: Row, levels: pd.Series, positive: pd.Series) -> LevelAnswers:
     # Differences of decimals that are meant to be the same are made so.
     by = positive.groupby(levels.round(9)).agg(["sum", "size"])
     counts = by.to_numpy(np.int64)
-    return Asked(whose, by.index.to_numpy(np.float64), counts[:, 0], counts[:, 1])
+    return LevelAnswers(whose, by.index.to_numpy(np.float64), counts[:, 0], counts[:, 1])
 
 
-def _fitted(asked: Asked) -> tuple[Row, NDArray[np.float64] | None]:
+def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
     """Threshold and what belongs to it, and the fitted share at each level."""
     question = asked.whose["question"]
     row: Row = {"trials": int(asked.trials.sum())}
