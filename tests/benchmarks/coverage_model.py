@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.special import expit, logit
@@ -16,6 +17,7 @@ from vbraille.analysis.statistics.marginalmeans import (
     difference,
     odds_ratio,
     separate_cells,
+    tells_difference,
 )
 from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
 from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
@@ -24,6 +26,7 @@ TRIALS = 78  # of each participant, as in the source's sessions
 APART = 0.5  # log odds that conditions, and groups, differ by where they do
 DIFFERING = 0.5  # SD over people of how conditions differ
 AT_ONCE = 2_000  # studies
+_log_likelihood = cache(log_likelihood.__wrapped__)  # of all counts there are: more than it keeps
 WHAT = ("mean share", "odds ratio", "difference of shares")
 
 
@@ -106,6 +109,8 @@ def intervals(people: int, share: float, sd: float, kind: str, what: str, studie
         else:
             found, truth = difference(fit, [0, 1], [1, 0]), second - first
         low, high = found.low, found.high
+        if what == "difference of shares":
+            low = np.where(tells_difference(made.correct, made.trials), low, np.nan)
     given = np.isfinite(low)
     held = (low <= truth) & (truth <= high)
     return Found(int(given.sum()), int(held.sum()), studies)
@@ -117,7 +122,7 @@ def mean_shares(correct: np.ndarray, trials: np.ndarray) -> tuple[np.ndarray, np
     for right, asked in zip(correct, trials, strict=True):
         likely = np.zeros((MEANS, SPREADS), np.float32)
         for k, n in zip(right[asked > 0].tolist(), asked[asked > 0].tolist(), strict=True):
-            likely = likely + log_likelihood(float(k), float(n))
+            likely = likely + _log_likelihood(float(k), float(n))
         ends.append(quantiles(likely[None], float(asked[asked > 0].mean()), LEVEL))
     low, high = zip(*ends, strict=True)
     return np.concatenate(low), np.concatenate(high)

@@ -2,7 +2,17 @@
 
 import math
 
-from vbraille.pictures.charts import Bars, Curve, Matrix, Path, Paths, Runs, Series
+from vbraille.pictures.charts import (
+    Bars,
+    Curve,
+    Matrix,
+    Path,
+    Paths,
+    Rise,
+    Rises,
+    Runs,
+    Series,
+)
 
 
 def series(name="T = 0 %", groups=3, missing=()):
@@ -47,4 +57,17 @@ def matrix(counts=((30, 5, 0), (10, 28, 4)), diagonal=(0, 1)):
     )
 
 
-CHARTS = [bars(), runs(), Paths("Reading patterns", (path(),)), matrix()]
+def rise(across="difference of dot width (mm)"):
+    levels, shares = (0.1, 0.2, 0.4, 0.8), (0.52, 0.6, 0.82, 0.97)
+    curve = tuple((x / 100, 1 - 0.5 * 2 ** -((x / 30) ** 2)) for x in range(10, 81))
+    trials = (40, 40, 20, 10)
+    return Rise("S1, which", across, levels, shares, trials, curve, (0.3, 0.22, 0.41))
+
+
+CHARTS = [
+    bars(),
+    runs(),
+    Paths("Reading patterns", (path(),)),
+    matrix(),
+    Rises("Thresholds", (rise(), rise("contrast"))),
+]

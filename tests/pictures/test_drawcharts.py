@@ -11,12 +11,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib import rc_context
+from matplotlib.collections import PatchCollection
 from matplotlib.text import Text
 from PIL import Image
 
-from tests.pictures.charts import CHARTS, bars, matrix, path, runs
+from tests.pictures.charts import CHARTS, bars, matrix, path, rise, runs
 from tests.tiers import by_tier, heavy
-from vbraille.pictures.charts import Bars, Matrix, Paths, Runs, Series
+from vbraille.pictures.charts import Bars, Matrix, Paths, Rises, Runs, Series
 from vbraille.pictures.drawcharts import draw_chart
 from vbraille.pictures.figurefiles import to_bytes
 
@@ -48,6 +49,16 @@ def words(figure):
     return [text.get_text() for text in figure.findobj(Text) if text.get_text().strip()]
 
 
+def patches(axes):
+    """Collections of patches, without those of lines."""
+    return [each for each in axes.collections if isinstance(each, PatchCollection)]
+
+
+def cells(collection):
+    """Column and row of each cell that a collection draws."""
+    return [tuple(path.vertices.min(axis=0).astype(int)) for path in collection.get_paths()]
+
+
 def overlaps(figure):
     """Labels of groups, rows and columns that lie upon each other."""
     for axes in figure.axes:
@@ -65,9 +76,9 @@ def overlaps(figure):
 @pytest.mark.no_cover
 @KINDS
 def test_charts_are_grey(chart):
-    red, green, blue = Image.open(io.BytesIO(to_bytes(drawn(chart), "png", 30))).split()[:3]
-    assert red.tobytes() == green.tobytes() == blue.tobytes()
-    assert len(red.getcolors()) > 2
+    pixels = Image.open(io.BytesIO(to_bytes(drawn(chart), "png", 30)))
+    assert pixels.mode == "L"  # greys alone, of one byte
+    assert len(pixels.getcolors()) > 2
 
 
 @pytest.mark.no_cover
@@ -197,6 +208,19 @@ def test_an_empty_path_has_its_dots_alone():
     assert len(axes.get_lines()) == 3
 
 
+def test_a_rise_has_its_answers_its_curve_and_its_threshold():
+    bare = replace(rise(), curve=(), threshold=None)
+    whole, none = draw_chart(Rises("Thresholds", (rise(), bare))).axes
+    (dots,) = whole.collections
+    assert dots.get_offsets()[:, 1].tolist() == pytest.approx([52, 60, 82, 97])
+    assert dots.get_sizes()[0] > dots.get_sizes()[-1]  # of more trials
+    curve, interval, threshold = whole.get_lines()
+    assert curve.get_ydata()[0] == pytest.approx(100 * rise().curve[0][1])
+    assert list(interval.get_xdata()) == [0.22, 0.41]
+    assert list(threshold.get_xdata()) == [0.3]
+    assert not none.get_lines()
+
+
 def test_matrix_prints_counts_and_frames_errors():
     (axes,) = draw_chart(matrix()).axes
     counts = {text.get_position(): text.get_text() for text in axes.texts}
@@ -207,17 +231,16 @@ def test_matrix_prints_counts_and_frames_errors():
         (1.5, 1.5): "28",
         (2.5, 1.5): "4",
     }
-    shaded = [patch for patch in axes.patches if patch.get_fill()]
-    frames = [patch for patch in axes.patches if not patch.get_fill()]
-    assert [(int(patch.get_x()), int(patch.get_y())) for patch in shaded] == [(0, 0), (1, 1)]
-    assert [(int(patch.get_x()), int(patch.get_y())) for patch in frames] == [(1, 0), (0, 1)]
-    thin, thick = (patch.get_linewidth() for patch in frames)
-    assert thick > 2 * thin > 0
+    shaded, thin, thick = patches(axes)
+    assert cells(shaded) == [(0, 0), (1, 1)]
+    assert (cells(thin), cells(thick)) == ([(1, 0)], [(0, 1)])
+    assert thick.get_linewidth()[0] > 2 * thin.get_linewidth()[0] > 0
+    assert not thin.get_facecolor().size  # a frame alone
 
 
 def test_a_row_without_a_right_answer_has_no_shade():
     (axes,) = draw_chart(matrix(diagonal=(None, 1))).axes
-    assert sum(patch.get_fill() for patch in axes.patches) == 1
+    assert cells(patches(axes)[0]) == [(1, 1)]
 
 
 @pytest.mark.no_cover
@@ -255,8 +278,9 @@ LONG = "a participant whose pseudonym is as long as anybody would ever have it"
         Runs("Over time", (replace(runs().runs[0], name=LONG),) * by_tier(4, 12, 12)),
         Paths("Patterns", (replace(path(), name=LONG),) * 3),
         replace(matrix(), rows=(LONG, "b"), columns=(LONG, "b", "c")),
+        Rises("Thresholds", (replace(rise(), name=LONG),) * 3),
     ],
-    ids=["bars", "many bars", "runs", "paths", "matrix"],
+    ids=["bars", "many bars", "runs", "paths", "matrix", "rises"],
 )
 def test_no_label_is_cut_short(chart):
     figure = draw_chart(chart)
@@ -323,8 +347,9 @@ NASTY = "$x$ <&> \udc80\0\n_y"
         Runs(NASTY, (replace(runs().runs[0], name=NASTY),)),
         Paths(NASTY, (replace(path(), name=NASTY),)),
         replace(matrix(), title=NASTY, down=NASTY, across=NASTY, rows=(NASTY, "b")),
+        Rises(NASTY, (replace(rise(), name=NASTY, across=NASTY),)),
     ],
-    ids=["bars", "runs", "paths", "matrix"],
+    ids=["bars", "runs", "paths", "matrix", "rises"],
 )
 def test_any_name_is_drawn_as_it_is(chart):
     figure = draw_chart(chart)

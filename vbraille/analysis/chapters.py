@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from vbraille.analysis.figures import bars, curves, matrices
+from vbraille.analysis.figures import bars, curves, matrices, rises
 from vbraille.analysis.findings import findings
 from vbraille.analysis.input.scoretable import of_trials
 from vbraille.analysis.input.trials import Places, written
@@ -23,6 +23,7 @@ from vbraille.analysis.measures import (
     rated,
     remarks,
     sensitivity,
+    thresholds,
     trialsmodel,
 )
 from vbraille.analysis.methods import methods
@@ -282,20 +283,31 @@ def _of_comparisons(study: Study, comparisons: pd.DataFrame, options: Options) -
 def _of_judgements(judgements: pd.DataFrame) -> list[Chapter]:
     """Chapters of the questions that were asked, beside which cells and which of two."""
     asked = {*judgements["question"]}
-    told: list[tuple[str, str, tuple[ResultTable, ...]]] = []
+    told: list[Chapter] = []
     if asked & {"detect", "same-different"} or (judgements["outcome"] != "").any():
-        tables = [sensitivity.sensitivity(judgements)]
-        if "detect" in asked:
-            tables.append(sensitivity.thresholds(judgements))
-        told.append(("Telling apart", "How well one thing was told from another.", tuple(tables)))
+        told.append(_told_apart(judgements))
     if "rating" in asked:
-        told.append(("Ratings", "Where on a scale things were put.", rated.ratings(judgements)))
+        text = "Where on a scale things were put."
+        told.append(Chapter("Ratings", text, rated.ratings(judgements)))
     if "magnitude" in asked:
         text = "How strong things felt, in numbers of one's own."
-        told.append(("Magnitudes", text, (rated.magnitudes(judgements),)))
+        told.append(Chapter("Magnitudes", text, (rated.magnitudes(judgements),)))
     if judgements["confidence"].notna().any():
         text = "How sure somebody was of the answers."
-        told.append(("Confidence", text, (rated.confidence(judgements),)))
+        told.append(Chapter("Confidence", text, (rated.confidence(judgements),)))
     if "free" in asked:
-        told.append(("Words", "What was said in words.", (rated.words(judgements),)))
-    return [Chapter(*chapter) for chapter in told]
+        told.append(Chapter("Words", "What was said in words.", (rated.words(judgements),)))
+    return told
+
+
+def _told_apart(judgements: pd.DataFrame) -> Chapter:
+    """Sensitivity, and thresholds where levels vary."""
+    tables = [sensitivity.sensitivity(judgements)]
+    figures: tuple[ReportFigure, ...] = ()
+    found, by_level = thresholds.thresholds(judgements)
+    if len(found) or "detect" in {*judgements["question"]}:
+        tables += [found, by_level]
+        figures = tuple(rises.rises(found, by_level))
+    return Chapter(
+        "Telling apart", "How well one thing was told from another.", tuple(tables), figures
+    )

@@ -25,9 +25,9 @@ from scipy.optimize import brentq
 from scipy.special import expit, ndtri
 
 from vbraille.analysis.statistics.correction import adjust
-from vbraille.analysis.statistics.marginalmeans import separate_cells
+from vbraille.analysis.statistics.marginalmeans import compare, separate_cells
 from vbraille.analysis.statistics.paired import paired_p_values
-from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
+from vbraille.analysis.statistics.trialsmodel import fit_trials
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -157,7 +157,7 @@ def _p_values(
         asked = np.broadcast_to(trials, correct.shape)
         fit = fit_trials(correct, asked, separate_cells(*trials.shape))
         unit = np.eye(trials.shape[1])
-        tested = [combine(fit, unit[one] - unit[two]).p_values() for one, two in plan.pairs]
+        tested = [compare(fit, unit[one], unit[two]).p_values() for one, two in plan.pairs]
     else:
         shares = correct / trials
         if plan.test == "half":

@@ -147,4 +147,39 @@ class Matrix:
     diagonal: tuple[int | None, ...]
 
 
-Chart = Bars | Runs | Paths | Matrix
+@dataclass(frozen=True, slots=True)
+class Rise:
+    """Shares of answers that rise with a level: one panel of `Rises`.
+
+    Parameters
+    ----------
+    name
+        What the panel shows, such as a participant.
+    across
+        Label of the levels' axis, with the unit.
+    levels, shares, trials
+        Levels, the share of answers at each, 0 to 1, and how many answers that is of.
+    curve
+        Levels and shares of the curve that was fitted; empty for none.
+    threshold
+        Threshold and the ends of its interval; None if there is no curve.
+    """
+
+    name: str
+    across: str
+    levels: tuple[float, ...]
+    shares: tuple[float, ...]
+    trials: tuple[int, ...]
+    curve: tuple[tuple[float, float], ...] = ()
+    threshold: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rises:
+    """Psychometric functions, a panel for each participant and level."""
+
+    title: str
+    rises: tuple[Rise, ...]
+
+
+Chart = Bars | Runs | Paths | Matrix | Rises

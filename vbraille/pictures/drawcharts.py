@@ -7,15 +7,16 @@ from __future__ import annotations
 
 import math
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from vbraille.pictures.charts import Bars, Matrix, Paths, Runs
+from vbraille.pictures.charts import Bars, Matrix, Paths, Rises, Runs
 from vbraille.pictures.figurefiles import FAINT, MIDDLE, styled
 from vbraille.pictures.words import plain
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.typing import ColorType
     from numpy.typing import NDArray
 
-    from vbraille.pictures.charts import Chart, Curve, Numbers, Path, Series
+    from vbraille.pictures.charts import Chart, Curve, Numbers, Path, Rise, Series
 
 # Fill and hatch of each series' bars: light enough for the black of their error bars.
 FILLS: tuple[tuple[ColorType, str], ...] = (
@@ -61,6 +62,8 @@ def draw_chart(chart: Chart) -> Figure:
                 figure = _paths(chart)
             case Matrix():
                 figure = _matrix(chart)
+            case Rises():
+                figure = _rises(chart)
         width = int(9 * figure.get_figwidth())  # characters
         figure.suptitle("\n".join(textwrap.wrap(plain(chart.title), width)))
         # Placed once, and not at each saving: that takes longer than the drawing.
@@ -215,6 +218,43 @@ def _draw_path(axes: Axes, path: Path) -> None:
     axes.set_ylim(kept[0], max(kept[-1], kept[0] + 1e-3))
 
 
+def _rises(chart: Rises) -> Figure:
+    """Draw psychometric functions: a dot for each level, larger for more trials."""
+    labels = {_lines(rise.across, 18) for rise in chart.rises}
+    one = len(labels) == 1
+    figure, panels = _grid(
+        len(chart.rises), most=3, across=min(labels) if one else "", sharey=True, sharex=one
+    )
+    most = max(number for rise in chart.rises for number in rise.trials)
+    for axes, rise in zip(panels, chart.rises, strict=True):
+        _draw_rise(axes, rise, most)
+        axes.set_title(_lines(rise.name, 24), size="small")
+        if not one:
+            axes.set_xlabel(_lines(rise.across, 18))
+    panels[0].set_yticks(_PERCENT)
+    panels[0].set_ylim(-4, 104)
+    figure.supylabel("yes, or right (%)")
+    dot = Line2D([], [], marker="o", markersize=4, linestyle="none", color=MIDDLE)
+    bar = Line2D([], [], color="black", marker="|", markersize=8)
+    curve = Line2D([], [], color="black")
+    words = ["answers at a level", "fitted", "threshold with its 95 % interval, at the bottom"]
+    _legend(figure, [dot, curve, bar], words)
+    return figure
+
+
+def _draw_rise(axes: Axes, rise: Rise, most: int) -> None:
+    sizes = 30 * np.asarray(rise.trials) / most + 4
+    axes.scatter(rise.levels, 100 * np.asarray(rise.shares), sizes, color=MIDDLE, zorder=2)
+    axes.grid(axis="y", color=FAINT, linewidth=0.6)
+    if rise.curve:
+        levels, shares = np.asarray(rise.curve).T
+        axes.plot(levels, 100 * shares, color="black")
+    if rise.threshold is not None:
+        threshold, low, high = rise.threshold
+        axes.plot([low, high], [0, 0], color="black")
+        axes.plot([threshold], [0], marker="|", markersize=8, color="black")
+
+
 def _matrix(chart: Matrix) -> Figure:
     """Draw tables 3.4, 3.5 and 4.1: presented from the top down, answered from the left."""
     rows, columns = (
@@ -235,17 +275,24 @@ def _matrix(chart: Matrix) -> Figure:
     axes.hlines(range(len(rows) + 1), 0, len(columns), color=FAINT, linewidth=0.6)
     axes.vlines(range(len(columns) + 1), 0, len(rows), color=FAINT, linewidth=0.6)
     size = _digits_size(3, cell)
+    shaded: list[Rectangle] = []
+    framed: dict[float, list[Rectangle]] = {}
     for down, (counts, right) in enumerate(zip(chart.counts, chart.diagonal, strict=True)):
         for across, count in enumerate(counts):
             if across == right:
-                axes.add_patch(_cell(down, across, color=SHADE, linewidth=0))
+                shaded.append(_cell(down, across))
             elif frame := _frame(count, chart.marks):
-                axes.add_patch(_cell(down, across, fill=False, linewidth=frame))
+                framed.setdefault(frame, []).append(_cell(down, across))
             if count:
                 text = str(count)
                 own = min(_digits_size(len(text), cell), size)
                 axes.text(across + 0.5, down + 0.5, text, ha="center", va="center", size=own)
-    for within in (*axes.texts, *axes.patches):
+    # Frames of one kind are drawn in one go: they are hundreds.
+    axes.add_collection(PatchCollection(shaded, color=SHADE, linewidth=0), autolim=False)
+    for frame, cells in framed.items():
+        look = {"facecolor": "none", "edgecolor": "black", "linewidth": frame}
+        axes.add_collection(PatchCollection(cells, **look), autolim=False)
+    for within in (*axes.texts, *axes.collections):
         within.set_in_layout(False)  # hundreds, that need no room of their own
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0, labelsize=min(size + 1.5, 11))
@@ -267,10 +314,10 @@ def _frame(count: int, marks: tuple[int, ...]) -> float:
     return (0.0, 0.9, 2.6)[min(sum(count > mark for mark in marks), 2)]
 
 
-def _cell(down: int, across: int, **look: Any) -> Rectangle:
-    """Draw a frame just within a cell, so that the frames of neighbours stay apart."""
+def _cell(down: int, across: int) -> Rectangle:
+    """Make a frame just within a cell, so that the frames of neighbours stay apart."""
     inset = 0.08
-    return Rectangle((across + inset, down + inset), 1 - 2 * inset, 1 - 2 * inset, **look)
+    return Rectangle((across + inset, down + inset), 1 - 2 * inset, 1 - 2 * inset)
 
 
 def _figure(width: float, height: float) -> Figure:
@@ -278,13 +325,15 @@ def _figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), constrained_layout=False)
 
 
-def _grid(panels: int, most: int, across: str, sharey: bool) -> tuple[Figure, list[Axes]]:
+def _grid(
+    panels: int, most: int, across: str, sharey: bool, sharex: bool = True
+) -> tuple[Figure, list[Axes]]:
     """Make a figure with a grid of panels, so many side by side; the lowest are labelled."""
     columns = min(most, max(math.ceil(math.sqrt(panels)), 1) if most > 3 else panels)
     wide, high = _PANELS[columns - 1]
     rows = -(-panels // columns)
     figure = _figure(1 + wide * columns, 1.6 + high * rows)
-    grid = figure.subplots(rows, columns, sharex=True, sharey=sharey, squeeze=False)
+    grid = figure.subplots(rows, columns, sharex=sharex, sharey=sharey, squeeze=False)
     for axes in grid.flat[panels:]:
         axes.set_axis_off()
     for axes in grid.flat[max(panels - columns, 0) : panels]:

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from statistics import fmean
 
+import numpy as np
 import pandas as pd
 import pytest
 from hypothesis import given
@@ -66,11 +67,12 @@ def test_means_are_those_taken_one_by_one(observed):
         what: fmean(fmean(map(fmean, whens.values())) for whens in whos.values())
         for what, whos in of.items()
     }
-    levels, own, numbers = over_participants(frame["level"].to_numpy(), frame.assign(**whose))
-    assert levels.tolist() == sorted(means)
-    assert [len(whos) for whos in own] == [len(of[what]) for what in sorted(means)]
-    assert sum(int(number.sum()) for number in numbers) == len(observed)
-    found = [whos.mean() for whos in own]
+    own = over_participants(frame["level"].to_numpy(), frame.assign(**whose))
+    assert own.levels.tolist() == sorted(means)
+    each = np.split(own.means, own.starts[1:])
+    assert [len(whos) for whos in each] == [len(of[what]) for what in sorted(means)]
+    assert own.numbers.sum() == len(observed)
+    found = [whos.mean() for whos in each]
     assert found == pytest.approx([means[what] for what in sorted(means)])
 
 

@@ -7,10 +7,13 @@ from scipy.stats import norm, t
 
 from tests.analysis.making import record, sheet
 from vbraille.analysis.chapters import Options, analyse_study
+from vbraille.analysis.figures.rises import rises
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.measures import rated, sensitivity
+from vbraille.analysis.measures.thresholds import thresholds
+from vbraille.analysis.statistics.psychometric import fit_psychometric
 from vbraille.errors import InputError
 
 COLUMNS = "participant condition contrast presented answered question outcome confidence"
@@ -117,7 +120,7 @@ def test_a_threshold_where_a_level_varies():
         row for level, yes in shares.items()
         for row in detected("P1", f"c{level}", level, yes, 20 - yes)
     ]  # fmt: skip
-    row = record(sensitivity.thresholds(found(rows)), participant="P1")
+    row = record(thresholds(found(rows))[0], participant="P1")
     assert (row["level"], row["trials"]) == ("contrast", 100)
     assert row["threshold"] == pytest.approx(0.2, abs=0.02)
     assert row["low"] < row["threshold"] < row["high"]
@@ -125,9 +128,58 @@ def test_a_threshold_where_a_level_varies():
 
 def test_two_levels_make_no_threshold():
     rows = detected("P1", "blank", 0.0, 1, 9) + detected("P1", "full", 0.5, 9, 1)
-    row = record(sensitivity.thresholds(found(rows)), participant="P1")
+    row = record(thresholds(found(rows))[0], participant="P1")
     assert row["threshold"] is None
     assert row["note"].startswith("no threshold: ")
+
+
+def chosen(participant, less, more, times, right, rule="more"):
+    """Comparisons of two widths of which the wider is right: so many, and so many right ones."""
+    rows = []
+    for number in range(times):
+        pair = (less, more) if number % 2 else (more, less)
+        best = more if rule == "more" else less
+        answered = best if number < right else less + more - best
+        rows.append({
+            "participant": participant, "condition": "all", "parameter": "dot_width_mm",
+            "presented": f"{pair[0]:g} {pair[1]:g}", "answered": f"{answered:g}",
+            "question": "which", "outcome": "right" if number < right else "wrong",
+        })  # fmt: skip
+    return rows
+
+
+@pytest.mark.parametrize("rule", ["more", "less"])
+def test_a_threshold_of_which_of_two(rule):
+    """By the difference, half of the answers guessed: four standards make the same levels."""
+    right = {0.1: 21, 0.2: 24, 0.4: 33, 0.8: 39}
+    rows = [row for apart, times in right.items()
+            for row in chosen("P1", 1.0, 1.0 + apart, 40, times, rule)]  # fmt: skip
+    table, levels = thresholds(found(rows))
+    row = record(table, participant="P1")
+    assert (row["question"], row["level"], row["trials"]) == ("which", "dot_width_mm", 160)
+    fit = fit_psychometric(list(right), list(right.values()), [40] * 4, shape="weibull", guess=0.5)
+    assert row["threshold"] == pytest.approx(fit.threshold, rel=1e-4)
+    assert row["low"] < 0.3 < row["high"]
+    assert row["guesses"] == 0.5
+    assert [level["value"] for level in levels.records()] == list(right)
+    assert [level["positive"] for level in levels.records()] == list(right.values())
+    assert levels.records()[3]["fitted"] == pytest.approx(float(fit.shares(0.8)), rel=1e-4)
+    (figure,) = rises(table, levels)
+    (panel,) = figure.chart.rises
+    assert panel.across == "difference of dot width (mm)"
+    assert panel.threshold[1] < panel.threshold[0] < panel.threshold[2]
+    assert "P1, dot_width_mm: 0." in figure.text
+
+
+def test_which_is_nearest_has_no_threshold():
+    rows = chosen("P1", 1.0, 1.5, 10, 8) + chosen("P1", 2.0, 2.5, 10, 8, "less")
+    table, levels = thresholds(found(rows))
+    (row,) = table.records()
+    assert row["note"] == (
+        "no threshold: neither the larger of two is always right, nor the smaller"
+    )
+    assert not len(levels)
+    assert not list(rises(table, levels))
 
 
 RATED = "participant condition presented answered question"
@@ -222,5 +274,7 @@ def test_the_report_has_a_chapter_for_each():
     assert [chapter.title for chapter in results.chapters] == [
         "Telling apart", "Ratings", "Magnitudes", "Confidence", "Words",
     ]  # fmt: skip
-    assert {"sensitivity", "thresholds", "ratings", "rating_pairs", "magnitudes", "confidence",
-            "words"} == set(results.tables)  # fmt: skip
+    assert set(results.tables) == {
+        "sensitivity", "thresholds", "threshold_levels", "ratings", "rating_pairs", "magnitudes",
+        "confidence", "words",
+    }  # fmt: skip

@@ -12,6 +12,7 @@ from vbraille.analysis.statistics.marginalmeans import (
     difference,
     odds_ratio,
     separate_cells,
+    tells_difference,
 )
 from vbraille.analysis.statistics.trialsmodel import combine, fit_trials, plain_covariance
 from vbraille.analysis.statistics.unanswerable import Unanswerable
@@ -158,6 +159,17 @@ def test_false_positives_and_coverage(people, sd):
         assert np.mean(p < 0.05) > 0.02
     for found in (odds_ratio(fit, [1, 0], [0, 1]), difference(fit, [1, 0], [0, 1])):
         assert 0.92 < np.mean((found.low <= 0) & (found.high >= 0)) < 0.99
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [([1, 0, 2, 0], False), ([1, 1, 2, 0], True), ([20, 20, 19, 3], False), ([20, 9, 9, 3], True)],
+)
+def test_three_must_have_something_wrong_and_three_something_right(wrong, told):
+    correct = np.column_stack([[20] * 4, 20 - np.array(wrong)])
+    if min(wrong) > 2:
+        correct[:, 0] = 0
+    assert tells_difference(correct, np.full((4, 2), 20)) == told
 
 
 @pytest.mark.parametrize("people", [2, 5])

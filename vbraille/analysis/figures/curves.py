@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from vbraille.analysis.input.sittings import Example, SessionTrials
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.schemas import ResultTable
 
 MOST_RUNS = 24  # panels in one figure of curves
 MOST_PAGES = 10  # figures of curves
@@ -37,26 +37,27 @@ PATHS = Schema(
 
 def over_time(table: ResultTable, slopes: ResultTable) -> Iterator[ReportFigure]:
     """Single trials and their moving average, `MOST_RUNS` to a figure: Lévesque 2009, fig. 3.14."""
-    of: dict[tuple, list[Row]] = {}
-    for row in table.records():
-        of.setdefault((row["participant"], row["session"], row["condition"]), []).append(row)
-    several = len({key[1] for key in of}) > len({key[0] for key in of})
-    runs = [
-        Curve(
-            f"{who}, {session}, {condition}" if several else f"{who}, {condition}",
-            tuple(row["number"] for row in rows),
-            tuple(row["correct"] for row in rows),
-            tuple(row["average"] for row in rows),
+    whose = ["participant", "session", "condition"]
+    runs = []
+    several = len(table.frame["session"].unique()) > len(table.frame["participant"].unique())
+    by = table.frame.groupby(whose, sort=False)
+    for (who, session, condition), rows in list(by)[: MOST_RUNS * MOST_PAGES]:
+        average = rows["average"].astype(object).where(rows["average"].notna(), None)
+        runs.append(
+            Curve(
+                f"{who}, {session}, {condition}" if several else f"{who}, {condition}",
+                tuple(rows["number"].tolist()),
+                tuple(rows["correct"].tolist()),
+                tuple(average.tolist()),
+            )
         )
-        for (who, session, condition), rows in of.items()
-    ]
     sure = [row for row in slopes.records() if row["p"] is not None and row["p"] < 0.05]
     said = "; ".join(
         f"{row['participant']}, {row['condition']}, by {to_print(row['slope'], Kind.PERCENT)} % in "
         f"10 trials"
         for row in sure
     )
-    pages = -(-len(runs) // MOST_RUNS)
+    pages = -(-by.ngroups // MOST_RUNS)
     left = f" Of {pages} pages {MOST_PAGES} are drawn; the table has all." * (pages > MOST_PAGES)
     for page in range(min(pages, MOST_PAGES)):
         part = f", {page + 1} of {pages}" if pages > 1 else ""

@@ -9,6 +9,7 @@ Judgements have a row for each answered trial, with the columns ``participant``,
 - ``outcome``: one of `OUTCOMES` of the question, or empty; where a table has none, it is made of
   what was presented and answered, or of ``correct``;
 - ``confidence``: float64, NaN where it was not asked;
+- ``parameter``: text, what two values were of; empty if it is not known;
 - each of `LEVELS`: float64, NaN where it is not known or two values were compared.
 
 Strings that were identified, and choices of one of two, are among them if they have a confidence,
@@ -120,6 +121,7 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
         number=number,
         outcome=outcome,
         confidence=confidence,
+        parameter=rows.get("parameter", empty).fillna("").astype(str).str.strip(),
         **{name: _levels(rows.get(name, empty)) for name in LEVELS},
     )
     bad = kept & (kinds == "magnitude") & (number <= 0)

@@ -115,8 +115,14 @@ def factor(
     key
         Key by which the levels are sorted; None for the order of their characters.
     """
-    names = [str(value) for value in values]
-    return pd.Categorical(names, sorted(set(names), key=key), ordered=True)
+    column = values if isinstance(values, pd.Series) else pd.Series(list(values), dtype=object)
+    # Words are made and sorted of what differs alone: most values occur many times.
+    at, different = pd.factorize(column, use_na_sentinel=False)
+    names = [str(value) for value in different]
+    levels = sorted(set(names), key=key)
+    place = {name: number for number, name in enumerate(levels)}
+    own = np.array([place[name] for name in names], np.int64)
+    return pd.Categorical.from_codes(own[at], levels, ordered=True)
 
 
 def codes(levels: pd.Series) -> NDArray[np.int64]:
@@ -200,5 +206,6 @@ def _lengths(strings: pd.Series) -> NDArray[np.int64]:
 
 def _masks(strings: pd.Series) -> NDArray[np.int64]:
     """Dot masks of all places of some strings, one after the other."""
-    points = np.frombuffer("".join(strings).encode("utf-32-le"), "<u4").astype(np.int64)
+    texts = strings.cat.categories.to_numpy(object)[codes(strings)]
+    points = np.frombuffer("".join(texts).encode("utf-32-le"), "<u4").astype(np.int64)
     return np.where(points == ord(UNREAD), UNREAD_MASK, points - UNICODE_BLANK)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,9 +20,28 @@ def mean_or_none(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if len(values) else None
 
 
-def over_participants(
-    level: NDArray[np.int64], frame: pd.DataFrame
-) -> tuple[NDArray[np.int64], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
+class OwnMeans(NamedTuple):
+    """Participants' own means at each of k levels.
+
+    Parameters
+    ----------
+    levels : int64[k]
+        Codes of the levels that occur, ascending.
+    starts : int64[k]
+        Where the means of each level begin in the two that follow.
+    means : float64[n]
+        Means of the participants who have a level, level by level.
+    numbers : int64[n]
+        Number of observations behind each of these means.
+    """
+
+    levels: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    means: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+
+
+def over_participants(level: NDArray[np.int64], frame: pd.DataFrame) -> OwnMeans:
     """Mean of each level over conditions within each participant.
 
     Tables 3.2 and 3.3 of Lévesque 2009 were most likely found in this way: "computed across
@@ -36,15 +55,6 @@ def over_participants(
     frame
         Data frame of observations: whether each is ``correct``, its ``participant`` and
         ``condition``.
-
-    Returns
-    -------
-    levels : int64[k]
-        Codes of the levels that occur, ascending.
-    own : list of float64[participants]
-        For each level, the means of the participants who have it.
-    numbers : list of int64[participants]
-        Number of observations behind each of these means.
     """
     participant, condition = codes(frame["participant"]), codes(frame["condition"])
     shape = (int(level.max()) + 1, int(participant.max()) + 1)
@@ -54,7 +64,7 @@ def over_participants(
     (level, participant, _), means = _means((level, participant, condition), correct)
     (level, _), means = _means((level, participant), means)
     levels, starts = np.unique(level, return_index=True)
-    return levels, np.split(means, starts[1:]), np.split(numbers, starts[1:])
+    return OwnMeans(levels, starts, means, numbers)
 
 
 def _means(

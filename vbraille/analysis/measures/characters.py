@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from vbraille.analysis.input.trials import codes, groups, name_cell, name_string
 from vbraille.analysis.measures.averages import over_participants
@@ -15,13 +16,12 @@ from vbraille.analysis.statistics.shares import mean_share
 from vbraille.braille.cells import UNICODE_BLANK
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Sized
 
-    import pandas as pd
     from numpy.typing import NDArray
 
     from vbraille.analysis.input.trials import Places
-    from vbraille.analysis.schemas import ResultTable, Row
+    from vbraille.analysis.schemas import ResultTable
 
 _ABOUT = (
     "Legibility is the mean of the participants' own means, conditions averaged within a "
@@ -85,48 +85,45 @@ DOTS_OWN = Schema(
 
 def characters(places: Places) -> ResultTable:
     """Table 3.2 of Lévesque 2009: one row for each character."""
-    rows = [
-        {"name": name_cell(mask), "braille": chr(UNICODE_BLANK + mask), "dots": mask.bit_count()}
-        | counts
-        for mask, counts in _counts(places.frame["presented"].to_numpy(), places.frame)
-    ]
-    rows.sort(key=lambda row: cell_order(ord(row["braille"]) - UNICODE_BLANK))
-    return CHARACTERS.fill(rows, _notes(rows, places))
+    counts = _counts(places.frame["presented"].to_numpy(), places.frame)
+    masks = sorted(counts.index.tolist(), key=cell_order)
+    counts = counts.loc[masks].assign(
+        name=[name_cell(mask) for mask in masks],
+        braille=[chr(UNICODE_BLANK + mask) for mask in masks],
+        dots=[mask.bit_count() for mask in masks],
+    )
+    return CHARACTERS.fill(counts.reset_index(drop=True), _notes(counts, places))
 
 
 def strings(trials: pd.DataFrame) -> ResultTable:
     """Table 3.3 of Lévesque 2009: one row for each string."""
-    names = trials["string_set"].cat.categories
+    sets = trials["string_set"].cat.categories
     shown = trials[["string_set", "presented"]].drop_duplicates()
-    orders = shown["string_set"].value_counts(sort=False)
-    rows = [
-        {"name": name_string(name), "braille": name, "orders": number} | counts
-        for name, number, (_, counts) in zip(
-            names, orders, _counts(codes(trials["string_set"]), trials), strict=True
-        )
-    ]
-    return STRINGS.fill(sorted(rows, key=lambda row: row["name"]))
+    counts = _counts(codes(trials["string_set"]), trials).assign(
+        name=[name_string(string) for string in sets],
+        braille=sets.to_numpy(object),
+        orders=shown["string_set"].value_counts(sort=False).to_numpy(),
+    )
+    return STRINGS.fill(counts.sort_values("name", kind="stable", ignore_index=True))
 
 
 def dots(places: Places) -> ResultTable:
     """Legibility by number of dots: one row for each number."""
-    rows = [{"dots": number} | counts for number, counts in _counts(_dots(places), places.frame)]
-    return DOTS.fill(rows, _notes(rows, places))
+    counts = _counts(_dots(places), places.frame)
+    counts = counts.rename_axis("dots").reset_index()
+    return DOTS.fill(counts, _notes(counts, places))
 
 
 def dots_of_participants(places: Places) -> ResultTable:
     """Legibility by number of dots: one row for each participant and number."""
-    many = _dots(places)
-    rows: list[Row] = [
-        {
-            "participant": whose[0],
-            "dots": number,
-            **{name: counts[name] for name in ("presented", "correct", "legibility")},
-        }
-        for whose, own in groups(places.frame.assign(dots=many), "participant")
-        for number, counts in _counts(own["dots"].to_numpy(), own)
+    found = [
+        _counts(own["dots"].to_numpy(), own).assign(participant=whose[0])
+        for whose, own in groups(places.frame.assign(dots=_dots(places)), "participant")
     ]
-    return DOTS_OWN.fill(rows, _notes(rows, places))
+    if not found:
+        return DOTS_OWN.fill([], _notes([], places))
+    counts = pd.concat(found).rename_axis("dots").reset_index()
+    return DOTS_OWN.fill(counts[DOTS_OWN.names], _notes(counts, places))
 
 
 def cell_order(mask: int) -> tuple[bool, str, int]:
@@ -140,27 +137,31 @@ def _dots(places: Places) -> NDArray[np.int64]:
     return np.array([mask.bit_count() for mask in range(256)])[places.frame["presented"]]
 
 
-def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> list[tuple[int, Row]]:
-    """Values of the columns `_COUNTS` at each level; see `over_participants`."""
+def _counts(level: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
+    """Values of the columns `_COUNTS`, a row a level; the index has the levels, ascending."""
     if not level.size:
-        return []
-    levels, own, numbers = over_participants(level, frame)
-    right = frame["correct"].groupby(level).agg(["size", "sum"]).to_numpy().tolist()
-    return [
-        (code, {"presented": n, "correct": k, "pooled": k / n} | _share(means, of))
-        for code, (n, k), means, of in zip(levels.tolist(), right, own, numbers, strict=True)
-    ]
+        return pd.DataFrame(columns=[column.name for column in _COUNTS])
+    own = over_participants(level, frame)
+    people = np.diff(own.starts, append=own.means.size)
+    counts = frame["correct"].groupby(level).agg(presented="size", correct="sum")
+    sums = np.add.reduceat(own.means, own.starts)
+    low, high = np.full((2, people.size), np.nan)
+    for at in np.flatnonzero(people >= FEWEST_PARTICIPANTS).tolist():
+        theirs = slice(own.starts[at], own.starts[at] + people[at])
+        interval = mean_share(own.means[theirs], own.numbers[theirs])
+        low[at], high[at] = interval.low, interval.high
+        sums[at] = own.means[theirs].sum()  # to the last digit, as of one row of numbers
+    few = [f"no interval: {too_few(number)}" for number in range(FEWEST_PARTICIPANTS)]
+    return counts.assign(
+        participants=people,
+        legibility=sums / people,
+        low=low,
+        high=high,
+        pooled=counts["correct"] / counts["presented"],
+        note=np.array([*few, ""], object)[np.minimum(people, FEWEST_PARTICIPANTS)],
+    )
 
 
-def _share(means: NDArray[np.float64], numbers: NDArray[np.int64]) -> Row:
-    """Mean of the participants' means with its interval, or the reason why there is no interval."""
-    row: Row = {"participants": means.size, "legibility": float(means.sum()) / means.size}
-    if means.size < FEWEST_PARTICIPANTS:
-        return row | {"note": f"no interval: {too_few(means.size)}"}
-    interval = mean_share(means, numbers)
-    return row | {"low": interval.low, "high": interval.high}
-
-
-def _notes(rows: Sequence[object], places: Places) -> list[str]:
-    none = [] if rows else ["no answer has as many places as its string"]
+def _notes(rows: Sized, places: Places) -> list[str]:
+    none = [] if len(rows) else ["no answer has as many places as its string"]
     return none + unequal_notes(places)

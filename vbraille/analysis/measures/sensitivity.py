@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vbraille.analysis.input.judgements import LEVELS
 from vbraille.analysis.input.trials import groups
 from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
 from vbraille.analysis.statistics.detection import same_different, two_alternatives, yes_no
-from vbraille.analysis.statistics.psychometric import fit_psychometric
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
 if TYPE_CHECKING:
@@ -44,24 +40,7 @@ SENSITIVITY = Schema(
         NOTE_COLUMN,
     ),
 )
-THRESHOLDS = Schema(
-    "thresholds",
-    "Thresholds of detection",
-    "Level at which half of what is neither guessed nor lapsed is answered yes, by a logistic "
-    "function with free guesses and lapses; a participant's row for each level that varies.",
-    (
-        Column("participant", "participant", "pseudonym"),
-        Column("protocol", "protocol", "name of the protocol"),
-        Column("level", "level", "what varies: contrast, texture, or a length in mm"),
-        Column("trials", "trials", "how many", Kind.COUNT),
-        Column("threshold", "threshold", "in the unit of the level", Kind.NUMBER),
-        Column("low", "from", "lower end of its 95 % credible interval", Kind.NUMBER),
-        Column("high", "to", "upper end", Kind.NUMBER),
-        Column("spread", "spread", "the larger, the flatter", Kind.NUMBER),
-        NOTE_COLUMN,
-    ),
-)
-_SIGNAL, _YES = ("hit", "miss"), ("hit", "false alarm")
+_SIGNAL = ("hit", "miss")
 
 
 def sensitivity(judgements: pd.DataFrame) -> ResultTable:
@@ -83,40 +62,6 @@ def sensitivity(judgements: pd.DataFrame) -> ResultTable:
                 except Unanswerable as reason:
                     rows.append(row | {"note": f"no d′: {reason}"})
     return SENSITIVITY.fill(rows, () if rows else ("nothing was looked for",))
-
-
-def thresholds(judgements: pd.DataFrame) -> ResultTable:
-    """Threshold of each participant, for each level that varies in what was detected."""
-    rows: list[Row] = []
-    asked = judgements[(judgements["question"] == "detect") & (judgements["outcome"] != "")]
-    for (participant, protocol), own in groups(asked, "participant", "protocol"):
-        for level in LEVELS:
-            part = own[own[level].notna()]
-            if part[level].nunique() < 2:
-                continue
-            row: Row = {"participant": participant, "protocol": protocol, "level": level}
-            rows.append(row | _threshold(part, level))
-    return THRESHOLDS.fill(rows, () if rows else ("no level of what was detected varies",))
-
-
-def _threshold(part: pd.DataFrame, level: str) -> Row:
-    yes = part["outcome"].isin(_YES)
-    by = yes.groupby(part[level]).agg(["sum", "size"])
-    row: Row = {"trials": len(part)}
-    try:
-        fit = fit_psychometric(
-            by.index.to_numpy(np.float64), by["sum"].to_numpy(), by["size"].to_numpy(), guess=None
-        )
-    except Unanswerable as reason:
-        return row | {"note": f"no threshold: {reason}"}
-    ends = fit.threshold_interval
-    return row | {
-        "threshold": fit.threshold,
-        "low": ends.low,
-        "high": ends.high,
-        "spread": fit.spread,
-        "note": fit.note,
-    }
 
 
 def _found(part: pd.DataFrame, own: pd.DataFrame) -> tuple[int, int, int, int]:

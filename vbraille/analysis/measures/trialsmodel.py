@@ -18,6 +18,7 @@ from vbraille.analysis.statistics.marginalmeans import (
     compare_all,
     difference,
     separate_cells,
+    tells_difference,
 )
 from vbraille.analysis.statistics.shares import mean_share
 from vbraille.analysis.statistics.trialsmodel import fit_trials
@@ -101,6 +102,9 @@ CONTRASTS = Schema(
         NOTE_COLUMN,
     ),
 )  # fmt: skip
+_FEW_DIFFER = (
+    "no interval of the difference: fewer than three participants have anything wrong, or right"
+)
 
 
 def trials_model(
@@ -245,6 +249,9 @@ def _contrasts(fit: TrialsFit, counts: Counts, correction: str) -> list[Row]:
             row["d_low"], row["d_high"] = (float(np.log(odds[end])) * TO_D
                                            for end in ("low", "high"))  # fmt: skip
             odds |= _tested(fit, first, second)
+            if not tells_difference(counts.correct[:, [one, two]], counts.asked[:, [one, two]]):
+                del odds["difference_low"], odds["difference_high"]
+                notes.append(_FEW_DIFFER)
         notes += [odds.pop("note")] if "note" in odds else []
         rows.append(row | odds | {"note": "; ".join(notes)})
     known = [row for row in rows if "p" in row]

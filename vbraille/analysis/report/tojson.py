@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -12,7 +13,11 @@ if TYPE_CHECKING:
     from vbraille.analysis.schemas import ResultTable
 
 # One value a line, for whoever compares two files; json's own indenting takes ten times as long.
-_ENCODE = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",\n", ": ")).encode
+_SEPARATOR = ",\n"
+_ENCODE = json.JSONEncoder(
+    ensure_ascii=False, allow_nan=False, separators=(_SEPARATOR, ": ")
+).encode
+_AT_ONCE = 5_000  # rows
 
 
 def to_json(results: Results) -> Iterator[str]:
@@ -31,15 +36,20 @@ def to_json(results: Results) -> Iterator[str]:
     yield f'{_ENCODE(head)[:-1]},\n"tables": {{'
     for number, table in enumerate(results.result_tables()):
         yield f"{',' * bool(number)}\n{_ENCODE(table.name)}: "
-        yield _ENCODE(_table(table))
+        yield from _table(table)
     yield "}}\n"
 
 
-def _table(table: ResultTable) -> dict[str, Any]:
-    return {
+def _table(table: ResultTable) -> Iterator[str]:
+    """Text of a table, some rows at a time: all at once take much memory."""
+    head = {
         "title": table.title,
         "about": table.schema.about,
         "columns": {column.name: column.meaning for column in table.columns},
         "notes": table.notes,
-        "rows": table.records(),
     }
+    yield f'{_ENCODE(head)[:-1]},\n"rows": ['
+    for first in range(0, len(table), _AT_ONCE):
+        part = replace(table, frame=table.frame.iloc[first : first + _AT_ONCE])
+        yield f"{_SEPARATOR * bool(first)}{_ENCODE(part.records())[1:-1]}"
+    yield "]}"

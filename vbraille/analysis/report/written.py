@@ -64,7 +64,7 @@ def _files(results: Results) -> dict[str, bytes]:
     return {
         PAGE: encode(to_html(results, svgs, (TEXT, NUMBERS, *trials, CODEBOOK))),
         TEXT: encode(to_markdown(results, (PAGE, NUMBERS, *trials, CODEBOOK))),
-        NUMBERS: encode("".join(to_json(results))),
+        NUMBERS: b"".join(encode(part) for part in to_json(results)),
         **trials,
         CODEBOOK: encode(codebook(results, TRIALS)),
         **{csv_name(table): encode(to_csv(table.frame)) for table in results.result_tables()},

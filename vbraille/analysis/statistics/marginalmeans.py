@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import expit
 from scipy.stats import t as student
 
-from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.intervals import FEWEST_PARTICIPANTS, LEVEL
 from vbraille.analysis.statistics.jointtest import try_jointly
 from vbraille.analysis.statistics.scores import check_level
 from vbraille.analysis.statistics.trialsmodel import combine
@@ -98,6 +98,26 @@ def difference(
     half = student.ppf((1 + level) / 2, apart.degrees) * apart.errors / (1 - value**2)
     middle = np.arctanh(value)
     return Estimates(value, np.tanh(middle - half), np.tanh(middle + half))
+
+
+def tells_difference(correct: ArrayLike, trials: ArrayLike) -> NDArray[np.bool_]:
+    """Whether three participants or more have something wrong, and as many something right.
+
+    Where fewer have, `difference` is wider than it says: of three people near the ceiling it then
+    holds the truth 99 to 100 times in 100.
+
+    Parameters
+    ----------
+    correct, trials : int[studies, k, c]
+        Right answers and all answers of each participant in each of the cells that are compared.
+
+    Returns
+    -------
+    bool[studies]
+    """
+    right, asked = (np.asarray(of).sum(axis=-1) for of in (correct, trials))
+    some = [(of > 0).sum(axis=-1) >= FEWEST_PARTICIPANTS for of in (right, asked - right)]
+    return some[0] & some[1]
 
 
 def compare(fit: TrialsFit, first: ArrayLike, second: ArrayLike) -> Contrasts:

@@ -88,6 +88,12 @@ class PsychometricFit:
     p: float
     note: str
 
+    def shares(self, levels: ArrayLike) -> NDArray[np.float64]:
+        """Shares of positive answers at levels, 0…1, by the fitted function."""
+        x = np.asarray(levels, np.float64)
+        rising = SHAPES[self.shape](x, np.array(self.threshold), np.array(self.spread))
+        return self.guess + (1 - self.guess - self.lapse) * rising
+
 
 class LevelCounts(NamedTuple):
     """Counts of answers by level, with the function that is fitted to them."""

@@ -1,0 +1,178 @@
+"""Psychometric functions: from which level on something is felt, or told from something else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from vbraille.analysis.input.judgements import LEVELS
+from vbraille.analysis.input.trials import groups
+from vbraille.analysis.schemas import NOTE_COLUMN, Column, Kind, Schema
+from vbraille.analysis.statistics.psychometric import fit_psychometric
+from vbraille.analysis.statistics.unanswerable import Unanswerable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.analysis.schemas import ResultTable, Row
+
+_WHOSE = (
+    Column("question", "question", "detect or which"),
+    Column("participant", "participant", "pseudonym"),
+    Column("protocol", "protocol", "name of the protocol"),
+    Column("level", "level", "what varies, with its unit: of which, the difference of the two"),
+)
+THRESHOLDS = Schema(
+    "thresholds",
+    "Thresholds",
+    "Of detect, the level at which half of what is neither guessed nor lapsed is answered yes, by "
+    "a logistic function with free guesses and lapses. Of which, where one of two is right by "
+    "being more or by being less, the difference at which half of what is neither guessed nor "
+    "lapsed is right, by a Weibull function with half of the answers guessed, and free lapses. A "
+    "participant has a row for each level that varies.",
+    (
+        *_WHOSE,
+        Column("trials", "trials", "how many", Kind.COUNT),
+        Column("threshold", "threshold", "in the unit of the level", Kind.NUMBER),
+        Column("low", "from", "lower end of its 95 % credible interval", Kind.NUMBER),
+        Column("high", "to", "upper end", Kind.NUMBER),
+        Column("spread", "spread", "the larger, the flatter; of which, one over the exponent",
+               Kind.NUMBER),
+        Column("spread_low", "spread from", "lower end of its 95 % credible interval",
+               Kind.NUMBER),
+        Column("spread_high", "spread to", "upper end", Kind.NUMBER),
+        Column("guesses", "guesses (%)", "share of yes, or of right answers, at nothing",
+               Kind.PERCENT),
+        Column("lapses", "lapses (%)", "share of answers that no level helps", Kind.PERCENT),
+        NOTE_COLUMN,
+    ),
+)  # fmt: skip
+THRESHOLD_LEVELS = Schema(
+    "threshold_levels",
+    "Answers by level",
+    "What the thresholds are fitted to: answers yes of detect, right ones of which.",
+    (
+        *_WHOSE,
+        Column("value", "value", "of the level, in its unit", Kind.VALUE),
+        Column("trials", "trials", "how many", Kind.COUNT),
+        Column("positive", "yes or right", "how many of them", Kind.COUNT),
+        Column("share", "share (%)", "yes or right by trials", Kind.PERCENT),
+        Column("fitted", "fitted (%)", "by the psychometric function", Kind.PERCENT),
+        NOTE_COLUMN,
+    ),
+)
+_YES = ("hit", "false alarm")
+_SHAPES = {"detect": "logistic", "which": "weibull"}
+_GUESSES = {"detect": None, "which": 0.5}
+
+
+class LevelAnswers(NamedTuple):
+    """Answers of one participant at the levels of one thing."""
+
+    whose: Row
+    levels: NDArray[np.float64]
+    positive: NDArray[np.int64]
+    trials: NDArray[np.int64]
+
+
+def thresholds(judgements: pd.DataFrame) -> tuple[ResultTable, ResultTable]:
+    """Threshold of each participant for each level that varies, and the answers by level."""
+    rows: list[Row] = []
+    shares: list[Row] = []
+    for asked in (*_detected(judgements), *_told_apart(judgements)):
+        if isinstance(asked, dict):
+            rows.append(asked)
+            continue
+        row, fitted = _fitted(asked)
+        rows.append(asked.whose | row)
+        note = {} if fitted is not None else {"note": "no function was fitted"}
+        for at, (value, positive, trials) in enumerate(
+            zip(asked.levels.tolist(), asked.positive.tolist(), asked.trials.tolist(), strict=True)
+        ):
+            counts: Row = {"value": value, "positive": positive, "trials": trials}
+            counts |= {"share": positive / trials} | note
+            if fitted is not None:
+                counts["fitted"] = float(fitted[at])
+            shares.append(asked.whose | counts)
+    none = () if rows else ("no level of what was detected or told apart varies",)
+    return THRESHOLDS.fill(rows, none), THRESHOLD_LEVELS.fill(
+        shares, () if shares else ("no level of what was detected or told apart varies",)
+    )
+
+
+def _detected(judgements: pd.DataFrame) -> Iterator[LevelAnswers]:
+    """Answers yes by level, for each level that varies in what was detected."""
+    asked = judgements[(judgements["question"] == "detect") & (judgements["outcome"] != "")]
+    for (participant, protocol), own in groups(asked, "participant", "protocol"):
+        for level in LEVELS:
+            part = own[own[level].notna()]
+            if part[level].nunique() < 2:
+                continue
+            whose: Row = {"question": "detect", "participant": participant, "protocol": protocol}
+            yield _counted(whose | {"level": level}, part[level], part["outcome"].isin(_YES))
+
+
+def _told_apart(judgements: pd.DataFrame) -> Iterator[LevelAnswers | Row]:
+    """Right answers by difference, for each parameter of which one of two was right.
+
+    A row with a note stands for what can have no threshold.
+    """
+    which = judgements[(judgements["question"] == "which") & (judgements["outcome"] != "")]
+    values = which["presented"].str.split(expand=True).reindex(columns=[0, 1])
+    first, second = (pd.to_numeric(values[at], errors="coerce") for at in (0, 1))
+    known = which.assign(apart=second - first, first=values[0] == which["answered"])
+    known = known[known["apart"].notna() & (known["apart"] != 0)]
+    for (participant, protocol), own in groups(known, "participant", "protocol"):
+        for parameter, part in own.groupby("parameter", sort=True):
+            whose: Row = {"question": "which", "participant": participant, "protocol": protocol}
+            whose |= {"level": str(parameter) or "value"}
+            right = part["outcome"] == "right"
+            # The second is right if it was chosen rightly, or the first wrongly.
+            more = (part["apart"] > 0) == (right != part["first"])
+            if more.nunique() > 1:
+                yield whose | {
+                    "trials": len(part),
+                    "note": "no threshold: neither the larger of two is always right, nor the "
+                    "smaller",
+                }
+            else:
+                yield _counted(whose, part["apart"].abs(), right)
+
+
+def _counted(whose: Row, levels: pd.Series, positive: pd.Series) -> LevelAnswers:
+    # Differences of decimals that are meant to be the same are made so.
+    by = positive.groupby(levels.round(9)).agg(["sum", "size"])
+    counts = by.to_numpy(np.int64)
+    return LevelAnswers(whose, by.index.to_numpy(np.float64), counts[:, 0], counts[:, 1])
+
+
+def _fitted(asked: LevelAnswers) -> tuple[Row, NDArray[np.float64] | None]:
+    """Threshold and what belongs to it, and the fitted share at each level."""
+    question = asked.whose["question"]
+    row: Row = {"trials": int(asked.trials.sum())}
+    try:
+        fit = fit_psychometric(
+            asked.levels,
+            asked.positive,
+            asked.trials,
+            shape=_SHAPES[question],
+            guess=_GUESSES[question],
+        )
+    except Unanswerable as reason:
+        return row | {"note": f"no threshold: {reason}"}, None
+    ends, spread = fit.threshold_interval, fit.spread_interval
+    return row | {
+        "threshold": fit.threshold,
+        "low": ends.low,
+        "high": ends.high,
+        "spread": fit.spread,
+        "spread_low": spread.low,
+        "spread_high": spread.high,
+        "guesses": fit.guess,
+        "lapses": fit.lapse,
+        "note": fit.note,
+    }, fit.shares(asked.levels)
