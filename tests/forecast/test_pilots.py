@@ -28,11 +28,45 @@ name = "T100"
 texture = 1.0
 """
 TWO = parse_protocol(TEXT, "two.toml")
+HEAD = TEXT.partition("[design]")[0]
+BY_THE_ANSWERS = f"""{HEAD}
+[design]
+kind = "choice"
+parameter = "dot_width_mm"
+values = [0.5, 3.0]
+string = "a"
+repeats = 2
+[procedure]
+kind = "quest"
+step = 0.5
+spread = [0.2, 0.5]
+"""
+IN_GROUPS = f"""{HEAD}
+[question]
+kind = "rating"
+ask = "How rough?"
+least = 1
+most = 5
+confidence = {{ least = 1, most = 3 }}
+[[factors]]
+name = "texture"
+levels = [{{ name = "flat", texture = 0.0 }}, {{ name = "rough", texture = 1.0 }}]
+[[factors]]
+name = "gap"
+between = true
+levels = [{{ name = "near", cell_gap_mm = 3.0 }}, {{ name = "far", cell_gap_mm = 4.0 }}]
+[design]
+kind = "list"
+strings = ["a"]
+repeats = 1
+blocks = 1
+"""
 
 
 def piloted(folder, **changed):
-    given = {"noise": 0.4, "skin": "strain", "seed": 3} | changed
-    return pilot(TWO, given.pop("participants", 2), folder, Workers(), **given)
+    given = {"noise": 0.4, "skin": "strain", "seed": 3, "workers": Workers()} | changed
+    protocol = given.pop("protocol", TWO)
+    return pilot(protocol, given.pop("participants", 2), folder, **given)
 
 
 def test_titles_and_rows_are_marked(tmp_path):
@@ -77,6 +111,20 @@ def test_a_pilot_that_was_ended_goes_on_and_is_the_same(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         piloted(tmp_path / "ended", told=stop)
     assert answers(piloted(tmp_path / "ended")) == whole
+
+
+@heavy
+@pytest.mark.parametrize("text", [BY_THE_ANSWERS, IN_GROUPS], ids=["by the answers", "in groups"])
+def test_two_workers_pilot_what_one_does(text, tmp_path):
+    pytest.importorskip("dask")
+    protocol = parse_protocol(text, "two.toml")
+    one, two = (
+        piloted(tmp_path / f"{n}", protocol=protocol, workers=Workers(n), participants=3)
+        for n in (1, 2)
+    )
+    for table in one.glob("*.csv"):
+        assert (two / table.name).read_text() == table.read_text()
+    assert len((one / "trials.csv").read_text().splitlines()) > 3
 
 
 @pytest.mark.parametrize(
