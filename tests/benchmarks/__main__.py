@@ -13,6 +13,7 @@ PARTS = (
     "wire",
     "engine",
     "tick",
+    "protocols",
     "faults",
     "jumps",
     "sessions",
@@ -24,6 +25,7 @@ PARTS = (
     "reader",
     "turning",
     "live",
+    "straying",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -63,17 +63,17 @@ def run(
         archive.extractall(old)
         hosts = {"baseline": (BASELINE, old), "today": (TODAY, ROOT)}
         for module, root in hosts.values():
-            _measure(module, root, old, 0.5)  # compiles, for the others to be warm
+            measured(module, root, old, 0.5)  # compiles, for the others to be warm
         found: dict[tuple[str, bool], list[dict[str, Any]]] = {}
         for _ in range(repeats):
             for busy in (False, True):
                 for name, (module, root) in hosts.items():
                     with _busy(BUSY_PROCESSES if busy else 0):
-                        got = _measure(module, root, old, seconds)
+                        got = measured(module, root, old, seconds)
                     found.setdefault((name, busy), []).append(got)
         yield from _rows(found)
         if long_s:
-            lost = _measure(TODAY, ROOT, old, long_s)["overruns"]
+            lost = measured(TODAY, ROOT, old, long_s)["overruns"]
             minutes = f"in {long_s / 60:g} minutes"
             yield Result(f"ticks lost by own work {minutes}", "0", f"{lost}", lost == 0)
 
@@ -136,11 +136,30 @@ def _rows(found: dict[tuple[str, bool], list[dict[str, Any]]]) -> Iterator[Resul
     yield Result("ticks lost by own work in all of that", "0", f"{lost} ({lost_before})", lost == 0)
 
 
-def _measure(module: str, root: Path, old: Path, seconds: float) -> dict[str, Any]:
-    """What is found of one host, beside a controller of its own."""
+def measured(
+    module: str,
+    root: Path,
+    devices: Path,
+    seconds: float,
+    device_module: str = "tests.benchmarks.tick_device",
+    *options: str,
+) -> dict[str, Any]:
+    """What is found of one host, beside a controller of its own.
+
+    Parameters
+    ----------
+    module, root
+        Module that opens the host, and the directory of its package.
+    devices
+        Directory of the controller's package.
+    seconds
+        Duration of the measurement.
+    device_module, options
+        Module that is the controller, and what else it is told.
+    """
     with tempfile.TemporaryDirectory() as folder:
         link = str(Path(folder) / "vb0")
-        device = _python(old, "tests.benchmarks.tick_device", link)
+        device = _python(devices, device_module, link, *options)
         with device:
             assert device.stdin is not None
             assert device.stdout is not None

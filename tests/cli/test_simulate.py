@@ -16,7 +16,7 @@ import pytest
 
 from tests.cli import program
 from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import Encoder, Frame, Hello, Info, State, Watchdog
+from vbraille.devices.wire.messages import VERSION, Encoder, Frame, Hello, Info, State, Watchdog
 
 PATIENCE_S = 30.0
 
@@ -24,8 +24,9 @@ PATIENCE_S = 30.0
 class Host:
     """A host at a port, while what the device prints is read, too."""
 
-    def __init__(self, device, path):
+    def __init__(self, device, path, version=VERSION):
         self.device = device
+        self.version = version
         self.descriptor = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         self.decoder = Decoder()
         self.heard = []
@@ -62,7 +63,7 @@ class Host:
         def ask():
             if time.monotonic() > asked[0]:
                 asked[0] = time.monotonic() + 0.25
-                self.say(Hello())
+                self.say(Hello(self.version))
 
         self.until(lambda: self.of(Info) and self.of(State), ask)
 
@@ -128,8 +129,8 @@ def simulated(*arguments):
 
 
 @contextmanager
-def host_of(device, path):
-    host = Host(device, path)
+def host_of(device, path, version=VERSION):
+    host = Host(device, path, version)
     try:
         yield host
     finally:
@@ -213,6 +214,13 @@ def test_it_is_unplugged_and_comes_back(tmp_path):
         ("--unplug-every=5h --link=x", "'5h' is no duration"),
         ("--unplug-every=5s", "--unplug-every needs --link, for the port has a new name"),
         ("--encoder=odd", "argument --encoder: invalid choice: 'odd'"),
+        ("--height=100", "--height is for a carriage of two axes; add --axes xy or --axes xyθ"),
+        ("--axes=xy --height=0", "height is 0 mm; it must be above 0"),
+        ("--axes=xy --protocol=1", "version 1 of the protocol knows one axis; leave --axes"),
+        ("--protocol=3", "argument --protocol: invalid choice: '3'"),
+        ("--axes=yx", "argument --axes: invalid choice: 'yx'"),
+        ("--script=none", "the script none cannot be read: No such file or directory; check"),
+        ("--script=text", "text, line 1: 'kept' is no event; write a time and what is done then"),
         ("--link=none/vb0", "no link can be made at none/vb0: No such file or directory; choose"),
         ("--link=text", "text is there already; remove it, or choose another name for --link"),
     ],
@@ -247,6 +255,46 @@ def test_its_buttons_are_pressed_when_they_are_to_be(tmp_path):
             buttons = [state.buttons for state in host.of(State)]
         assert [*dict.fromkeys(buttons)] == [0, 1, 5, 4]
         device.end()
+
+
+def test_it_is_a_device_of_version_1_when_told_to():
+    with simulated("--protocol", "1") as device:
+        port = device.until("port: .*").removeprefix("port: ")
+        with host_of(device, port, 1) as host:
+            host.greet()
+            assert type(host.of(Info)[0]) is Info
+            assert type(host.of(State)[0]) is State
+        device.end()
+
+
+def test_a_page_is_read_on_two_axes_and_a_script_moves_the_knobs(tmp_path):
+    script = tmp_path / "script.txt"
+    script.write_text("100ms knob 2 1\n0.2s press 4\n")
+    options = ("--axes", "xyθ", "--height", "30", "--hand", "sweep:1000", "--script", script)
+    with simulated(*options) as device:
+        port = device.until("port: .*").removeprefix("port: ")
+        with host_of(device, port) as host:
+            host.greet()
+            (info,) = host.of(Info)
+            assert (info.height_um, info.counts_per_turn > 0) == (30_000, True)
+            host.until(lambda: host.of(State)[-1].buttons == 0b1000)
+            assert host.of(State)[0].knobs == 0x8080_8080
+            assert host.of(State)[-1].knobs == 0x8080_FF80
+            far = info.far_stop_count
+            host.until(lambda: host.of(State)[-1].y_count - far > 2000, host.show)  # 10 mm
+        device.end()
+
+
+def test_keys_at_its_terminal_move_buttons_and_knobs():
+    with program.Terminal("simulate") as terminal:
+        terminal.until(r"port: .*\r\nkeys: 1 to 8 press a button, a to d turn a knob up, A to D")
+        terminal.type("3")
+        terminal.until("button 3: pressed")
+        terminal.type("aab?D")
+        terminal.until(r"(?s)knob 1: 0\.6.*knob 2: 0\.55.*knob 4: 0\.45")
+        terminal.type("\x03")
+        assert terminal.end() == 1
+        assert terminal.settings() == terminal.before
 
 
 def test_a_press_that_is_none_is_refused():

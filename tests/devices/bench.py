@@ -12,8 +12,9 @@ from vbraille.devices.saying import told
 from vbraille.devices.serial.openserial import begin
 from vbraille.devices.serial.ports import parse_address
 from vbraille.devices.wire.codec import Decoder
-from vbraille.devices.wire.messages import Encoder
-from vbraille.simulation.firmware import Controller, describe
+from vbraille.devices.wire.messages import VERSION, Encoder
+from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import Controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,8 +31,9 @@ AWAY = "device: unplugged; plug it in again and reading goes on"
 DOWN_BYTES, UP_BYTES = 20_000, 4000
 
 
-def shown(encoder=Encoder.ABSOLUTE, **changes):
-    return replace(describe(info(), encoder), **changes)
+def shown(encoder=Encoder.ABSOLUTE, version=VERSION, *, axes=None, **changes):
+    """INFO of the bench's display, with other axes and other fields of INFO."""
+    return replace(describe(replace(info(), **axes or {}), encoder, version), **changes)
 
 
 class MemoryPort:
@@ -88,7 +90,7 @@ class Bench:
 
     def __init__(self, made_as=Controller, **changes) -> None:
         self.us = 0
-        self.way_mm = 5.0
+        self.way_mm, self.y_mm, self.theta_rad = 5.0, 0.0, 0.0
         self.wire = Decoder()
         self.sent = []  # what came from the host
         self.deaf = self.mute = self.plugged = False
@@ -117,7 +119,8 @@ class Bench:
 
     def pump(self) -> None:
         self.hear()
-        self.say(self.controller.tick(self.us, self.way_mm))
+        across = () if self.controller.info.version == 1 else (self.y_mm, self.theta_rad)
+        self.say(self.controller.tick(self.us, self.way_mm, *across))
 
     def hear(self) -> None:
         if not self.deaf:

@@ -1,7 +1,9 @@
 """The protocol's page against the code: firmware is written from the one, a host runs the other."""
 
 import ast
+import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from zlib import crc32
 
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 from cobs import cobs
 
+from vbraille.devices.serial.place import Place
 from vbraille.devices.serial.transitions import TRANSITIONS, Stage
 from vbraille.devices.wire import messages
 from vbraille.devices.wire.codec import (
@@ -22,6 +25,7 @@ from vbraille.devices.wire.codec import (
 )
 from vbraille.devices.wire.fields import (
     Fixed,
+    Message,
     Number,
     OneOf,
     PerActuator,
@@ -31,6 +35,9 @@ from vbraille.devices.wire.fields import (
 from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
+    INFOS,
+    KNOB_STEP,
+    KNOB_TOP,
     MESSAGES,
     PLACED,
     RAMP_MS,
@@ -39,15 +46,20 @@ from vbraille.devices.wire.messages import (
     WATCHDOG_MS,
     ErrorCode,
     Frame,
+    Hello,
+    Info,
+    Info2,
     State,
+    State2,
     Watchdog,
 )
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))
+KINDS = [*MESSAGES.items(), *((0x81, kind) for kind in INFOS.values() if kind is not Info)]
 EVERY_MESSAGE = pytest.mark.parametrize(
     ("code", "message"),
-    [pytest.param(code, message, id=message.__name__) for code, message in MESSAGES.items()],
+    [pytest.param(code, message, id=message.__name__) for code, message in KINDS],
 )
 TYPES = {"B": "u8", "b": "i8", "H": "u16", "h": "i16", "I": "u32"}
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4}
@@ -117,17 +129,21 @@ def type_and_values(field):
 @EVERY_MESSAGE
 def test_byte_tables(code, message):
     at, wanted = 1, [["0", "u8", "`type`", f"0x{code:02x}"]]
+    # A message that goes on where one of an earlier version ended has rows for what is new.
+    goes_on = message.__base__ is not Message
     for name, field in fields_of(message):
         sort, values = type_and_values(field)
-        wanted.append([str(at) if at else "", sort, f"`{name}`", values])
+        if not goes_on or name in message.__annotations__:
+            wanted.append([str(at) if at else "", sort, f"`{name}`", values])
         at = at + SIZES[sort] if at and isinstance(field, Fixed) else 0
+    wanted = wanted[goes_on:]
     table = [row[:4] for row in rows_of(message.__name__.upper()) if len(row) == 5]
     assert table == wanted
 
 
 def test_there_is_a_section_for_each_message_and_no_other():
     capitals = {title for title in SECTIONS if title.isupper()}
-    assert capitals == {message.__name__.upper() for message in MESSAGES.values()}
+    assert capitals == {message.__name__.upper() for _, message in KINDS}
     assert (min(c for c in MESSAGES if c > 0x7F), max(c for c in MESSAGES if c < 0x80)) == (0x81, 3)
 
 
@@ -143,6 +159,48 @@ def test_flags():
     assert (PLACED, RESTING, FAULTY, TRIPPED) == (1 << 0, 1 << 1, 1 << 2, 1 << 3)
     named = re.findall(r"^- \*(\w+)\*:", SECTIONS["STATE"], re.M)
     assert named == ["placed", "resting", "faulty", "tripped"]
+
+
+def test_knobs():
+    text = " ".join(SECTIONS["STATE2"].split())
+    assert f"once it has gone {KNOB_STEP} or further, or has come to 0 or {KNOB_TOP}" in text
+    assert f"may jitter by {KNOB_STEP - 1}." in text
+
+
+def test_hello_of_version_1():
+    assert f"`{encode(Hello(1)).hex(' ')}`" in SECTIONS["HELLO"]
+
+
+def test_a_device_of_one_axis():
+    info = example_of(Info2)[0]
+    signs = {"y_count_sign", "turn_sign"}
+    names = [name for name, _ in fields_of(Info2)]
+    less = dict.fromkeys(names[names.index("buttons") :], 0) | dict.fromkeys(signs, 1)
+    body = BodyCodec(0x81, Info2).encode(replace(info, **less))
+    told = int(re.search(r"ends in `enabled` and (\d+) bytes that are 0", SECTIONS["INFO2"])[1])
+    assert body[-told - 6 : -told] == info.enabled
+    assert len([byte for byte in body[-told:] if byte]) == len(signs)
+
+
+def test_the_place_of_the_example():
+    """The equations of the page, executed, give what the host has, and what the page says."""
+    info, state = example_of(Info2)[0], example_of(State2)[0]
+    place = Place(info).take(state)
+    names = {name: getattr(info, name) for name, _ in fields_of(Info2)}
+    names |= {"π": math.pi, "d0": info.far_stop_count, "e0": info.straight_count}
+    names |= {"d": state.y_count, "theta_count": state.theta_count}
+    names["h"] = info.counts_per_turn // 2
+    found = re.findall(r"^    (y_mm|e|θ) += (.+?)(?: {3}.*)?$", SECTIONS["Place"], re.M)
+    for name, equation in found:
+        for sign, python in (("·", "*"), ("−", "-"), ("mod", "%"), ("2π", "2 * π")):
+            equation = equation.replace(sign, python)
+        names[name] = eval(equation, {}, names)
+    assert place.y_mm == pytest.approx(names["y_mm"]) == pytest.approx(230)
+    assert place.theta_rad == pytest.approx(names["θ"]) == pytest.approx(math.radians(-16.875))
+    said = SECTIONS["STATE2"]
+    assert "230 mm below the far stop" in said
+    assert "turned by 16.9° with the clock" in said
+    assert state.knobs == 128 | 255 << 8
 
 
 def test_crc_and_cobs():
@@ -211,8 +269,8 @@ def test_memory():
     packed = Levels(60, 1023).packed_bytes
     assert f"{line_bytes(3 + packed) - 1} bytes for what is received" in text
     assert f"{3 * 60 * 2} for `levels`, `from` and `wanted`" in text
-    sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State, Watchdog)}
-    assert f"STATE ({sizes[State]}), WATCHDOG" in SECTIONS["A minimal firmware"]
+    sizes = {kind: len(encode(example_of(kind)[0])) for kind in (State2, Watchdog)}
+    assert f"STATE2 ({sizes[State2]}), WATCHDOG" in SECTIONS["A minimal firmware"]
     assert f"\n({sizes[Watchdog]})" in SECTIONS["A minimal firmware"]
 
 
@@ -253,8 +311,9 @@ def test_bandwidth():
     told = {row[0]: [cell.strip("*") for cell in row[1:]] for row in rows_of("Bandwidth")}
     levels = Levels(60, 1023)
     frame = Frame(0, levels.pack(np.full(60, 1023)))
-    sizes = [len(encode(frame)), len(encode(State(0, 0, 0, 0, 0, 0, None)))]
-    assert sizes == [line_bytes(3 + levels.packed_bytes), line_bytes(17)]
+    states = State(0, 0, 0, 0, 0, 0, None), State2(0, 0, 0, 0, 0, 0, None, 0, 0, 0)
+    sizes = [len(encode(message)) for message in (frame, *states)]
+    assert sizes == [line_bytes(3 + levels.packed_bytes), line_bytes(17), line_bytes(29)]
     assert told["**together**"] == [str(size) for size in sizes]
     assert told["bit/s"] == [str(size * 10 * 1000) for size in sizes]
     assert told["of 921600 baud"] == [f"{size * 1e6 / 921600:.1f} %" for size in sizes]

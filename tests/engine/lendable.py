@@ -28,10 +28,11 @@ from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.serial.seriallines import DescriptorLine
 from vbraille.devices.wire.codec import Decoder, encode
-from vbraille.devices.wire.messages import Encoder, State
+from vbraille.devices.wire.messages import VERSION, Encoder, State
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
-from vbraille.simulation.firmware import Controller, describe
+from vbraille.simulation.described import describe
+from vbraille.simulation.firmware import Controller
 
 # A run does as many ticks as there are in 20 ms: one.
 ONE_AT_A_TIME_HZ = 60.0
@@ -129,13 +130,16 @@ class Rig:
         What the controller said last.
     """
 
-    def __init__(self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, device_hz=1000.0):
+    def __init__(
+        self, ends=None, rate_hz=ONE_AT_A_TIME_HZ, device_hz=1000.0, *, version=VERSION, **axes
+    ):
         self.ours, self.theirs = ends or sockets()
         for end in (self.ours, self.theirs):
             os.set_blocking(end, False)
-        self.us, self.way_mm = 0, 20.0
+        self.us, self.way_mm, self.y_mm, self.theta_rad = 0, 20.0, 0.0, 0.0
         self.asked, self.records, self.sent = [], [], b""
-        self.controller = Controller(describe(info(rate_hz=device_hz), Encoder.ABSOLUTE))
+        display = info(rate_hz=device_hz, **axes)
+        self.controller = Controller(describe(display, Encoder.ABSOLUTE, version))
         self.port = Port(self.ours)
         conversation = Conversation(self.now_ns())
         greet(self.port, conversation, self.now_ns, self.pause)
@@ -158,7 +162,7 @@ class Rig:
     def say(self):
         """What the controller says in its next millisecond."""
         self.us += 1000
-        said = self.controller.tick(self.us, self.way_mm)
+        said = self.controller.tick(self.us, self.way_mm, self.y_mm, self.theta_rad)
         for message in Decoder().feed(said):
             if isinstance(message, State):
                 self.state = message
@@ -323,8 +327,11 @@ def known(device):
     talk.decoder.feed(fields["begun"] or b"")
     for part in (talk.states, talk.frames):
         fields |= {(type(part), name): getattr(part, name) for name in type(part).__slots__}
-    for part in (talk.trips, talk.delivery, talk.place, talk.time):
-        fields |= {(type(part), name): value for name, value in vars(part).items()}
+    place = talk.place
+    axes = [axis for axis in (place.x, place.y, place.turn) if axis is not None]
+    for part in (talk.trips, talk.panel, talk.delivery, place, talk.time, *axes):
+        numbers = {name: value for name, value in vars(part).items() if value not in axes}
+        fields |= {(type(part), part is place.y, name): value for name, value in numbers.items()}
     fields["moved"] = talk.drive.last_ns, talk.drive.last.tolist()
     return fields
 

@@ -15,7 +15,7 @@ import pytest
 from tests.engine.lendable import Rig, Twin, assert_same_tick, known, sockets, terminal
 from tests.engine.test_loop import picture
 from tests.tiers import by_tier
-from vbraille.devices.events import Notice, Silent, Unplugged
+from vbraille.devices.events import Knob, Notice, Silent, Unplugged
 from vbraille.devices.serial.conversation import IDLE_MS
 from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import SILENCE_MS, STALL_MS, Error, Frame, Watchdog
@@ -61,7 +61,7 @@ class Wrong:
         kind = chance.choice(
             (
                 *(self.garbled, self.split, self.doubled, self.dropped, self.delayed),
-                *(self.other, self.button, self.deafness, self.warp, self.reader),
+                *(self.other, self.button, self.knob, self.deafness, self.warp, self.reader),
             )
         )
         return late + kind(message)
@@ -96,6 +96,15 @@ class Wrong:
         self._rig.controller.buttons ^= 1 << self._chance.randrange(8)
         return message
 
+    def knob(self, message):
+        """Have a knob turned, or jitter."""
+        knobs = self._rig.controller.knobs
+        if knobs:
+            which = self._chance.randrange(len(knobs))
+            step = self._chance.choice((1, 2, 3, 40)) / 255
+            knobs[which] = knobs[which] + step if knobs[which] + step <= 1 else 0.0
+        return message
+
     def deafness(self, message):
         self.deaf = self._chance.choice((1, 5, 70))
         return message
@@ -127,10 +136,42 @@ class Wrong:
         return message
 
 
+DEVICES = (
+    {"height_mm": 200.0, "turns": True},
+    {"version": 1},
+    {"version": 2},
+)
+
+
+def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s():
+    rig = Rig(height_mm=200.0, turns=True)
+    rig.loop.show(PICTURES[0], 0)
+    rig.settle()
+    compiled = 0  # a machine that stalls leaves some ticks to Python
+    for step in range(40):
+        rig.y_mm, rig.theta_rad = 5.0 * step, 0.01 * step
+        rig.controller.knobs[0] = (step % 2) / 255  # which jitters
+        record = rig.step()
+        compiled += rig.compiled
+        assert record["y_mm"] == pytest.approx(5.0 * step)
+        assert record["theta_rad"] == pytest.approx(0.01 * step, abs=1e-4)
+    assert compiled > 10
+    assert not knobs_of(rig)
+    rig.controller.knobs[0] = 0.5
+    rig.step()
+    assert not rig.compiled
+    assert knobs_of(rig) == [Knob(1, 128 / 255)]
+    rig.close()
+
+
+def knobs_of(rig):
+    return [event for event in rig.device.take_events() if isinstance(event, Knob)]
+
+
 @pytest.mark.parametrize("seed", range(by_tier(3, 8, 80)))
 def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(seed):
     print(f"seed {seed}")
-    rig = Rig()
+    rig = Rig(**DEVICES[seed % len(DEVICES)])
     twin = Twin(rig)
     wrong = Wrong(rig, twin, seed)
     for loop in (rig.loop, twin.loop):
@@ -138,6 +179,7 @@ def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(seed):
     compiled = left = 0
     for tick in range(600):
         rig.way_mm = 60.0 + 40.0 * np.sin(tick / 100)
+        rig.y_mm, rig.theta_rad = 50.0 + 40.0 * np.sin(tick / 70), 0.3 * np.sin(tick / 90)
         chunk = wrong.next()
         rig.put(chunk)
         record = rig.tick()
@@ -402,7 +444,7 @@ def test_a_line_that_takes_nothing_more_is_gone(rig):
 @pytest.mark.parametrize("mm_per_count", [float("nan"), float("inf"), 1e6])
 def test_a_place_where_none_can_be_is_a_fault(rig, mm_per_count):
     ticks = rig.loop.tally.ticks
-    rig.device.conversation.place.mm_per_count = mm_per_count
+    rig.device.conversation.place.x.mm_per_count = mm_per_count
     rig.put(rig.say())
     with pytest.raises(DeviceError, match="where it cannot be"):
         rig.tick()

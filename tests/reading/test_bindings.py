@@ -9,6 +9,7 @@ from vbraille.reading.beside import Beside
 from vbraille.reading.bindings import Bindings
 from vbraille.reading.commands.table import bound_by, press_button, turn_knob
 from vbraille.reading.context import Context
+from vbraille.reading.knobturns import SETTLED_S, KnobTurns
 
 
 def bench_with(keys=None, buttons=None, **options):
@@ -105,11 +106,21 @@ def test_a_button_does_what_its_command_does():
 
 def test_a_knob_gives_its_value_once():
     bench = bench_with(buttons={"knob 2": "CONTRAST"})
-    turn_knob(bench.reader, 2, 0.504)
-    turn_knob(bench.reader, 2, 0.501)
-    turn_knob(bench.reader, 1, 0.3)
-    assert bench.said == ["contrast: 0.5"]
+    told = [turn_knob(bench.reader, *turn) for turn in ((2, 0.504), (2, 0.501), (1, 0.3))]
+    assert told == ["contrast: 0.5", "", ""]
     assert bench.reader.style.tuning.contrast == 0.5
+
+
+def test_a_knob_is_felt_while_it_is_turned_and_said_when_it_is_left():
+    bench, turns = bench_with(buttons={"knob 2": "CONTRAST"}), KnobTurns()
+    for step in range(50):
+        turns.turn(bench.reader, 2, 0.5 + step / 100, step / 50)
+        turns.settle(bench.reader, step / 50)
+        assert bench.reader.style.tuning.contrast == pytest.approx(0.5 + step / 100)
+    assert bench.said == []
+    for later_s in (SETTLED_S - 0.01, SETTLED_S, 1.0):
+        turns.settle(bench.reader, 49 / 50 + later_s)
+    assert bench.said == ["contrast: 0.99"]
 
 
 def test_learning_a_key_says_what_it_does_and_does_nothing():

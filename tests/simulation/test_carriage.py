@@ -1,10 +1,13 @@
 """The simulated hand's carriage, in a time that nobody waits for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from vbraille.simulation.carriage import APPROACH_MM_S, Carriage
-from vbraille.simulation.hand import Sweep
+from vbraille.render.braille.models import STRESS2
+from vbraille.simulation.carriage import APPROACH_MM_S, Carriage, area_of
+from vbraille.simulation.hand import FLUENT, HumanHand, Sweep
 from vbraille.simulation.recorded import Recorded
 
 SPAN_MM = 10.8
@@ -24,7 +27,7 @@ class Bench:
         found = []
         for _ in range(round(seconds * 1000)):
             self.now_us += 1000
-            found.append(self.carriage.way_mm(self.now_us))
+            found.append(self.carriage.at(self.now_us).way_mm)
         return np.array(found)
 
 
@@ -118,3 +121,77 @@ def test_told_again_on_the_way_back_it_goes_to_the_stop_first(bench):
     ways = bench.ways(1.4)
     assert ways[:410].min() == pytest.approx(0.0, abs=1e-6)
     assert ways[-1] == pytest.approx(100.0, abs=0.3)
+
+
+# Two axes
+
+
+DISPLAY = replace(STRESS2.display, height_mm=65.0, turns=True)
+
+
+def places(carriage, seconds, begun_us=0):
+    """Where a carriage is in the next seconds, each millisecond; float64[n, 3]."""
+    return np.array(
+        [carriage.at(begun_us + 1000 * ms) for ms in range(1, round(seconds * 1000) + 1)]
+    )
+
+
+def made(hand, **axes):
+    given = {"height_mm": 65.0, "turns": True, "area": area_of(DISPLAY, 10.0)} | axes
+    return Carriage(hand, SPAN_MM, TRAVEL_MM, **given)
+
+
+def test_the_page_is_what_fits_on_the_surface():
+    assert area_of(STRESS2.display, 10.0) is None
+    area = area_of(DISPLAY, 10.0)
+    assert (area.lines, area.pitch_mm) == (6, 10.0)
+    assert (area.start_mm, area.end_mm) == pytest.approx((-SPAN_MM, TRAVEL_MM - SPAN_MM))
+    assert area_of(DISPLAY, 100.0).lines == 1
+
+
+def test_a_hand_reads_the_page_line_by_line_and_again_from_its_top():
+    carriage = made(Sweep(1000.0))
+    assert not places(carriage, 0.1).any()
+    carriage.set_out()
+    found = places(carriage, 12.0, 100_000)
+    assert found[:, 0].max() == pytest.approx(TRAVEL_MM, abs=1.0)
+    middles = np.unique(found[np.flatnonzero(np.diff(found[:, 0]) > 0.9), 1].round(3))
+    assert middles.tolist() == [5.0, 15.0, 25.0, 35.0, 45.0, 55.0]
+    back = np.flatnonzero(np.diff(found[:, 1]) < 0)  # up to the first line
+    assert back.size > 100
+    assert np.abs(np.diff(found[:, 1])).max() <= APPROACH_MM_S / 1000 + 1e-9
+
+
+def test_a_hand_as_people_s_strays_and_turns_and_stays_on_the_surface():
+    carriage = made(HumanHand(FLUENT))
+    carriage.set_out()
+    found = places(carriage, 20.0)
+    assert np.ptp(found[:, 2]) > 0.01
+    assert found[:, 1].min() >= 0
+    assert found[:, 1].max() <= 65.0
+    alone = made(HumanHand(FLUENT), height_mm=0.0, turns=False)
+    alone.set_out()
+    assert not places(alone, 20.0)[:, 1:].any()
+
+
+def test_a_recorded_hand_moves_on_all_axes_once():
+    t_s = np.arange(0, 1.001, 0.1)
+    hand = Recorded(t_s, 100 * t_s - SPAN_MM, 30 + 20 * t_s, 0.1 * t_s)
+    carriage = made(hand)
+    carriage.set_out()
+    found = places(carriage, 3.0)
+    approach_s = 30 / APPROACH_MM_S
+    at = found[round((approach_s + 0.5) * 1000)]
+    assert at == pytest.approx((50.0, 40.0, 0.05), abs=0.3)
+    assert found[-1] == pytest.approx((100.0, 50.0, 0.1))
+
+
+def test_it_goes_back_to_both_stops_and_straightens():
+    t_s = np.arange(0, 1.001, 0.1)
+    carriage = made(Recorded(t_s, 100 * t_s - SPAN_MM, 20 * t_s, 0.1 * t_s))
+    carriage.set_out()
+    places(carriage, 0.5)
+    carriage.go_back(500_000)
+    found = places(carriage, 1.0, 500_000)
+    assert not found[-1].any()
+    assert np.abs(np.diff(found[:, 0])).max() <= APPROACH_MM_S / 1000 + 1e-9

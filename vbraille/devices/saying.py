@@ -37,12 +37,21 @@ _FIELDS: Final = {
     "levels": ("levels", ""),
     "rest_side": ("rest side", ""),
     "travel_mm": ("travel", " mm"),
+    "height_mm": ("way across the lines", " mm"),
+    "turns": ("measured angles", ""),
     "rate_hz": ("rate", " Hz"),
 }
 _TO_DO: Final = {
     Placing.DONE: "",
     Placing.MARK: "; if asked to, move the carriage over its mark",
     Placing.STOP: "; its left stop must be shown again",
+}
+# Which way counts grow, in words.
+_PLAIN: Final[dict[object, str]] = {
+    "towards": "towards the reader",
+    "away": "away from the reader",
+    "anticlockwise": "against the clock",
+    "clockwise": "with the clock",
 }
 _REFUSED: Final = {"priority": "no real-time priority", "memory": "no locked memory"}
 _ALLOW: Final = (
@@ -112,6 +121,8 @@ def _difference(one: Difference) -> str:
 
 
 def _plain(value: float | str) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     return value if isinstance(value, str) else f"{value:g}"
 
 
@@ -142,8 +153,19 @@ def _change(one: Difference) -> str:
             return f"its counts grow {now}"
         case "encoder":
             return f"its encoder is {now}, not {was}"
-        case "left_stop_count":
-            return f"its left stop is at count {now}, not {was}"
+        case "y_counts_per_m":
+            per_mm = [f"{1e6 / float(count or 1):.6g} µm" for count in (now, was)]
+            return f"a count across the lines is {per_mm[0]}, not {per_mm[1]}"
+        case "y_count_sign":
+            return f"its counts across the lines grow {_PLAIN[now]}"
+        case "counts_per_turn":
+            return f"a turn of its array is {now} counts, not {was}"
+        case "turn_sign":
+            return f"its counts grow as it turns {_PLAIN[now]}"
+        case "left_stop_count" | "far_stop_count":
+            return f"its {one.what.split('_')[0]} stop is at count {now}, not {was}"
+        case "straight_count":
+            return f"its array is straight at count {now}, not {was}"
     return f"its actuators may move {_slew(now)}, not {_slew(was)}"
 
 

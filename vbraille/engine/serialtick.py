@@ -17,7 +17,7 @@ from vbraille import libc
 from vbraille.caching import keep_compiled
 from vbraille.devices.serial import steady
 from vbraille.engine.record import LATE, LATENESS, OVERRUNS, WORK
-from vbraille.engine.ticks import POSE_X, POSED, advance
+from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED, advance
 
 # Reasons why it ended, apart from DONE.
 DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
@@ -179,6 +179,8 @@ def run(
         times_ns[0, 0], times_ns[0, 1] = now, talk.device_ns
         poses[0, POSED] = 1.0 if states > 0 else 0.0
         poses[0, POSE_X] = talk.x_mm
+        poses[0, POSE_Y] = talk.y_mm
+        poses[0, POSE_THETA] = talk.theta_rad
         if why != DONE:
             return why
         # Taking a STATE looks after these two; where nothing came, they are looked after here.

@@ -6,6 +6,7 @@ due between two ticks happened when it was due, even if whoever calls `tick` is 
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,31 +15,29 @@ from vbraille.devices.wire.codec import Decoder, Levels, encode
 from vbraille.devices.wire.messages import (
     FAULTY,
     FIRST_STEP,
+    KNOB_TOP,
     NOTICES,
     PLACED,
     RAMP_MS,
     RESTING,
     TRIPPED,
-    VERSION,
     WATCHDOG_MS,
-    CountSign,
     Encoder,
     Error,
     Frame,
     Hello,
     Info,
+    Info2,
     Rest,
-    RestSide,
     State,
+    State2,
     Watchdog,
 )
-from vbraille.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.wire.codec import Heard
-    from vbraille.display import Display
 
 WATCHDOG_US: Final = WATCHDOG_MS * 1000
 RAMP_US: Final = RAMP_MS * 1000
@@ -46,50 +45,14 @@ RAMP_US: Final = RAMP_MS * 1000
 MARK_MM: Final = 10.0
 # Error of an encoder that does not know its place: a count that is not 0 in any number of bits.
 ASTRAY: Final = 12_345
-# Counts before a described encoder wraps, few so that it wraps on the way: 100 mm of 5 µm.
-BEFORE_WRAP: Final = 20_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
-
-
-def describe(info: Display, encoder: Encoder) -> Info:
-    """INFO of a device whose actuators are all alike, and whose encoder wraps on the way.
-
-    Raises
-    ------
-    ValueError
-        If a number does not fit into its field on the wire.
-    """
-    actuators = info.rows * info.columns
-    counts = round(info.travel_mm * info.counts_per_mm)
-    count_bits = min(max(24, counts.bit_length() + 1), 32)  # the travel is below half the range
-    return Info(
-        version=VERSION,
-        rows=info.rows,
-        columns=info.columns,
-        column_pitch_nm=round(info.column_pitch_mm * 1e6),
-        row_pitch_nm=round(info.row_pitch_mm * 1e6),
-        rest_side=RestSide[info.rest_side.upper()],
-        top_level=info.levels - 1,
-        rate_hz=round(info.rate_hz),
-        largest_slew_per_s=0,
-        travel_um=round(info.travel_mm * 1e3),
-        encoder=encoder,
-        counts_per_m=round(info.counts_per_mm * 1e3),
-        count_sign=CountSign.RIGHTWARD,
-        count_bits=count_bits,
-        left_stop_count=0 if encoder is Encoder.INCREMENTAL else (1 << count_bits) - BEFORE_WRAP,
-        name=info.name,
-        firmware=__version__,
-        inverted=bytes(actuators),
-        gain=b"\xff" * actuators,
-        enabled=b"\1" * actuators,
-    )
 
 
 class Controller:
     """A device's controller, from the moment it starts.
 
-    Its clock is given by the caller: plain microseconds, which never wrap or go back.
+    It speaks the version of the protocol that its INFO says, and no other. Its clock is given by
+    the caller: plain microseconds, which never wrap or go back.
 
     Parameters
     ----------
@@ -100,6 +63,8 @@ class Controller:
     ----------
     buttons : int
         Bit 0 is the first button; 1 while it is pressed.
+    knobs : list[float]
+        Position of each knob, 0 to 1.
     force_mn : int | None
         How hard the finger presses on the array, in mN; None if that is not measured.
     levels : uint16[rows · columns]
@@ -124,6 +89,7 @@ class Controller:
     def __init__(self, info: Info) -> None:
         self.info = info
         self.buttons = 0
+        self.knobs = [0.0] * (info.knobs if isinstance(info, Info2) else 0)
         self.force_mn: int | None = None
         self.greeted = self.faulty = False
         self.placed = info.encoder is Encoder.ABSOLUTE
@@ -168,7 +134,7 @@ class Controller:
         answers = [self._take(event) for event in self._decoder.feed(chunk)]
         return b"".join(answers)
 
-    def tick(self, now_us: int, way_mm: float) -> bytes:
+    def tick(self, now_us: int, way_mm: float, y_mm: float = 0.0, theta_rad: float = 0.0) -> bytes:
         """Do what a controller does `rate_hz` times a second; give the bytes that go to the host.
 
         Parameters
@@ -177,6 +143,10 @@ class Controller:
             Time by the controller's clock.
         way_mm
             Distance of the carriage from the left stop.
+        y_mm
+            Distance of the carriage from the far stop; of no matter without that axis.
+        theta_rad
+            Angle of the array, against the clock; of no matter where none is measured.
         """
         self._now_us = now_us
         if self._timer_us is None:
@@ -186,7 +156,7 @@ class Controller:
             self._step_ramp(self._ramp_us)
         self._sequence = (self._sequence + 1) & _U16
         count = self._count(way_mm)
-        return said + self._state(count) if self.greeted else b""
+        return said + self._state(count, y_mm, theta_rad) if self.greeted else b""
 
     def skip(self, ticks: int) -> None:
         """Skip ticks as if they had been missed, and drop their STATEs."""
@@ -222,7 +192,7 @@ class Controller:
             case Hello():
                 self.faulty = False
                 self._go_to_rest()
-                self.greeted = event.version == VERSION
+                self.greeted = event.version == self.info.version
                 self.greetings += self.greeted
                 return encode(self.info) + self._watchdog()
             case Rest():
@@ -323,16 +293,32 @@ class Controller:
             | TRIPPED * self._tripped
         )
 
-    def _state(self, count: int) -> bytes:
+    def _state(self, count: int, y_mm: float, theta_rad: float) -> bytes:
+        info = self.info
+        first = (
+            self._sequence,
+            self._now_us & _U32,
+            count,
+            self._frame_sequence if self.acknowledges else 0,
+            self._flags(),
+            self.buttons,
+            self.force_mn,
+        )
+        if not isinstance(info, Info2):
+            return encode(State(*first))
+        y_counts = info.y_count_sign * round(y_mm * info.y_counts_per_m / 1000)
+        y_count = (info.far_stop_count + self._astray + y_counts) & ((1 << info.count_bits) - 1)
+        turn = info.counts_per_turn
+        turned = info.turn_sign * round(theta_rad / (2 * math.pi) * turn)
         return encode(
-            State(
-                sequence=self._sequence,
-                time_us=self._now_us & _U32,
-                count=count,
-                frame_sequence=self._frame_sequence if self.acknowledges else 0,
-                flags=self._flags(),
-                buttons=self.buttons,
-                force_mn=self.force_mn,
+            State2(
+                *first,
+                y_count=y_count if info.height_um else 0,
+                theta_count=(info.straight_count + self._astray + turned) % turn if turn else 0,
+                knobs=sum(
+                    round(position * KNOB_TOP) << (8 * knob)
+                    for knob, position in enumerate(self.knobs)
+                ),
             )
         )
 

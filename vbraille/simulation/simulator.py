@@ -15,18 +15,18 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.wire.codec import DELIMITER, MOST_FRAME_BYTES
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.wire.messages import Encoder, Info2
 from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.firmware import WATCHDOG_US, Controller
-from vbraille.simulation.pressing import held
+from vbraille.simulation.script import Controls
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable
 
     from vbraille.devices.wire.messages import Info
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.pressing import Press
+    from vbraille.simulation.paging import Area
     from vbraille.simulation.pty import Port
     from vbraille.simulation.recorded import Recorded
 
@@ -34,6 +34,7 @@ NS_PER_S: Final = 1_000_000_000
 # Time between stalls, and time for which the device is unplugged.
 STALL_EVERY_S: Final = 1.0
 UNPLUGGED_S: Final = 0.3
+KEYS_EVERY_US: Final = 20_000  # soon enough for a finger
 # Error in place of a carriage that is off its place, and delay of a late watchdog.
 _OFF_PLACE_MM = 5000.0
 _LATE_TIMES = 4
@@ -146,8 +147,13 @@ class Simulator:
         Function that is told what happens, a sentence at a time.
     faults
         Ways in which the device misbehaves.
-    presses
-        When its buttons are held, in seconds since a host first greeted it.
+    area
+        Lines of the page that the hand reads, on a carriage of two axes; None where it reads lines
+        as wide as the travel.
+    controls
+        Its buttons and knobs, in seconds since a host first greeted it; None if nobody moves them.
+    keys
+        Function that gives the keys typed since its last call, which move buttons and knobs.
 
     Attributes
     ----------
@@ -165,10 +171,13 @@ class Simulator:
         *,
         say: Callable[[str], None],
         faults: Faults | None = None,
-        presses: Sequence[Press] = (),
+        area: Area | None = None,
+        controls: Controls | None = None,
+        keys: Callable[[], Iterable[str]] = tuple,
     ) -> None:
         self._faults = faults or Faults()
-        self._presses = presses
+        self._controls = controls or Controls()
+        self._keys = keys
         self._greeted_us: int | None = None  # for the first time
         defect = self._faults.defect
         if defect is Defect.NO_ACTUATORS:
@@ -181,7 +190,15 @@ class Simulator:
             self.controller.watchdog_us = _LATE_TIMES * WATCHDOG_US
         self.states_sent = self.states_dropped = 0
         span_mm = (info.columns - 1) * info.column_pitch_nm / 1e6
-        self._carriage = Carriage(hand, span_mm, info.travel_um / 1000)
+        newer = isinstance(info, Info2)
+        self._carriage = Carriage(
+            hand,
+            span_mm,
+            info.travel_um / 1000,
+            height_mm=info.height_um / 1000 if newer else 0.0,
+            turns=newer and info.counts_per_turn > 0,
+            area=area,
+        )
         self._port = port
         self._say = say
         self._spoiler = Spoiler(self._faults)
@@ -189,6 +206,7 @@ class Simulator:
         self._greetings = self._frames = self._trips = 0
         self._stalled = False
         self._turn_us = round(STALL_EVERY_S * 1e6)  # when the device stalls, or goes on
+        self._keys_us = 0  # when keys are looked for again
         self._plug_us = 0  # when the device is unplugged, or plugged in again
 
     @property
@@ -249,12 +267,11 @@ class Simulator:
 
     def _tick(self) -> None:
         now_us, controller = self.now_us, self.controller
-        way_mm = self._carriage.way_mm(now_us)
+        at = self._carriage.at(now_us)
         if self._faults.defect is Defect.OFF_PLACE:
-            way_mm += _OFF_PLACE_MM
-        if self._greeted_us is not None:
-            controller.buttons = held(self._presses, (now_us - self._greeted_us) / 1e6)
-        *messages, _ = split(controller.tick(now_us, way_mm))
+            at = at._replace(way_mm=at.way_mm + _OFF_PLACE_MM)
+        self._move_controls(now_us)
+        *messages, _ = split(controller.tick(now_us, *at))
         if messages:  # the last message is STATE
             sent = [self._send(message) for message in messages][-1]
             self.states_sent += sent
@@ -271,6 +288,21 @@ class Simulator:
             and (controller.greeted or not plugged)
         ):
             self._plug(now_us)
+
+    def _move_controls(self, now_us: int) -> None:
+        """Have buttons and knobs stand as the script and the keys have moved them."""
+        controls, controller = self._controls, self.controller
+        since_s = 0.0
+        if self._greeted_us is not None:
+            since_s = (now_us - self._greeted_us) / 1e6
+            controls.advance(since_s)
+        if now_us >= self._keys_us:
+            self._keys_us = now_us + KEYS_EVERY_US
+            for key in self._keys():
+                if said := controls.type(key, since_s):
+                    self._say(said)
+        controller.buttons = controls.buttons
+        controller.knobs[:] = controls.knobs[: len(controller.knobs)]
 
     def _send(self, message: bytes) -> bool:
         spoilt = b"" if self._stalled else self._spoiler.spoil(message)

@@ -6,12 +6,14 @@ from contextlib import contextmanager
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.wire.messages import VERSION, Encoder
 from vbraille.engine.clock import RealClock
-from vbraille.render.braille.models import STRESS2, Model
-from vbraille.simulation.firmware import describe
+from vbraille.render.braille.models import STRESS2, Model, model_of
+from vbraille.simulation.carriage import area_of
+from vbraille.simulation.described import describe
 from vbraille.simulation.pressing import parse_press
 from vbraille.simulation.pty import Port
+from vbraille.simulation.script import Controls, parse_script
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Simulator
 from vbraille.simulation.specs import parse_hand
@@ -76,6 +78,8 @@ def simulated_controller(
     encoder: str = "absolute",
     faults: Faults | None = None,
     presses: Sequence[str] = (),
+    script: str = "",
+    version: int = VERSION,
     say: Callable[[str], None] = lambda _: None,
 ) -> Iterator[str]:
     """Run a controller at a port, in a thread, in real time; give the spec that opens it.
@@ -93,13 +97,18 @@ def simulated_controller(
     presses
         Presses of its buttons after the first greeting, such as "1@2.5s", or "1@2.5s-4s" for a
         button that is held.
+    script
+        Lines of times and what is then done to buttons and knobs, such as "2.5s press 1",
+        "3s release 1" and "4s knob 1 0.8".
+    version
+        Version of the protocol that it speaks; version 1 knows one axis and no knobs.
     say
         Function that is told what happens, a sentence at a time.
 
     Raises
     ------
     InputError
-        If there is no such hand, or a press is none.
+        If there is no such hand, or a press or a line of the script is none.
     ValueError
         If a number of the display does not fit into its field on the wire.
 
@@ -114,14 +123,15 @@ def simulated_controller(
     info = display.display if isinstance(display, Model) else display
     port, stopped = Port(), Event()
     try:
-        described = describe(info, Encoder[encoder.upper()])
+        described = describe(info, Encoder[encoder.upper()], version)
         simulator = Simulator(
             described,
             parse_hand(hand, seed),
             port,
             say=say,
             faults=faults,
-            presses=[parse_press(text) for text in presses],
+            area=area_of(info, model_of(info).style.geometry.line_pitch_mm),
+            controls=Controls(parse_script(script, "the script"), map(parse_press, presses)),
         )
         thread = Thread(target=simulator.run, args=(stopped.is_set,), daemon=True)
         thread.start()

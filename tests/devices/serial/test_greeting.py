@@ -95,7 +95,7 @@ def test_it_speaks_another_version():
         made.pause(seconds)
         made.put(enframe(b"\x81\x07whatever"))
 
-    with pytest.raises(DeviceError, match=r"speaks version 7 .* this vbraille version 1; update"):
+    with pytest.raises(DeviceError, match=r"version 7 .* this vbraille versions 1 and 2; update"):
         made.begin(info(), pause=pause)
 
 
@@ -158,7 +158,10 @@ def test_frames_that_are_too_far_apart_for_the_watchdog_are_refused():
         (29, 16, "travel_um is 300000, which takes 60000 counts .* less than 32768, .*_bits 16"),
         (34, 0xFF, "it ends before its last field"),
         (35, 0, None),  # of a text, which is mended
-        (-1, 2, "enabled are up to 2; they must be 0 to 1"),
+        (-33, 2, "enabled are up to 2; they must be 0 to 1"),
+        (-32, 9, "buttons is 9; it must be 0 to 8"),
+        (-31, 5, "knobs is 5; it must be 0 to 4"),
+        (-5, 0, "turn_sign is 0; it must be one of 1"),
     ],
 )
 def test_an_info_that_cannot_be_is_named_with_its_field_and_value(offset, value, said):

@@ -31,9 +31,9 @@ from vbraille.devices.wire.messages import (
     TRIPPED,
     Error,
     State,
+    State2,
     Watchdog,
 )
-from vbraille.pose import Pose
 from vbraille.simulation.firmware import Controller
 
 NS_PER_MS = 1_000_000
@@ -94,7 +94,7 @@ class Beside(Conversation):
         self.steady_reads += 1
         assert self.is_as(lending) == received[consumed:].tobytes()
         assert (pose is None) == (states == 0)
-        assert pose is None or pose == Pose(talk.device_ns, talk.x_mm)
+        assert pose is None or pose == (talk.device_ns, talk.x_mm, talk.y_mm, talk.theta_rad)
         return pose
 
     def show(self, frame, now_ns):
@@ -159,7 +159,9 @@ def conversation(**changes):
     talk.state_sequence, talk.sequence, talk.device_us = 10, 7, 5_000
     talk.count_bits, talk.mm_per_count = 24, 0.005
     talk.slew_per_ns, talk.period_ns = math.inf, 1e6
-    talk.top_level, talk.bits, talk.idle_ns = 1023, 10, IDLE_MS * NS_PER_MS
+    talk.bits, talk.idle_ns = 10, IDLE_MS * NS_PER_MS
+    talk.state_type, talk.state_bytes = steady.STATE2, steady.STATE2_BYTES
+    talk.button_mask, talk.knobs_fitted, talk.knobs = 0xFF, 3, 0x80_8080
     for name, value in changes.items():
         setattr(talk, name, value)
     return talk
@@ -167,7 +169,11 @@ def conversation(**changes):
 
 def state(sequence=11, flags=PLACED, **changes):
     numbers = {"time_us": 6_000, "count": 200, "frame_sequence": 7, "buttons": 0, "force_mn": None}
-    return encode(State(sequence=sequence, flags=flags, **(numbers | changes)))
+    numbers |= {"y_count": 40, "theta_count": 4000, "knobs": 0x80_8080}
+    return encode(State2(sequence=sequence, flags=flags, **(numbers | changes)))
+
+
+OF_VERSION_1 = encode(State(11, 6_000, 200, 7, PLACED, 0, None))
 
 
 def taken(received, talk, now_ns=1_001_000_000):
@@ -183,6 +189,9 @@ def taken(received, talk, now_ns=1_001_000_000):
         state(flags=PLACED | FAULTY),
         state(flags=PLACED | TRIPPED),
         state(buttons=1),
+        state(knobs=0x80_8083),
+        state(knobs=0x7D_8080),
+        OF_VERSION_1,
         encode(Watchdog(0, 0)),
         encode(Error(200, "warm")),
         b"\x05garbage\0",
@@ -194,6 +203,39 @@ def test_what_is_no_good_state_leaves_all_of_it_to_python(received):
         talk = conversation()
         assert taken(stream, talk) == (steady.SOMETHING_ELSE, 0)
         assert talk == conversation()
+
+
+def test_a_state_of_version_1_in_a_conversation_of_version_1():
+    talk = conversation(state_type=steady.STATE, state_bytes=steady.STATE_BYTES)
+    assert taken(OF_VERSION_1, talk) == (len(OF_VERSION_1), 1)
+    assert (talk.count, talk.x_mm) == (200, pytest.approx(1.0))
+    assert (talk.y_mm, talk.theta_rad) == (0.0, 0.0)
+    assert taken(state(sequence=12), talk) == (steady.SOMETHING_ELSE, 0)
+
+
+def test_both_axes_and_the_angle():
+    talk = conversation(
+        has_y=1, y_count=38, y_zero=-60, y_mm_per_count=-0.01,
+        counts_per_turn=4096, straight=90, rad_per_count=-2 * math.pi / 4096,
+    )  # fmt: skip
+    assert taken(state(), talk) == (len(state()), 1)
+    assert talk.y_mm == pytest.approx(-1.0)
+    assert talk.theta_rad == pytest.approx(186 * 2 * math.pi / 4096)
+    assert taken(state(12, y_count=(1 << 24) - 60), talk)[1] == 1  # it has wrapped
+    assert talk.y_mm == pytest.approx(0.0)
+
+
+def test_an_axis_that_is_not_there_is_not_counted():
+    talk = conversation()
+    assert taken(state(), talk)[1] == 1
+    assert (talk.y_mm, talk.theta_rad) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("knobs", [0x82_7E81, 0xFF80_8080, 0x0180_8080])
+def test_knobs_that_jitter_and_one_that_is_not_there_end_nothing(knobs):
+    talk = conversation()
+    assert taken(state(knobs=knobs), talk)[1] == 1
+    assert talk.knobs == 0x80_8080  # as it was told
 
 
 def test_an_encoder_that_has_lost_its_mark_is_left_to_python():

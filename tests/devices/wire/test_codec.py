@@ -2,12 +2,12 @@
 
 import tracemalloc
 from dataclasses import dataclass, replace
+from dataclasses import fields as dataclass_fields
 from itertools import pairwise
 from typing import Annotated
 
-import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
@@ -22,7 +22,6 @@ from vbraille.devices.wire.codec import (
     encode,
     enframe,
     line_bytes,
-    unwrap,
 )
 from vbraille.devices.wire.fields import (
     Fixed,
@@ -40,27 +39,32 @@ from vbraille.devices.wire.messages import (
     PLACED,
     RESTING,
     U16,
-    VERSION,
     CountSign,
     Encoder,
     Error,
     Frame,
     Hello,
     Info,
+    Info2,
     Message,
     Rest,
     RestSide,
     State,
+    State2,
+    TurnSign,
     Watchdog,
+    YCountSign,
 )
 
-EVERY_MESSAGE = pytest.mark.parametrize("kind", MESSAGES.values(), ids=lambda k: k.__name__)
-CODECS = {message: BodyCodec(code, message) for code, message in MESSAGES.items()}
+# INFO of version 2 has the type of INFO.
+CODES = {message: code for code, message in MESSAGES.items()} | {Info2: 0x81}
+EVERY_MESSAGE = pytest.mark.parametrize("kind", CODES, ids=lambda k: k.__name__)
+CODECS = {message: BodyCodec(code, message) for message, code in CODES.items()}
 PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
 
 STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
 INFO = Info(
-    version=VERSION,
+    version=1,
     rows=2,
     columns=3,
     column_pitch_nm=1_200_000,
@@ -81,12 +85,29 @@ INFO = Info(
     gain=bytes([255] * 6),
     enabled=bytes([1] * 6),
 )
+INFO2 = Info2(
+    **{field.name: getattr(INFO, field.name) for field in dataclass_fields(INFO)} | {"version": 2},
+    buttons=2,
+    knobs=1,
+    contactor_width_nm=500_000,
+    contactor_height_nm=1_400_000,
+    height_um=200_000,
+    y_counts_per_m=100_000,
+    y_count_sign=YCountSign.AWAY,
+    far_stop_count=5,
+    counts_per_turn=4096,
+    turn_sign=TurnSign.CLOCKWISE,
+    straight_count=7,
+)
+STATE2 = State2(1, 2_000_000, 3, 4, PLACED, 0, -5, 6, 7, 0x010203FF)
 SAMPLES = [
     Hello(),
     Frame(1, b"\x00\xff\x80"),
     Rest(),
     INFO,
+    INFO2,
     STATE,
+    STATE2,
     Watchdog(0, 0),
     Error(255, "It rattles."),
 ]
@@ -112,7 +133,7 @@ def values(field, actuators):
 @st.composite
 def messages_of(draw, kind):
     known = {}
-    if kind is Info:
+    if issubclass(kind, Info):
         known = {"rows": draw(st.integers(1, 4)), "columns": draw(st.integers(1, 6))}
     actuators = known.get("rows", 0) * known.get("columns", 0)
     for name, field in fields_of(kind):
@@ -121,10 +142,10 @@ def messages_of(draw, kind):
     return kind(**known)
 
 
-any_message = st.sampled_from(sorted(MESSAGES)).flatmap(lambda code: messages_of(MESSAGES[code]))
+any_message = st.sampled_from(list(CODES)).flatmap(messages_of)
 # Zeros, length bytes and types come often, so that garbage gets as far as it can.
 garbage = st.binary(max_size=60) | st.lists(
-    st.sampled_from([0, 0, 1, 2, 3, 0x81, 0x82, 0xFF]), max_size=60
+    st.sampled_from([0, 0, 1, 2, 3, 0x81, 0x82, 0x85, 0xFF]), max_size=60
 ).map(bytes)
 
 
@@ -145,7 +166,7 @@ def only(kind, times=1):
 
 
 @EVERY_MESSAGE
-@examples(50)  # of each of seven messages
+@examples(50)  # of each of nine messages
 @given(choice=st.data())
 def test_what_is_encoded_is_decoded(kind, choice):
     message = choice.draw(messages_of(kind))
@@ -272,6 +293,9 @@ def test_empty_frames_mean_nothing():
 # What is dropped is counted by kind
 
 
+BEHIND = len(body_of(INFO))  # where version 2 goes on
+
+
 def changed(message, at, byte):
     body = bytearray(body_of(message))
     body[at] = byte
@@ -295,6 +319,10 @@ def changed(message, at, byte):
         (changed(INFO, 23, 3), Drop.OUT_OF_RANGE),  # an encoder of no known kind
         (changed(INFO, 28, 0), Drop.OUT_OF_RANGE),  # a sign that is none
         (changed(INFO, len(body_of(INFO)) - 1, 2), Drop.OUT_OF_RANGE),
+        (changed(INFO, 1, 2), Drop.WRONG_LENGTH),  # what version 2 has to say is missing
+        (changed(INFO2, BEHIND, 9), Drop.OUT_OF_RANGE),  # buttons
+        (changed(INFO2, BEHIND + 1, 5), Drop.OUT_OF_RANGE),  # knobs
+        (enframe(body_of(STATE2)[:-1]), Drop.WRONG_LENGTH),
     ],
 )
 def test_drops_by_kind(line, kind):
@@ -347,8 +375,15 @@ def test_what_a_later_version_appends_is_left_alone(kind, appended):
 
 @pytest.mark.parametrize("rest", [b"", b"all that is different"])
 def test_another_version_is_told_and_not_guessed_at(rest):
-    assert fed(enframe(b"\x81\x02" + rest))[0] == [OtherVersion(2)]
-    assert fed(encode(Hello(version=2)))[0] == [Hello(2)]
+    assert fed(enframe(b"\x81\x03" + rest))[0] == [OtherVersion(3)]
+    assert fed(encode(Hello(version=3)))[0] == [Hello(3)]
+
+
+def test_a_version_goes_on_where_the_one_before_ended():
+    """So firmware of version 1 becomes one of version 2 by what it sends behind that."""
+    assert body_of(INFO2)[2:BEHIND] == body_of(INFO)[2:]
+    assert body_of(STATE2)[1:17] == body_of(STATE)[1:]
+    assert Hello() == Hello(2)
 
 
 # One table, both ways
@@ -429,95 +464,3 @@ def test_other_fields_have_bounds(message, change, match):
 def test_a_number_that_is_no_integer_is_not_sent(value):
     with pytest.raises(ValueError, match=r"cannot be encoded|time_us is nan"):
         encode(replace(STATE, time_us=value))
-
-
-# Levels
-
-
-def packed_by_hand(levels, bits):
-    number = 0
-    for level in levels:
-        number = number << bits | level
-    left_over = -len(levels) * bits % 8
-    return (number << left_over).to_bytes((len(levels) * bits + left_over) // 8, "big")
-
-
-@pytest.mark.parametrize("bits", range(1, 17))
-@examples(30)  # of each of sixteen widths
-@given(choice=st.data())
-def test_levels_of_any_width(bits, choice):
-    top_level = choice.draw(st.integers(1 << (bits - 1), (1 << bits) - 1))
-    wanted = choice.draw(st.lists(st.integers(0, top_level), min_size=1, max_size=70))
-    levels = Levels(len(wanted), top_level)
-    packed = levels.pack(np.array(wanted, np.uint16))
-    assert levels.bits == bits
-    assert packed == packed_by_hand(wanted, bits)
-    assert len(packed) == levels.packed_bytes
-    assert levels.unpack(packed).tolist() == wanted
-    levels.check(packed)
-
-
-@pytest.mark.parametrize("dtype", [np.uint16, np.int64, np.uint8, np.int32, ">i4"])
-def test_levels_of_any_integers_in_rows_and_columns(dtype):
-    wanted = np.arange(60).reshape(6, 10)
-    levels = Levels(60, 1023)
-    for order in ("C", "F"):
-        packed = levels.pack(np.asarray(wanted, dtype, order=order))
-        assert packed == packed_by_hand(range(60), 10)
-
-
-def test_bits_left_over_are_not_read():
-    levels = Levels(1, 1)
-    assert levels.unpack(b"\xff").tolist() == [1]
-    assert levels.unpack(b"\x7f").tolist() == [0]
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        np.array([0, 151, 0]),
-        np.array([0, 151, 0], np.uint16),
-        np.array([0, -1, 0]),
-        np.array([0, 65536, 0]),
-        np.array([0.0, 1.0, 2.0]),
-        np.array([0, np.nan, 2]),
-        np.array([True, False, True]),
-        np.array([0, 1]),
-        np.array([0, 1, 2, 3]),
-    ],
-)
-def test_levels_have_bounds(wrong):
-    with pytest.raises(ValueError, match="levels are"):
-        Levels(3, 150).pack(wrong)
-
-
-def test_no_levels_are_not_possible():
-    with pytest.raises(ValueError, match="actuators"):
-        Levels(0, 1023)
-    for top_level in (0, 65536):
-        with pytest.raises(ValueError, match="top level"):
-            Levels(1, top_level)
-
-
-# Counters that wrap
-
-
-@given(
-    bits=st.integers(1, 32),
-    start=st.integers(-(2**40), 2**40),
-    shares=st.lists(st.floats(-1, 1, exclude_max=True), max_size=30),
-)
-@example(bits=8, start=0, shares=[-1.0, -1.0, 0.999])
-def test_counts_are_unwrapped(bits, start, shares):
-    half = 1 << (bits - 1)
-    true = last = start
-    for share in shares:
-        true += max(int(share * half), -half)
-        last = unwrap(true % (2 * half), last, bits)
-        assert last == true
-
-
-def test_unwrapping_ignores_bits_above_the_width():
-    assert unwrap(0xFFFF_FFFF, 0, 16) == -1
-    assert unwrap(5, 0xFFFE, 16) == 0x10005
-    assert unwrap(0x80, 0, 8) == -0x80  # as near either way: the lower

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices import opened_device
@@ -12,6 +13,7 @@ from vbraille.engine.checking import check
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
+from vbraille.files import settings_path
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:
@@ -26,12 +28,15 @@ def run(arguments: argparse.Namespace) -> int:
     """List, describe or check."""
     if arguments.action == "list":
         return _list()
+    if arguments.action == "calibrate":
+        return calibrate(arguments, _wanted(arguments))
     if arguments.action == "check":
         with EAR.at_once():
             warm_up(_wanted(arguments) or MODELS["stress2"].display)
     with opened_device(arguments.spec, _wanted(arguments)) as device:
         _describe(device)
         if arguments.action == "info":
+            say_calibration(device, settings_path())
             return 0
         try:
             return _check(device)
@@ -67,15 +72,30 @@ def _describe(device: Device) -> None:
     say_line(f"levels: {info.levels}")
     say_line(f"rest side: {info.rest_side}")
     say_line(f"travel: {info.travel_mm:g} mm")
+    say_line(f"axes: {_axes(info)}")
+    if info.contactor_mm is not None:
+        width_mm, height_mm = info.contactor_mm
+        say_line(f"contactor: {width_mm:g} mm wide, {height_mm:g} mm high")
     say_line(f"encoder: {info.counts_per_mm:g} counts a mm{f', {told.encoder}' if told else ''}")
     say_line(f"rate: {info.rate_hz:g} Hz")
     if told is None:
         return
     slew = told.largest_slew_per_s
+    if told.protocol:
+        say_line(f"protocol: {told.protocol}")
+    if told.buttons is not None and told.knobs is not None:
+        say_line(f"buttons: {told.buttons}")
+        say_line(f"knobs: {told.knobs}")
     say_line(f"firmware: {told.firmware or 'it does not say'}")
     say_line(f"slew: {f'at most {slew:g} full swings a second' if slew else 'without a limit'}")
     say_line(f"disabled actuators: {_places(told.disabled, info)}")
     say_line(f"inverted actuators: {_places(told.inverted, info)}")
+
+
+def _axes(info: Display) -> str:
+    """Axes along which the carriage is measured, in words."""
+    across = f" and across, {info.height_mm:g} mm" if info.height_mm else ""
+    return f"along the line{across}{', and the angle' * info.turns}"
 
 
 def _places(actuators: Sequence[tuple[int, int]], info: Display) -> str:

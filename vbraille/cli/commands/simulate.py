@@ -3,34 +3,74 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.wire.messages import Encoder
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.render.braille.models import MODELS
-from vbraille.simulation.firmware import describe
+from vbraille.simulation.carriage import area_of
+from vbraille.simulation.described import describe
 from vbraille.simulation.pressing import parse_presses
 from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.script import Controls, load_script
 from vbraille.simulation.simulator import Defect, Faults, Simulator
 from vbraille.simulation.specs import parse_hand
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping
 
     from vbraille.devices.wire.messages import Info
+    from vbraille.display import Display
 
+# Options that only one kind of device has, and what they are when they are not given.
+_LATERO_ONLY: Final[dict[str, object]] = {
+    "port": None,
+    "lines": None,
+    "wait": None,
+    "late": None,
+    "double": None,
+    "foreign": None,
+}
+_SERIAL_ONLY: Final[dict[str, object]] = {
+    "model": "stress2",
+    "link": None,
+    "encoder": "absolute",
+    "travel": None,
+    "axes": "x",
+    "height": None,
+    "protocol": "2",
+    "script": None,
+    "corrupt": 0.0,
+    "stall": 0.0,
+    "unplug_every": 0.0,
+    "defect": None,
+}
 # Above the engine's 40: a real controller has a processor of its own.
 PRIORITY = 41
+# Way of a carriage of two axes across the lines, which nobody gives.
+HEIGHT_MM = 200.0
+KEYS = "1 to 8 press a button, a to d turn a knob up, A to D turn it down"
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Be a device until a signal says to stop."""
-    info = _info(arguments)
+    if arguments.what == "latero":
+        from vbraille.cli.commands import simulate_latero
+
+        _refuse(arguments, _SERIAL_ONLY)
+        return simulate_latero.run(arguments, PRIORITY)
+    _refuse(arguments, _LATERO_ONLY)
+    display = _display(arguments)
+    info = _info(arguments, display)
     hand = parse_hand(arguments.hand, arguments.seed)
-    presses = parse_presses(arguments.press)
+    script = () if arguments.script is None else load_script(arguments.script)
+    controls = Controls(script, parse_presses(arguments.press))
+    area = area_of(display, MODELS[arguments.model].style.geometry.line_pitch_mm)
     if arguments.unplug_every and arguments.link is None:
         raise InputError("--unplug-every needs --link, for the port has a new name each time")
     try:
@@ -44,13 +84,24 @@ def run(arguments: argparse.Namespace) -> int:
         )
     except ValueError as error:
         raise InputError(str(error)) from None
-    with EAR.deferred():
+    with EAR.deferred(), ControlKeys() as keys:
         port = Port(Link(arguments.link) if arguments.link is not None else None)
         try:
-            simulator = Simulator(info, hand, port, say=say_line, faults=faults, presses=presses)
+            simulator = Simulator(
+                info,
+                hand,
+                port,
+                say=say_line,
+                faults=faults,
+                area=area,
+                controls=controls,
+                keys=keys.pressed,
+            )
             say_line(f"port: {port.path}")
             if arguments.link is not None:
                 say_line(f"link: {arguments.link}")
+            if keys.attached:
+                say_line(f"keys: {KEYS}")
             come_first(PRIORITY)
             simulator.run(stopped=lambda: EAR.heard)
         finally:
@@ -59,7 +110,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _info(arguments: argparse.Namespace) -> Info:
+def _refuse(arguments: argparse.Namespace, others: Mapping[str, object]) -> None:
+    """Raise InputError if an option is given that another kind of device has."""
+    for name, left_out in others.items():
+        if getattr(arguments, name) != left_out:
+            raise InputError(
+                f"--{name.replace('_', '-')} is not for a simulated {arguments.what} device; leave "
+                f"it out"
+            )
+
+
+def _display(arguments: argparse.Namespace) -> Display:
+    """Display that it is to be, with the axes that are asked for."""
     model = MODELS[arguments.model]
     geometry = model.style.geometry
     if not (50 <= arguments.rate <= 10_000 and arguments.rate == int(arguments.rate)):
@@ -68,7 +130,29 @@ def _info(arguments: argparse.Namespace) -> Info:
         if arguments.travel is not None:
             geometry = replace(geometry, travel_mm=arguments.travel)
         device = model.on(geometry, arguments.rate)
-        return describe(device, Encoder[arguments.encoder.upper()])
+        return replace(device, height_mm=_height_mm(arguments), turns="θ" in arguments.axes)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def _height_mm(arguments: argparse.Namespace) -> float:
+    """How far the carriage goes across the lines; 0 for one axis."""
+    if "y" in arguments.axes:
+        height_mm = HEIGHT_MM if arguments.height is None else arguments.height
+        if not height_mm > 0:
+            raise InputError(f"height is {height_mm:g} mm; it must be above 0")
+        return height_mm
+    if arguments.height is not None:
+        raise InputError("--height is for a carriage of two axes; add --axes xy or --axes xyθ")
+    return 0.0
+
+
+def _info(arguments: argparse.Namespace, display: Display) -> Info:
+    version = int(arguments.protocol)
+    if version == 1 and display.axes != "x":
+        raise InputError("version 1 of the protocol knows one axis; leave --axes or --protocol out")
+    try:
+        return describe(display, Encoder[arguments.encoder.upper()], version)
     except ValueError as error:
         raise InputError(str(error)) from None
 

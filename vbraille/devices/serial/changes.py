@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.events import Changed, Difference, Placing
@@ -19,8 +20,12 @@ _OF_DISPLAY: Final = (
     "levels",
     "rest_side",
     "travel_mm",
+    "height_mm",
+    "turns",
     "rate_hz",
 )
+# Fields of INFO about y and θ, which version 1 has not.
+_OF_AXES: Final = ("y_counts_per_m", "y_count_sign", "counts_per_turn", "turn_sign")
 PLACING: Final = {
     Encoder.ABSOLUTE: Placing.DONE,
     Encoder.INDEX: Placing.MARK,
@@ -45,8 +50,15 @@ def changes(was: Info, now: Info) -> Changed | None:
         Difference("count_sign", was.count_sign.name.lower(), now.count_sign.name.lower()),
         Difference("encoder", was.encoder.name.lower(), now.encoder.name.lower()),
     ]
-    if now.encoder is not Encoder.INCREMENTAL:  # the reader shows where its left stop is
-        what.append(Difference("left_stop_count", was.left_stop_count, now.left_stop_count))
+    for name in _OF_AXES:
+        old, new = (getattr(info, name, None) for info in (was, now))
+        if old is not None and new is not None:  # of one version, or both have it
+            what.append(Difference(name, _said(old), _said(new)))
+    if now.encoder is not Encoder.INCREMENTAL:  # the reader shows where its stops are
+        for name in ("left_stop_count", "far_stop_count", "straight_count"):
+            old, new = (getattr(info, name, None) for info in (was, now))
+            if old is not None and new is not None:
+                what.append(Difference(name, old, new))
     what.append(Difference("largest_slew_per_s", was.largest_slew_per_s, now.largest_slew_per_s))
     changed = Changed(
         tuple(each for each in what if each.was != each.now),
@@ -57,6 +69,11 @@ def changes(was: Info, now: Info) -> Changed | None:
     )
     none = Changed(placing=changed.placing)
     return None if changed == none else changed
+
+
+def _said(value: int) -> int | str:
+    """Name of a sign; any other number as it is."""
+    return value.name.lower() if isinstance(value, IntEnum) else value
 
 
 def _others(was: bytes, now: bytes) -> int:

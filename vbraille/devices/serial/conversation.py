@@ -18,7 +18,7 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.events import Unplugged
-from vbraille.devices.serial.greeting import HELLO
+from vbraille.devices.serial.greeting import HELLOS
 from vbraille.devices.serial.listening import Listening
 from vbraille.devices.serial.transitions import TALKING, UNTOLD, Cause, Stage
 from vbraille.devices.wire.codec import DELIMITER, encode
@@ -83,7 +83,7 @@ class Conversation(Listening):
         """Note that the port is back; nothing that was said before goes on."""
         if self._go(Cause.PLUGGED_IN):
             self.decoder.feed(DELIMITER)  # what was begun will not be ended
-            self._hello_ns = now_ns
+            self._greet_anew(now_ns)
 
     def mind_stall(self, now_ns: int) -> bool:
         """Have the device rest if the host was stopped for so long that it may rest; tell whether.
@@ -168,7 +168,7 @@ class Conversation(Listening):
             return _REST
         if self.stage in _GREETING and self._now_ns >= self._hello_ns:
             self._offer = _Wish.HELLO
-            return HELLO
+            return HELLOS[self.version]
         return None
 
     @property

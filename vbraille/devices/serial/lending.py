@@ -13,14 +13,24 @@ import numpy as np
 
 from vbraille.devices.lent import Actuators, Lent
 from vbraille.devices.serial.conversation import IDLE_MS
-from vbraille.devices.serial.steady import CONVERSATION, NEVER, WORK_BYTES
+from vbraille.devices.serial.steady import (
+    CONVERSATION,
+    NEVER,
+    STATE,
+    STATE2,
+    STATE2_BYTES,
+    STATE_BYTES,
+    WORK_BYTES,
+)
 from vbraille.devices.wire.codec import CRC_BYTES, frame_head, line_bytes
+from vbraille.devices.wire.messages import Info2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.serial.conversation import Conversation
     from vbraille.devices.serial.drive import Drive
+    from vbraille.devices.serial.place import Place
     from vbraille.display import Display
 
 # Some ticks bring some hundred bytes; this leaves room for a stall.
@@ -71,8 +81,6 @@ class Lending:
         ready = conversation.steady and place.known and not conversation.trips.tripped
         if not ready or states.sequence is None or time.us is None:
             return None
-        if place.count is None or place.zero is None:
-            return None
         begun = conversation.decoder.take_begun()
         if begun is None or len(begun) > WORK_BYTES:
             conversation.decoder.feed(begun or b"")
@@ -85,10 +93,9 @@ class Lending:
         )
         talk = self.talk[0]
         talk["heard_ns"], talk["state_sequence"] = states.heard_ns, states.sequence
-        talk["missed"], talk["buttons"] = states.missed, states.buttons or 0
-        talk["count"], talk["count_bits"], talk["zero"] = place.count, place.bits, place.zero
-        talk["home_mm"], talk["mm_per_count"] = place.home_mm, place.mm_per_count
-        talk["must_be_placed"] = place.needs_mark
+        talk["missed"] = states.missed
+        _lend_panel(talk, conversation)
+        _lend_place(talk, place)
         talk["device_us"], talk["offset_ns"] = time.us, time.offset_ns
         talk["device_ns"] = time.last_ns
         talk["sequence"], talk["felt_ns"] = frames.sequence, frames.felt_ns
@@ -98,7 +105,7 @@ class Lending:
         talk["idle_ns"] = IDLE_MS * _NS_PER_MS
         talk["moved_ns"], talk["period_ns"] = drive.last_ns, drive.period_ns
         talk["slew_per_ns"] = drive.slew_per_ns if drive.limited else math.inf
-        talk["top_level"], talk["bits"] = drive.top_level, drive.bits
+        talk["bits"] = drive.bits
         self.received[: len(begun)] = np.frombuffer(begun, np.uint8)
         return len(begun)
 
@@ -108,7 +115,12 @@ class Lending:
         states, frames, time = conversation.states, conversation.frames, conversation.time
         states.heard_ns, states.sequence = int(talk["heard_ns"]), int(talk["state_sequence"])
         states.missed = int(talk["missed"])
-        conversation.place.count = int(talk["count"])
+        place = conversation.place
+        place.x.count = int(talk["count"])
+        if place.y is not None:
+            place.y.count = int(talk["y_count"])
+        if place.turn is not None:
+            place.turn.count = int(talk["theta_count"])
         time.us, time.last_ns = int(talk["device_us"]), int(talk["device_ns"])
         time.host_ns = states.heard_ns
         frames.sequence, frames.felt_ns = int(talk["sequence"]), int(talk["felt_ns"])
@@ -128,6 +140,32 @@ class Lending:
         self._packed = self._body[head.size : body_bytes]
         self.out = np.zeros(line_bytes(body_bytes), np.uint8)
         self._drive = drive
+
+
+def _lend_panel(talk: np.void, conversation: Conversation) -> None:
+    """Fill in what STATEs are, and the buttons and knobs in them."""
+    newer, panel = isinstance(conversation.info, Info2), conversation.panel
+    talk["state_type"] = STATE2 if newer else STATE
+    talk["state_bytes"] = STATE2_BYTES if newer else STATE_BYTES
+    talk["buttons"], talk["button_mask"] = panel.buttons or 0, (1 << panel.buttons_fitted) - 1
+    talk["knobs"], talk["knobs_fitted"] = panel.knobs or 0, panel.knobs_fitted
+
+
+def _lend_place(talk: np.void, place: Place) -> None:
+    """Fill in the numbers of the carriage, whose place is known."""
+    x, y, turn = place.x, place.y, place.turn
+    talk["count"], talk["count_bits"], talk["zero"] = x.count, x.bits, x.zero
+    talk["home_mm"], talk["mm_per_count"] = x.home_mm, x.mm_per_count
+    talk["must_be_placed"] = place.needs_mark
+    talk["y_mm"] = talk["theta_rad"] = 0.0
+    talk["has_y"] = y is not None
+    if y is not None:
+        talk["y_count"], talk["y_zero"], talk["y_mm_per_count"] = y.count, y.zero, y.mm_per_count
+        talk["y_mm"] = y.place_mm
+    talk["counts_per_turn"] = 0 if turn is None else turn.counts_per_turn
+    if turn is not None:
+        talk["straight"], talk["rad_per_count"] = turn.straight, turn.rad_per_count
+        talk["theta_count"], talk["theta_rad"] = turn.count, turn.theta_rad
 
 
 def example(display: Display) -> Lent:

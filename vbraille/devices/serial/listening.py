@@ -14,7 +14,6 @@ import numpy as np
 
 from vbraille.devices.events import (
     Back,
-    Button,
     Fault,
     Notice,
     Placed,
@@ -26,25 +25,31 @@ from vbraille.devices.events import (
 from vbraille.devices.serial.changes import changes, differences
 from vbraille.devices.serial.delivery import Delivery, Trips
 from vbraille.devices.serial.drive import Drive
-from vbraille.devices.serial.greeting import info_of, misfit, particulars_of
+from vbraille.devices.serial.greeting import fitted, info_of, misfit, particulars_of
 from vbraille.devices.serial.notices import Notices
+from vbraille.devices.serial.panel import Panel
 from vbraille.devices.serial.place import DeviceTime, Place
 from vbraille.devices.serial.transitions import RESTING, TALKING, TRANSITIONS, Cause, Stage
 from vbraille.devices.wire.codec import Decoder, OtherVersion, unwrap
 from vbraille.devices.wire.messages import (
     ANSWER_MS,
+    HELLO_PERIOD_MS,
     LOST_MS,
     NOTICES,
     SILENCE_MS,
+    VERSION,
     Error,
     Info,
+    Info2,
     State,
+    State2,
     Watchdog,
 )
 from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from vbraille.devices.base import Particulars
+    from vbraille.devices.calibration import Calibration
     from vbraille.devices.events import Event
     from vbraille.devices.wire.codec import Heard
     from vbraille.display import Display
@@ -53,7 +58,6 @@ _log = logging.getLogger(__name__)
 _NS_PER_MS: Final = 1_000_000
 _SILENCE_NS: Final = SILENCE_MS * _NS_PER_MS
 _LOST_NS: Final = LOST_MS * _NS_PER_MS
-_BUTTONS: Final = 8
 
 
 @dataclass(slots=True)
@@ -68,15 +72,11 @@ class States:
         Sequence of the last STATE; None before the first of a conversation.
     missed
         Number of STATEs that never came.
-    buttons
-        Bits of the buttons in the last STATE; None before the first of all, and of a device that
-        was unplugged.
     """
 
     heard_ns: int
     sequence: int | None = None
     missed: int = 0
-    buttons: int | None = None
 
 
 @dataclass(slots=True)
@@ -116,6 +116,8 @@ class Listening:
     ----------
     stage : Stage
         Stage of the conversation.
+    version : int
+        Version of the protocol in which the device is greeted.
     display, info, particulars : Display, Info, Particulars, or None
         What the device said of itself first, and what it says in this conversation; None before.
     failure : Fault, Stranger or None
@@ -131,17 +133,19 @@ class Listening:
         How often the actuators went to rest otherwise than by FRAMEs, so that all must fade in.
     reconnections : int
         How often the device was greeted again.
-    decoder, states, frames, trips, delivery, place, time, drive
-        What is known of received bytes, STATEs, FRAMEs, the watchdog, rest, the carriage, the
-        device's clock, and the actuators. `drive` is set once `info` is.
+    decoder, states, frames, trips, panel, delivery, place, time, drive
+        What is known of received bytes, STATEs, FRAMEs, the watchdog, buttons and knobs, rest, the
+        carriage, the device's clock, and the actuators. `drive` is set once `info` is.
     """
 
     drive: Drive
     place: Place
     delivery: Delivery
+    _kind_of_state: type[State]
 
     def __init__(self, now_ns: int, rate_hz: float | None = None) -> None:
         self.stage = Stage.GREETING
+        self.version = VERSION
         self.display: Display | None = None
         self.info: Info | None = None
         self.particulars: Particulars | None = None
@@ -154,8 +158,10 @@ class Listening:
         self.states = States(now_ns)
         self.frames = Frames(now_ns)
         self.trips = Trips()
+        self.panel = Panel()
         self.time = DeviceTime()
         self._rate_hz = rate_hz
+        self._calibration: Calibration | None = None
         self._notices = Notices()
         self._placing = Placing.DONE
         self._away = False  # from an event that says so to one that it is back
@@ -170,7 +176,7 @@ class Listening:
             for message in self.decoder.feed(chunk):
                 if isinstance(message, State):
                     self.speaks = True
-                    if self.stage in TALKING:
+                    if self.stage in TALKING and type(message) is self._kind_of_state:
                         pose = self._take_state(message, now_ns)
                 else:
                     self._take(message, now_ns)
@@ -179,6 +185,11 @@ class Listening:
                 self.decoder.bad_info = ""
         self._pass(now_ns)
         return pose
+
+    def correct(self, calibration: Calibration | None) -> None:
+        """Make up for what was found of the actuators, now and whenever the device is back."""
+        self._calibration = calibration
+        self.drive.correct(calibration)
 
     def _go(self, cause: Cause) -> bool:
         """Go to the stage that a cause leads to; tell whether it leads to one from here."""
@@ -200,7 +211,11 @@ class Listening:
         """Take a message other than STATE."""
         self.speaks = self.speaks or isinstance(message, Watchdog | Error)
         if isinstance(message, Info):
-            if self.stage is Stage.ASKED:
+            if self.stage is not Stage.ASKED:
+                pass  # it answers a HELLO from before
+            elif message.version != self.version:
+                self._greet_in(message.version, now_ns)
+            else:
                 self._take_info(message, now_ns)
         elif isinstance(message, OtherVersion):
             self._turn_away(Stranger(self._name, version=message.version), now_ns)
@@ -231,8 +246,8 @@ class Listening:
             gap = unwrap(state.sequence, states.sequence, 16) - states.sequence - 1
             states.missed += max(gap, 0)
         states.sequence = state.sequence
-        if state.buttons != states.buttons:
-            self._mind_buttons(state.buttons, now_ns)
+        for event in self.panel.take(state, now_ns):
+            self._tell(event, now_ns)
         self.trips.take_state(tripped=state.tripped)
         if self.stage is not Stage.LIVE:
             cause = self.delivery.judge(state, now_ns)
@@ -246,31 +261,39 @@ class Listening:
         if frames.sent_ns is not None and state.frame_sequence == frames.sequence:
             frames.acknowledged_ns = now_ns - frames.sent_ns
             frames.sent_ns = None
-        x_mm = self.place.x_mm(state)
+        where = self.place.take(state)
         if self.place.placing is not self._placing:
             self._mind_placing(now_ns)
         time_ns = self.time.ns(state.time_us, now_ns)
-        return None if x_mm is None else Pose(time_ns, x_mm)
+        return None if where is None else Pose(time_ns, *where)
 
     def _let_go(self, now_ns: int) -> None:
         """Take the buttons for let go: nobody holds those of a device that is not there."""
-        if self.states.buttons:
-            self._mind_buttons(0, now_ns)
-        self.states.buttons = None
-
-    def _mind_buttons(self, buttons: int, now_ns: int) -> None:
-        """Tell which buttons have changed; the first STATE of all changes none."""
-        before, self.states.buttons = self.states.buttons, buttons
-        changed = 0 if before is None else before ^ buttons
-        for bit in range(_BUTTONS):
-            if changed >> bit & 1:
-                pressed = bool(buttons >> bit & 1)
-                self._tell(Button(bit + 1, pressed, at_ns=now_ns), now_ns)
+        for event in self.panel.let_go(now_ns):
+            self._tell(event, now_ns)
 
     def _mind_placing(self, now_ns: int) -> None:
         if self.place.placing is not self._placing:
             self._placing = self.place.placing
             self._tell(Placed(self._placing), now_ns)
+
+    def _greet_in(self, version: int, now_ns: int) -> None:
+        """Greet again in the version that the device speaks.
+
+        An older one is what the newest HELLO is meant to find out, and is greeted at once. One that
+        is newer than the host has just been told waits its turn: two devices at one port, or one
+        that changes its mind, must not be greeted without a pause.
+        """
+        older = version < self.version
+        if self._go(Cause.OTHER_VERSION):
+            _log.debug("the device speaks version %d", version)
+            self.version = version
+            self._hello_ns = now_ns + (0 if older else HELLO_PERIOD_MS * _NS_PER_MS)
+
+    def _greet_anew(self, now_ns: int) -> None:
+        """Greet whatever may be there now, in the newest version first."""
+        self.version = VERSION
+        self._hello_ns = now_ns
 
     def _take_info(self, info: Info, now_ns: int) -> None:
         display, fault = info_of(info), misfit(info)
@@ -300,10 +323,13 @@ class Listening:
         self.time.restart()
         self.delivery = Delivery(info.rate_hz)
         self.place = Place(info)
+        self.panel.fit(*fitted(info))
+        self._kind_of_state = State2 if isinstance(info, Info2) else State
         if before is None:
             self._placing = self.place.placing
         self._mind_placing(now_ns)
         self.drive = Drive(info, now_ns, self._rate_hz or float(self.display.rate_hz))
+        self.drive.correct(self._calibration)
         self._rest_frame = np.zeros((info.rows, info.columns))
 
     def _turn_away(self, stranger: Stranger, now_ns: int) -> None:
@@ -334,7 +360,7 @@ class Listening:
             self._stop(tell=True)
             self._tell_away(Silent(silent_ns / _NS_PER_MS), now_ns)
         if silent_ns >= _LOST_NS and self._go(Cause.LOST):
-            self._hello_ns = now_ns
+            self._greet_anew(now_ns)
 
     def _fall(self, cause: Cause, now_ns: int) -> None:
         """Note that the device went to rest, or may have."""

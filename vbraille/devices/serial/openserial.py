@@ -14,7 +14,7 @@ from vbraille.devices.serial.serialdevice import SerialDevice, send_due
 from vbraille.devices.serial.serialport import LOOK_S, SerialPort
 from vbraille.devices.serial.transitions import Stage
 from vbraille.devices.wire.codec import Levels, line_bytes
-from vbraille.devices.wire.messages import STALL_MS, VERSION
+from vbraille.devices.wire.messages import INFOS, STALL_MS
 from vbraille.errors import DeviceError, InputError
 from vbraille.wording import setting
 
@@ -61,7 +61,10 @@ def open_serial(
     DeviceError
         If the port cannot be opened, or no device that speaks our protocol answers.
     """
-    return begin(SerialPort(parse_address(address), look_s=look_s), wanted, now_ns, pause)
+    port = SerialPort(parse_address(address), look_s=look_s)
+    device = begin(port, wanted, now_ns, pause)
+    device.serial_number = port.serial_number
+    return device
 
 
 def begin(
@@ -124,7 +127,8 @@ def _turned_away(stranger: Stranger, address: Address) -> DeviceError:
     if stranger.version is not None:
         return DeviceError(
             f"the device at {address.url} speaks version {stranger.version} of the "
-            f"protocol and this vbraille version {VERSION}; update the older of the two"
+            f"protocol and this vbraille versions {' and '.join(map(str, INFOS))}; update the "
+            f"older of the two"
         )
     return DeviceError(
         f"the device at {address.url} says in its INFO what cannot be: {stranger.fault}; "

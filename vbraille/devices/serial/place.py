@@ -2,14 +2,98 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.devices.events import Placing
 from vbraille.devices.wire.codec import unwrap
-from vbraille.devices.wire.messages import Encoder
+from vbraille.devices.wire.messages import Encoder, Info2, State2
 
 if TYPE_CHECKING:
     from vbraille.devices.wire.messages import Info, State
+
+
+class CountedPlace(NamedTuple):
+    """What the encoders of a carriage say of the array: its centre, in mm, and its angle."""
+
+    x_mm: float
+    y_mm: float = 0.0
+    theta_rad: float = 0.0
+
+
+class CountedAxis:
+    """One axis of a carriage, along which counts wrap.
+
+    Parameters
+    ----------
+    bits
+        Number of bits in the counter that is sent.
+    stop
+        Count at the stop where the way begins; None if the reader has to show it.
+    home_mm
+        Place of the array's centre there.
+    mm_per_count
+        Length of a count; negative where counts fall on the way from the stop.
+
+    Attributes
+    ----------
+    count, zero : int or None
+        Count without wraps, and the count at the stop; None before they are known.
+    """
+
+    def __init__(self, bits: int, stop: int | None, home_mm: float, mm_per_count: float) -> None:
+        self.bits = bits
+        self.home_mm, self.mm_per_count = home_mm, mm_per_count
+        self.count: int | None = None
+        self.zero = self._stop = stop
+
+    def take(self, count: int) -> None:
+        """Take a count that was sent, newer than those before."""
+        if self.count is None:
+            self.count = count if self._stop is None else self._stop
+        self.count = unwrap(count, self.count, self.bits)
+
+    def set_zero(self) -> None:
+        """Take the present count for that at the stop."""
+        self.zero = self.count
+
+    @property
+    def place_mm(self) -> float | None:
+        """Place of the array's centre; None if it is not known."""
+        if self.count is None or self.zero is None:
+            return None
+        return self.home_mm + self.mm_per_count * (self.count - self.zero)
+
+
+class CountedTurn:
+    """How far an array is turned, by counts that begin anew with each turn.
+
+    Parameters
+    ----------
+    counts_per_turn
+        Number of counts in a turn, above 0.
+    straight
+        Count where the array is not turned; None if the reader has to show it.
+    sign
+        1 if counts grow as the array turns against the clock, -1 if they fall.
+
+    Attributes
+    ----------
+    rad_per_count : float
+        Angle of a count.
+    """
+
+    def __init__(self, counts_per_turn: int, straight: int | None, sign: int) -> None:
+        self.counts_per_turn, self.straight = counts_per_turn, straight
+        self.rad_per_count = sign * 2 * math.pi / counts_per_turn
+        self.count = 0
+
+    @property
+    def theta_rad(self) -> float:
+        """Angle of the array, at most half a turn either way."""
+        half = self.counts_per_turn // 2
+        away = (self.count - (self.straight or 0) + half) % self.counts_per_turn - half
+        return self.rad_per_count * away
 
 
 class Place:
@@ -26,23 +110,33 @@ class Place:
         What is waited for before the place is known.
     known : bool
         Whether a STATE has told the place.
-    count, zero : int or None
-        Count without wraps, and the count at the left stop; None before they are known.
-    bits : int
-        Number of bits in the counter that is sent.
-    home_mm, mm_per_count : float
-        Place at the left stop, and length of a count.
+    x : CountedAxis
+        Axis along the lines.
+    y : CountedAxis or None
+        Axis across the lines; None if the carriage has none.
+    turn : CountedTurn or None
+        Angle of the array; None if it is not measured.
     """
 
     def __init__(self, info: Info) -> None:
-        self.bits = info.count_bits
         self._encoder = info.encoder
-        self._stop = info.left_stop_count
-        # At the left stop the whole array stands before the line.
-        self.home_mm = -(info.columns - 1) * info.column_pitch_nm / 2e6
-        self.mm_per_count = info.count_sign * 1000 / info.counts_per_m
-        self.count: int | None = None  # the count without wraps
-        self.zero: int | None = None if self._encoder is Encoder.INCREMENTAL else self._stop
+
+        def shown(count: int) -> int | None:
+            return None if self._encoder is Encoder.INCREMENTAL else count
+
+        # At the left stop the whole array stands before the line, and at the far one its middle is
+        # at the top of the page.
+        home_mm = -(info.columns - 1) * info.column_pitch_nm / 2e6
+        bits, stop = info.count_bits, shown(info.left_stop_count)
+        self.x = CountedAxis(bits, stop, home_mm, info.count_sign * 1000 / info.counts_per_m)
+        self.y: CountedAxis | None = None
+        self.turn: CountedTurn | None = None
+        if isinstance(info, Info2) and info.height_um:
+            mm_per_count = info.y_count_sign * 1000 / info.y_counts_per_m
+            self.y = CountedAxis(bits, shown(info.far_stop_count), 0.0, mm_per_count)
+        if isinstance(info, Info2) and info.counts_per_turn:
+            straight = shown(info.straight_count)
+            self.turn = CountedTurn(info.counts_per_turn, straight, info.turn_sign)
         self.known = False
         self.placing = {
             Encoder.ABSOLUTE: Placing.DONE,
@@ -55,25 +149,36 @@ class Place:
         """Whether a STATE may say that the place is lost until the carriage passes the mark."""
         return self._encoder is Encoder.INDEX
 
-    def x_mm(self, state: State) -> float | None:
+    def take(self, state: State) -> CountedPlace | None:
         """Place of the array's centre by a STATE newer than those before; None if unknown."""
+        x, y, turn = self.x, self.y, self.turn
         if self._encoder is Encoder.INDEX and not state.placed:
-            self.count, self.known, self.placing = None, False, Placing.MARK
+            x.count, self.known, self.placing = None, False, Placing.MARK
+            if y is not None:
+                y.count = None
             return None
-        if self.count is None:
-            incremental = self._encoder is Encoder.INCREMENTAL
-            self.count = state.count if incremental else self._stop
-        self.count = unwrap(state.count, self.count, self.bits)
-        if self.zero is None:
+        x.take(state.count)
+        if isinstance(state, State2):
+            if y is not None:
+                y.take(state.y_count)
+            if turn is not None:
+                turn.count = state.theta_count
+        x_mm, y_mm = x.place_mm, 0.0 if y is None else y.place_mm
+        if x_mm is None or y_mm is None:
             return None
         self.known, self.placing = True, Placing.DONE
-        return self.home_mm + self.mm_per_count * (self.count - self.zero)
+        return CountedPlace(x_mm, y_mm, 0.0 if turn is None else turn.theta_rad)
 
     def set_zero(self) -> None:
-        """Take the carriage's place for the left stop, where only the reader can tell."""
-        if self._encoder is Encoder.INCREMENTAL and self.count is not None:
-            self.zero = self.count
-            self.known, self.placing = True, Placing.DONE
+        """Take the carriage to be at its stops and straight, where only the reader can tell."""
+        if self._encoder is not Encoder.INCREMENTAL or self.x.count is None:
+            return
+        self.x.set_zero()
+        if self.y is not None:
+            self.y.set_zero()
+        if self.turn is not None:
+            self.turn.straight = self.turn.count
+        self.known, self.placing = True, Placing.DONE
 
 
 class DeviceTime:

@@ -18,6 +18,8 @@ from vbraille.devices.wire import packing
 from vbraille.devices.wire.fields import fields_of, places_of
 from vbraille.devices.wire.messages import (
     FAULTY,
+    KNOB_STEP,
+    KNOB_TOP,
     MESSAGES,
     PLACED,
     RESTING,
@@ -26,6 +28,7 @@ from vbraille.devices.wire.messages import (
     TRIPPED,
     Frame,
     State,
+    State2,
 )
 from vbraille.devices.wire.wirekernels import delimiter, enframe, number, put_number, unframe
 
@@ -46,7 +49,22 @@ CONVERSATION = np.dtype(
         ("zero", "<i8"),  # count at the left stop
         ("home_mm", "<f8"),  # where the array's centre is then
         ("mm_per_count", "<f8"),
+        ("state_type", "<i8"),  # what STATEs are in the conversation's version
+        ("state_bytes", "<i8"),  # how many bytes one has at least
         ("buttons", "<i8"),  # that are pressed, a bit each
+        ("button_mask", "<i8"),  # bits of those that are there
+        ("knobs", "<i8"),  # where they were last told to stand, a byte each
+        ("knobs_fitted", "<i8"),  # how many are there
+        ("has_y", "<i8"),  # 1 if the carriage has a second axis
+        ("y_count", "<i8"),  # as of x
+        ("y_zero", "<i8"),
+        ("y_mm_per_count", "<f8"),
+        ("y_mm", "<f8"),
+        ("counts_per_turn", "<i8"),  # 0 if no angle is measured
+        ("theta_count", "<i8"),  # of the angle, in the last STATE
+        ("straight", "<i8"),  # count where the array is not turned
+        ("rad_per_count", "<f8"),
+        ("theta_rad", "<f8"),
         ("must_be_placed", "<i8"),  # 1 if the encoder may lose its place and say so
         ("device_us", "<i8"),  # the device's clock, without its wraps
         ("offset_ns", "<i8"),  # what is added to it, for it goes on over a restart
@@ -62,7 +80,6 @@ CONVERSATION = np.dtype(
         ("moved_ns", "<i8"),  # since when the actuators are on their way to the last
         ("slew_per_ns", "<f8"),  # fastest of an actuator, in swings; infinite for no limit
         ("period_ns", "<f8"),  # of the host's FRAMEs
-        ("top_level", "<i8"),
         ("bits", "<i8"),  # of a level
     ],
     align=True,
@@ -70,15 +87,22 @@ CONVERSATION = np.dtype(
 
 
 _CODES = {message: code for code, message in MESSAGES.items()}
-_STATE = _CODES[State]
-_NAMES = [name for name, _ in fields_of(State)]
-_PLACES = places_of(State)
-# Place of each field, as `number` takes it, and how far the last goes.
+# Types of a STATE in either version, and number of bytes in one.
+STATE, STATE2 = _CODES[State], _CODES[State2]
+STATE_BYTES, STATE2_BYTES = (
+    places_of(kind)[-1][0] + places_of(kind)[-1][1] for kind in (State, State2)
+)
+_NAMES = [name for name, _ in fields_of(State2)]
+_PLACES = places_of(State2)
+# Place of each field, as `number` takes it; those of version 1 are the first of version 2.
 _SEQUENCE, _TIME_US, _COUNT, _FRAME_SEQUENCE, _FLAGS, _BUTTONS = (
     _PLACES[_NAMES.index(name)]
     for name in ("sequence", "time_us", "count", "frame_sequence", "flags", "buttons")
 )
-_STATE_BYTES = _PLACES[-1][0] + _PLACES[-1][1]
+_Y_COUNT, _THETA_COUNT, _KNOBS = (
+    _PLACES[_NAMES.index(name)] for name in ("y_count", "theta_count", "knobs")
+)
+_KNOB_BITS = 8
 _UNSTEADY = RESTING | FAULTY | TRIPPED
 _SEQUENCE_BITS, _TIME_BITS = 8 * _SEQUENCE[1], 8 * _TIME_US[1]
 _FRAME_AT, _FRAME_WIDTH, _ = places_of(Frame)[0]
@@ -109,6 +133,21 @@ def silent(talk, now_ns):
 
 
 @njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+def _turned(before, now, knobs):
+    """Whether any of so many knobs was turned, as `vbraille.devices.serial.panel.turned` says."""
+    if before == now:
+        return False
+    for knob in range(knobs):
+        old, new = (
+            (before >> (knob * _KNOB_BITS)) & KNOB_TOP,
+            (now >> (knob * _KNOB_BITS)) & KNOB_TOP,
+        )
+        if old != new and (abs(new - old) >= KNOB_STEP or new == 0 or new == KNOB_TOP):
+            return True
+    return False
+
+
+@njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 def take(received, size, now_ns, talk, work):
     """Take all STATEs that have come.
 
@@ -132,12 +171,14 @@ def take(received, size, now_ns, talk, work):
         again with what comes after it. SOMETHING_ELSE if these bytes, or their absence, are not
         for compiled code.
     states : int64
-        Number of STATEs in these bytes. Unless it is 0, ``device_ns`` and ``x_mm`` are a new pose.
+        Number of STATEs in these bytes. Unless it is 0, ``device_ns``, ``x_mm``, ``y_mm`` and
+        ``theta_rad`` are a new pose.
     """
     if stalled(talk, now_ns):
         return SOMETHING_ELSE, 0
     state_sequence, missed = talk.state_sequence, talk.missed
     count, device_us = talk.count, talk.device_us
+    y_count, theta_count = talk.y_count, talk.theta_count
     device_ns = talk.device_ns
     acknowledged = False
     states = 0
@@ -150,13 +191,18 @@ def take(received, size, now_ns, talk, work):
             begun += 1
             continue
         body_bytes = unframe(received, begun, end, work)
-        if body_bytes < _STATE_BYTES or work[0] != _STATE:
+        if body_bytes < talk.state_bytes or work[0] != talk.state_type:
             return SOMETHING_ELSE, 0
         flags = number(work, *_FLAGS)
         if flags & _UNSTEADY != 0 or (talk.must_be_placed != 0 and flags & PLACED == 0):
             return SOMETHING_ELSE, 0
-        if number(work, *_BUTTONS) != talk.buttons:
+        if number(work, *_BUTTONS) & talk.button_mask != talk.buttons:
             return SOMETHING_ELSE, 0
+        if talk.state_type == STATE2:
+            if _turned(talk.knobs, number(work, *_KNOBS), talk.knobs_fitted):
+                return SOMETHING_ELSE, 0
+            y_count = _unwrap(number(work, *_Y_COUNT), y_count, talk.count_bits)
+            theta_count = number(work, *_THETA_COUNT)
         sequence = _unwrap(number(work, *_SEQUENCE), state_sequence, _SEQUENCE_BITS)
         missed += max(sequence - state_sequence - 1, 0)
         state_sequence = number(work, *_SEQUENCE)
@@ -177,6 +223,14 @@ def take(received, size, now_ns, talk, work):
     talk.state_sequence, talk.missed = state_sequence, missed
     talk.count, talk.device_us, talk.device_ns = count, device_us, device_ns
     talk.x_mm = talk.home_mm + talk.mm_per_count * (count - talk.zero)
+    if talk.has_y != 0:
+        talk.y_count = y_count
+        talk.y_mm = talk.y_mm_per_count * (y_count - talk.y_zero)
+    if talk.counts_per_turn != 0:
+        talk.theta_count = theta_count
+        half = talk.counts_per_turn // 2
+        away = (theta_count - talk.straight + half) % talk.counts_per_turn - half
+        talk.theta_rad = talk.rad_per_count * away
     if acknowledged and talk.sent_ns != NEVER:
         talk.acknowledged_ns = now_ns - talk.sent_ns
         talk.sent_ns = NEVER
@@ -223,7 +277,6 @@ def make(deflections, now_ns, talk, actuators, out):
         step,
         actuators.swing,
         actuators.rest,
-        talk.top_level,
         talk.bits,
         actuators.packed,
     )

@@ -27,7 +27,7 @@ from vbraille.devices.wire.fields import (
     head_of,
     to_wire,
 )
-from vbraille.devices.wire.messages import MESSAGES, VERSION, Frame, Info
+from vbraille.devices.wire.messages import INFOS, MESSAGES, Frame, Info
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -127,14 +127,21 @@ class BodyCodec:
                 set_field(message, value)
             return message
         known = dict(zip(self._head, values, strict=True))
-        for name, field in self._rest:
-            known[name], at = field.unpack(body, at, known)
+        try:
+            for name, field in self._rest:
+                known[name], at = field.unpack(body, at, known)
+        except WrongLengthError:
+            # A number that cannot be, such as 200 rows, explains a length that cannot be.
+            for name, field in fields_of(self.message)[: len(self._head)]:
+                field.check(name, known[name], None)
+            raise
         return self.message(**known)
 
 
 _CODECS = {code: BodyCodec(code, message) for code, message in MESSAGES.items()}
-_CODEC_OF = {codec.message: codec for codec in _CODECS.values()}
-_INFO = _CODEC_OF[Info].code
+_INFO = next(code for code, message in MESSAGES.items() if message is Info)
+_INFOS = {version: BodyCodec(_INFO, message) for version, message in INFOS.items()}
+_CODEC_OF = {codec.message: codec for codec in (*_CODECS.values(), *_INFOS.values())}
 _FRAME = _CODEC_OF[Frame]
 
 
@@ -244,8 +251,10 @@ class Decoder:
         if codec is None:
             return Drop.UNKNOWN_TYPE
         body = body[:-CRC_BYTES]
-        if codec.code == _INFO and len(body) > 1 and body[1] != VERSION:
-            return OtherVersion(body[1])
+        if codec.code == _INFO and len(body) > 1:
+            codec = _INFOS.get(body[1])
+            if codec is None:
+                return OtherVersion(body[1])
         try:
             message = codec.decode(body)
             if self._levels is not None and isinstance(message, Frame):

@@ -18,7 +18,7 @@ from vbraille.devices.wire.fields import (
     ShortText,
 )
 
-VERSION: Final = 1
+VERSION: Final = 2
 
 # A device without a valid FRAME for so long begins a ramp to rest, which takes so long.
 WATCHDOG_MS: Final = 50
@@ -49,6 +49,13 @@ U32: Final = Number("I", 0, 0xFFFF_FFFF)
 MICROSECONDS: Final = Number("I", 0, 0xFFFF_FFFF, "µs")
 FORCE: Final = Number("h", -0x7FFF, 0x7FFF, "mN", none=-0x8000)
 PITCH: Final = Number("I", 50_000, 50_000_000, "nm")
+CONTACTOR: Final = Number("I", 0, 50_000_000, "nm")
+# Room for buttons and knobs in STATE; the position of a knob is a byte.
+MOST_BUTTONS: Final = 8
+MOST_KNOBS: Final = 4
+KNOB_TOP: Final = 0xFF
+# A knob that stands still may jitter by less than this, and is not told to have been turned.
+KNOB_STEP: Final = 3
 
 
 class RestSide(IntEnum):
@@ -71,6 +78,20 @@ class CountSign(IntEnum):
 
     RIGHTWARD = 1
     LEFTWARD = -1
+
+
+class TurnSign(IntEnum):
+    """Which way the array turns when its counts grow, as the reader sees it."""
+
+    ANTICLOCKWISE = 1
+    CLOCKWISE = -1
+
+
+class YCountSign(IntEnum):
+    """Which way the carriage goes when the counts of y grow: towards the reader, or away."""
+
+    TOWARDS = 1
+    AWAY = -1
 
 
 class ErrorCode(IntEnum):
@@ -105,14 +126,14 @@ class Rest(Message):
 
 @dataclass(frozen=True, slots=True)
 class Info(Message):
-    """Device: what it is. Row 0 is far from the reader, column 0 is the left one.
+    """Device of version 1: what it is. Row 0 is far from the reader, column 0 is the left one.
 
     A level of 0 is rest and `top_level` is full swing, or the other way round
     where `inverted` is 1. `left_stop_count` has no meaning where the encoder is
     incremental; a `largest_slew_per_s` of 0 is no limit.
     """
 
-    version: Annotated[int, Number("B", VERSION, VERSION)]
+    version: Annotated[int, Number("B", 1, 1)]
     rows: Annotated[int, Number("B", 1, 16)]
     columns: Annotated[int, Number("B", 1, 64)]
     column_pitch_nm: Annotated[int, PITCH]
@@ -135,8 +156,31 @@ class Info(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class Info2(Info):
+    """Device of version 2: what `Info` says, and axes, contactors, buttons and knobs.
+
+    A contactor of 0 × 0 is one whose size is not known, a `height_um` of 0 a carriage of one axis,
+    and `counts_per_turn` is 0 where no angle is measured. What belongs to an axis that is not there
+    has no meaning.
+    """
+
+    version: Annotated[int, Number("B", 2, 2)]
+    buttons: Annotated[int, Number("B", 0, MOST_BUTTONS)]
+    knobs: Annotated[int, Number("B", 0, MOST_KNOBS)]
+    contactor_width_nm: Annotated[int, CONTACTOR]
+    contactor_height_nm: Annotated[int, CONTACTOR]
+    height_um: Annotated[int, Number("I", 0, 10_000_000, "µm")]
+    y_counts_per_m: Annotated[int, Number("I", 0, 0xFFFF_FFFF, "1/m")]
+    y_count_sign: Annotated[YCountSign, OneOf("b", YCountSign)]
+    far_stop_count: Annotated[int, U32]
+    counts_per_turn: Annotated[int, U32]
+    turn_sign: Annotated[TurnSign, OneOf("b", TurnSign)]
+    straight_count: Annotated[int, U32]
+
+
+@dataclass(frozen=True, slots=True)
 class State(Message):
-    """Device: where its carriage is, and what else it feels; `rate_hz` times a second."""
+    """Device of version 1: where its carriage is, and what else it feels; `rate_hz` a second."""
 
     sequence: Annotated[int, U16]
     time_us: Annotated[int, MICROSECONDS]
@@ -168,6 +212,18 @@ class State(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class State2(State):
+    """Device of version 2: what `State` says, and y, θ and the knobs.
+
+    The knobs are a byte each, that of knob 1 the lowest.
+    """
+
+    y_count: Annotated[int, U32]
+    theta_count: Annotated[int, U32]
+    knobs: Annotated[int, U32]
+
+
+@dataclass(frozen=True, slots=True)
 class Watchdog(Message):
     """Device: how often its watchdog tripped, and how many frames it dropped, since it started."""
 
@@ -183,7 +239,8 @@ class Error(Message):
     text: Annotated[str, ShortText(fewest=0)]
 
 
-# Types from 0x80 on are a device's.
+# Types from 0x80 on are a device's. INFO has one type in all versions, and its version says which
+# it is: see `INFOS`.
 MESSAGES: Final[dict[int, type[Message]]] = {
     0x01: Hello,
     0x02: Frame,
@@ -192,4 +249,6 @@ MESSAGES: Final[dict[int, type[Message]]] = {
     0x82: State,
     0x83: Watchdog,
     0x84: Error,
+    0x85: State2,
 }
+INFOS: Final[dict[int, type[Info]]] = {1: Info, 2: Info2}

@@ -1,0 +1,99 @@
+"""Buttons and knobs of a device that speaks the wire protocol, from a script to what is felt."""
+
+import os
+import select
+import time
+from contextlib import contextmanager
+from threading import Event, Thread
+
+import numpy as np
+
+from tests.cli import program
+from vbraille.devices.wire.messages import Encoder
+from vbraille.render import STRESS2
+from vbraille.simulation.described import describe
+from vbraille.simulation.pty import Port
+from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.script import Controls, parse_script
+from vbraille.simulation.simulator import Simulator
+
+FADE_S = 0.1
+TOP = STRESS2.display.levels - 1
+# A knob that is turned in many steps, then jitters by one count, then is pressed a button beside.
+SCRIPT = "\n".join(
+    [
+        *(f"{3000 + 20 * step}ms knob 1 {0.5 - step / 100}" for step in range(31)),
+        *(f"{4200 + 10 * step}ms knob 1 {0.2 + step % 2 / 255}" for step in range(100)),
+        "5.5s press 2",
+        "5.7s release 2",
+    ]
+)
+SETTINGS = '[buttons]\n"knob 1" = "CONTRAST"\n"button 2" = "LEARN"\n'
+
+
+@contextmanager
+def kept_device(script):
+    """A controller whose hand goes into the line and stays there; its spec and its frames.
+
+    Each entry of the frames is how many there were, and the highest level in the last of them.
+    """
+    stay_s = np.arange(0, 60, 0.4)
+    hand = Recorded(stay_s, np.minimum(20.0 * stay_s, 20.0))
+    info = describe(STRESS2.display, Encoder.ABSOLUTE)
+    port, stopped, frames = Port(), Event(), []
+    simulator = Simulator(
+        info, hand, port, say=lambda _: None, controls=Controls(parse_script(script, "script"))
+    )
+    controller, receive = simulator.controller, simulator.controller.receive
+
+    def seen(chunk, now_us):
+        before, answer = controller.frames, receive(chunk, now_us)
+        if controller.frames > before:
+            frames.append((controller.frames, controller.levels.astype(int)))
+        return answer
+
+    controller.receive = seen
+    thread = Thread(target=simulator.run, args=(stopped.is_set,), daemon=True)
+    thread.start()
+    try:
+        yield f"serial:{port.path}", frames
+    finally:
+        stopped.set()
+        thread.join()
+        port.unplug()
+
+
+def said_until(process, enough):
+    """Lines that a process prints until one of them is the last that is waited for."""
+    lines, end_s = [], time.monotonic() + program.PATIENCE_S
+    while not any(map(enough, lines)):
+        assert time.monotonic() < end_s, lines
+        assert select.select([process.stdout], [], [], program.PATIENCE_S)[0], lines
+        lines.append(process.stdout.readline().rstrip("\n"))
+        assert process.poll() is None, lines
+    return lines
+
+
+def test_a_knob_turns_contrast_while_the_hand_stays_and_is_said_once(tmp_path, text):
+    settings = tmp_path / "settings.toml"
+    settings.write_text(SETTINGS)
+    environment = os.environ | {"VBRAILLE_SETTINGS": str(settings)}
+    with kept_device(SCRIPT) as (spec, frames):
+        arguments = ("read", text, "--device", spec, "--no-places", "--texture", "0")
+        with program.start(*arguments, env=environment, encoding="utf-8", bufsize=1) as process:
+            try:
+                lines = said_until(process, lambda line: line.startswith("learn: "))
+            finally:
+                process.terminate()
+                process.communicate()
+    assert [line for line in lines if line.startswith("contrast: ")] == ["contrast: 0.2"]
+    numbers = np.array([number for number, _ in frames])
+    levels = np.array([level for _, level in frames])
+    highest = levels.max(axis=1)
+    settled = highest[-1]
+    assert settled <= 0.2 * TOP + 2  # as it was turned
+    assert highest.max() > 2 * settled  # as it was before
+    # Faded: no more from frame to frame than a fade goes in a tick, the hand's own way apart.
+    still = np.flatnonzero(numbers > numbers[-1] - 3000)
+    steps = np.abs(np.diff(levels[still], axis=0)).max(axis=1)
+    assert (steps <= np.diff(numbers[still]) * TOP / (FADE_S * 1000) + 2).all()
