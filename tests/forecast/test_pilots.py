@@ -29,11 +29,46 @@ name = "T100"
 texture = 1.0
 """
 TWO = parse_protocol(TEXT, "two.toml")
+HEAD = TEXT.partition("[design]")[0]
+BY_THE_ANSWERS = f"""{HEAD}
+[design]
+kind = "choice"
+parameter = "dot_width_mm"
+values = [0.5, 3.0]
+string = "a"
+repeats = 2
+[procedure]
+kind = "quest"
+step = 0.5
+spread = [0.2, 0.5]
+"""
+IN_GROUPS = f"""{HEAD}
+[question]
+kind = "rating"
+ask = "How rough?"
+scale = "roughness"
+least = 1
+most = 5
+confidence = {{ least = 1, most = 3 }}
+[[factors]]
+name = "texture"
+levels = [{{ name = "flat", texture = 0.0 }}, {{ name = "rough", texture = 1.0 }}]
+[[factors]]
+name = "gap"
+between = true
+levels = [{{ name = "near", cell_gap_mm = 3.0 }}, {{ name = "far", cell_gap_mm = 4.0 }}]
+[design]
+kind = "list"
+strings = ["a"]
+repeats = 1
+blocks = 1
+"""
 
 
 def piloted(folder, **changed):
-    given = {"noise": 0.4, "skin": "strain", "seed": 3} | changed
-    return pilot(TWO, given.pop("participants", 2), folder, Workers(), **given)
+    given = {"noise": 0.4, "skin": "strain", "seed": 3, "workers": Workers()} | changed
+    protocol = given.pop("protocol", TWO)
+    return pilot(protocol, given.pop("participants", 2), folder, **given)
 
 
 def test_titles_and_rows_are_marked(tmp_path):
@@ -90,6 +125,19 @@ def test_a_pilot_that_was_ended_goes_on_and_is_the_same(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         piloted(tmp_path / "ended", told=stop)
     assert answers(piloted(tmp_path / "ended")) == whole
+
+
+@heavy
+@pytest.mark.parametrize("text", [BY_THE_ANSWERS, IN_GROUPS], ids=["by the answers", "in groups"])
+def test_two_workers_pilot_what_one_does(text, tmp_path):
+    pytest.importorskip("dask")
+    protocol = parse_protocol(text, "two.toml")
+    one, two = (piloted(tmp_path / f"{n}", protocol=protocol, workers=Workers(n)) for n in (1, 2))
+    tables = [path.relative_to(one) for path in one.rglob("*.csv")]
+    assert len(tables) > 2
+    assert [
+        str(path) for path in tables if (one / path).read_text() != (two / path).read_text()
+    ] == []
 
 
 @pytest.mark.parametrize(

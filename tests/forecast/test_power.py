@@ -82,7 +82,7 @@ def test_work_that_was_ended_goes_on(tmp_path):
     whole = power(QUESTION, ONE, keep=tmp_path / "kept")
     lines = (tmp_path / "kept").read_text().splitlines()
     assert len(lines) == 1 + 3
-    (tmp_path / "kept").write_text("\n".join([lines[0], lines[2], lines[3][:9]]))
+    (tmp_path / "kept").write_text("\n".join([lines[0], lines[2], "1", lines[3][:9]]))
     done = []
     again = power(QUESTION, ONE, keep=tmp_path / "kept", told=lambda *now: done.append(now))
     assert done == [(2, 3), (3, 3)]

@@ -13,8 +13,8 @@ as a share of it,
 
     V(s) = Σ_o p(o) (E[φ | o] - E[φ])² / var φ,    p(o) = Σ_θ post(θ) p[o, s, θ].            (2)
 
-Of simulated people who compare two values, the second comes 1 to 9 % nearer to what they like than
-the entropy of φ does (docs/measured.md).
+Of simulated people who compare two values, the second comes some per cent nearer to what they like
+than the entropy of φ does (docs/measured.md).
 
 Stimuli within 1e-9 of the best count as equally good, and the first of them is taken: so a
 last bit in which two machines differ changes no question.

@@ -54,7 +54,7 @@ class KeptResults:
         for line in lines:
             try:
                 number, found = json.loads(line)
-            except ValueError:  # the end of a line that was being written
+            except (ValueError, TypeError):  # the end of a line that was being written
                 continue
             self.found[number] = found
         if not text.endswith("\n"):

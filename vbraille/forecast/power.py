@@ -24,7 +24,7 @@ from vbraille.forecast.studies import (
 )
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.making import make_plan
-from vbraille.wording import count, setting
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -334,6 +334,7 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
     }
     correction = "" if len(plan.pairs) == 1 else f", p corrected by {plan.correction}"
     right = "chosen" if chosen else "right"
+    studied = "study" if studies == 1 else "studies"
     assumed = ", ".join(f"{name} {share:.1%} {right}" for name, share in shares.items())
     return (
         ("protocol", f"{protocol.name}, {many} {what} of each participant"),
@@ -344,6 +345,5 @@ def _about(question: PowerQuestion, plan: StudyPlan, studies: int) -> tuple[tupl
             f"by {plan.differing:g}",
         ),
         ("test", f"{tests[plan.test]}, two-sided at {plan.alpha:g}{correction}"),
-        ("simulated", f"{count(studies, 'study').replace('studys', 'studies')} of each size, seed "
-                      f"{question.seed}"),
-    )  # fmt: skip
+        ("simulated", f"{studies} {studied} of each size, seed {question.seed}"),
+    )

@@ -32,6 +32,7 @@ HOW_TO_GET_DISTRIBUTED = "pip install 'vbraille[cluster]' installs it"
 HOW_TO_GET_DASK = "pip install 'vbraille[sweeps]' installs it"
 _ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:[\w.-]+|\[[0-9a-fA-F:]+\]):[0-9]{1,5}")
 _PATIENCE_S = 10  # for a cluster to answer
+_WORKERS_S = 30  # for its first worker to be there
 # Turns of a worker: at each it waits until this process, on a busy machine, gives it more.
 _TURNS = 16
 _MOST_IN_TURN = 8  # tasks; what a worker has done is known at the end of its turn
@@ -217,6 +218,7 @@ def _on_cluster(
             ) from None
         try:
             futures = client.map(function, tasks, pure=False)
+            _await_workers(client, address)
             numbers = {future.key: number for number, future in enumerate(futures)}
             for future in as_completed(futures, loop=client.loop, raise_errors=False):
                 if future.status != "finished":
@@ -235,6 +237,16 @@ def _on_cluster(
             f"the cluster at {address} went away after {finished} of {count(len(tasks), 'task')}; "
             f"what is done is told, and with {setting('keep')} FILE the same command goes on there"
         )
+
+
+def _await_workers(client: Any, address: str) -> None:
+    """Wait until there is somebody who works; some clusters begin workers when there is work."""
+    try:
+        client.wait_for_workers(1, timeout=_WORKERS_S)
+    except TimeoutError:
+        raise VbrailleError(
+            f"the cluster at {address} has no workers; start some with: dask worker {address}"
+        ) from None
 
 
 def _error_of(future: Any) -> BaseException | None:
