@@ -1,4 +1,4 @@
-"""Files and directories that are written whole, or not at all.
+"""Files and directories that are written whole, or not at all, and where the settings are.
 
 What is being written stands under another name beside its own, which it gets once it is whole.
 Whatever ends the writing early, a signal or a full disk, leaves nothing of it behind.
@@ -10,6 +10,7 @@ import errno
 import os
 import shutil
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, VbrailleError
@@ -17,8 +18,10 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
     from typing import BinaryIO
+
+SETTINGS = "settings.toml"
+SETTINGS_VARIABLE = "VBRAILLE_SETTINGS"  # of the environment, with the path of the settings file
 
 
 @contextmanager
@@ -212,3 +215,13 @@ def _sync(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def settings_path(given: str | None = None) -> Path:
+    """Path of the settings file: an option's, the environment's, or the platform's."""
+    chosen = given or os.environ.get(SETTINGS_VARIABLE)
+    if chosen:
+        return Path(chosen).expanduser()
+    from platformdirs import user_config_path  # takes 20 ms to load
+
+    return user_config_path("vbraille") / SETTINGS

@@ -11,7 +11,7 @@ import os
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -87,6 +87,7 @@ class Recorder:
         first_line: int,
         source: str,
         sha256: str,
+        calibration: dict[str, Any] | None = None,
     ) -> None:
         """Write what was rendered, and how, as attributes."""
         self._file.attrs.update(
@@ -98,6 +99,7 @@ class Recorder:
             first_line=first_line,
             source=source,
             source_sha256=sha256,
+            calibration=json.dumps(calibration),
         )
 
     @property

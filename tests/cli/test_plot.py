@@ -63,3 +63,20 @@ def test_the_array_of_a_page_stands_with_its_left_column_where_it_is_told_to(cal
     assert left == [12.5] * 6
     drawn = call("plot", "page", text, "--at", "12.5")
     assert ", left column at 12.5 mm, " in drawn.out.splitlines()[0]
+
+
+def test_the_resolution_is_drawn_and_said(call, here):
+    said = call("plot", "resolution")
+    assert (said.code, said.err) == (0, "")
+    lines = said.out.splitlines()
+    assert lines[0].endswith(", vbraille-resolution.png")
+    assert "over the canvas of 220 × 150 mm: 23.6 to 45.2 µm" in lines
+    assert (here / "vbraille-resolution.png").exists()
+
+
+def test_the_resolution_is_of_no_display_and_no_text(call, text):
+    refused = call("plot", "resolution", "--model", "vbd")
+    assert refused.code == 2
+    assert "leave --model out" in refused.err
+    assert call("plot", "resolution", text).code == 2
+    assert call("plot", "resolution", "--csv").out.startswith("what,x_mm,y_mm,resolution_um,")

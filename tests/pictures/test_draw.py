@@ -37,7 +37,7 @@ def test_every_axis_is_labelled_with_its_unit(table):
     assert figure.get_suptitle() == table.title
     words = " ".join(texts(figure))
     assert "(mm)" in words
-    assert "full swing" in words
+    assert ("µm" if table.kind == "resolution" else "full swing") in words
     for axes in figure.axes:
         assert axes.get_xlabel() or figure.get_supxlabel()
     assert any(axes.get_ylabel() for axes in figure.axes) or figure.get_supylabel()
@@ -66,7 +66,9 @@ def test_profile_draws_a_panel_a_level():
 def test_mapping_draws_six_rows_a_method():
     figure = drawn(TABLES[1])
     panels = [axes for axes in figure.axes if axes.axison]
-    assert [axes.get_title() for axes in panels] == list(MAPPINGS)
+    assert [axes.get_title() for axes in panels] == [
+        n for n, each in MAPPINGS.items() if each.rows <= 6
+    ]
     for axes in panels:
         assert len(curves(axes)) == 6
         tops = [line.get_ydata().max() for line in curves(axes)]

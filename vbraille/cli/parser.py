@@ -121,6 +121,12 @@ DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
         reading.device_info,
         "vbraille device check serial:/dev/ttyACM0 --model stress2",
     ),
+    "calibrate": (
+        "Feel or look at each actuator in turn, and keep which are dead, weak or inverted, and "
+        "their gains; h says the keys.",
+        reading.device_calibrate,
+        "vbraille device calibrate serial:/dev/ttyACM0",
+    ),
 }
 SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "protocols": (

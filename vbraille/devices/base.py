@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from vbraille.devices.calibration import correction_for
 from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.devices.calibration import Calibration, Correction
     from vbraille.devices.events import Event
     from vbraille.devices.lent import Lent
     from vbraille.display import Display
@@ -88,6 +90,10 @@ class Device(ABC):
         None if it does not tell.
     particulars : Particulars or None
         What else the device says of itself.
+    serial_number : str
+        Number of this very device, which tells it from others of its name; empty if none is known.
+    calibration : Calibration or None
+        What `correct` was told last, and makes up for.
     """
 
     rested = 0
@@ -97,7 +103,10 @@ class Device(ABC):
     acknowledged_ns: int | None = None
     watchdog_trips: int | None = None
     particulars: Particulars | None = None
+    serial_number = ""
+    calibration: Calibration | None = None
     _closed = False
+    _correction: Correction | None = None
 
     @property
     @abstractmethod
@@ -155,6 +164,51 @@ class Device(ABC):
         """Counts of what went wrong, by name: frames not sent, samples missed, corrupt messages."""
         return {}
 
+    @property
+    def has_own_gains(self) -> bool:
+        """Whether the device itself makes up for actuators that differ, so that no host must."""
+        told = self.particulars
+        return told is not None and bool(told.disabled or told.inverted)
+
+    def correct(self, calibration: Calibration | None) -> None:
+        """Make up for what was found of the actuators, from the next frame on, without a jump.
+
+        What a frame asks for and what is recorded of it stays as it is: only what goes to the
+        actuators differs.
+
+        Parameters
+        ----------
+        calibration
+            What was found, for an array of this shape; None to send deflections as they are.
+
+        Raises
+        ------
+        DeviceError
+            If the driver has a ``write`` of its own, which corrects nothing.
+        """
+        if type(self).write is not Device.write:
+            raise DeviceError(
+                f"the driver of {self.display.name} has a write of its own, which no calibration "
+                f"reaches; tell whoever wrote it to have _send only"
+            )
+        if self._correction is None:
+            self._correction = correction_for(self._shape, self.display.rate_hz)
+        self._correction.aim(calibration)
+        self.calibration = calibration
+
+    def uncorrect(self) -> bool:
+        """Have inverted actuators go to where the device itself rests, by the next frames of rest.
+
+        Returns
+        -------
+        bool
+            Whether they are still on their way, and want another frame.
+        """
+        if self._correction is None:
+            return False
+        self._correction.leave()
+        return self._correction.moving
+
     def write(self, frame: NDArray[np.float64]) -> None:
         """Send a frame.
 
@@ -178,7 +232,8 @@ class Device(ABC):
             )
         if not _in_range(frame):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
-        self._send(frame)
+        correction = self._correction
+        self._send(frame if correction is None else correction.of(frame, self.rested))
 
     @cached_property
     def _shape(self) -> tuple[int, int]:

@@ -55,6 +55,8 @@ class BatchEngine:
         Record of the last tick polled.
     tally : Tally
         Counts of what was done so far.
+    calibration : None
+        What is made up for in the actuators: nothing.
     counts : dict[str, int]
         Counts of what went wrong with the device; always empty.
     lost : int
@@ -81,6 +83,7 @@ class BatchEngine:
         self.newest: np.void | None = None
         self.tally = Tally()
         self.counts: dict[str, int] = {}
+        self.calibration: None = None
         self.lost = 0
         self._clock = ManualClock()
         self.device = device

@@ -19,6 +19,7 @@ from vbraille.engine.ring import RingReader
 from vbraille.engine.spawning import spawn
 from vbraille.engine.tally import Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
+from vbraille.files import settings_path
 from vbraille.logs import kept
 
 if TYPE_CHECKING:
@@ -72,6 +73,9 @@ class Host:
         Counts of what went wrong with the device, by name; known after `close`.
     lost : int
         Number of ticks that were never polled, because the parent was away for too long.
+    calibration : dict or None
+        What is made up for in the device's actuators, as `Calibration.to_json` says it; known once
+        the device is open, and None if deflections are sent as they are.
     on_share : callable or None
         Function that is called, at each start, with a descriptor of the memory that is shared,
         which is closed after the call, and what decides its size; for others who watch.
@@ -89,6 +93,7 @@ class Host:
         self.newest: np.void | None = None
         self.counts: dict[str, int] = {}
         self.lost = 0
+        self.calibration: dict[str, Any] | None = None
         self.on_share: Callable[[int, shared.Extent], None] | None = None
         self._device = device
         self._wanted = wanted
@@ -173,6 +178,7 @@ class Host:
             wanted=asdict(self._wanted),
             fits=self._room is not None,
             log=kept(),
+            settings=str(settings_path().absolute()),
         )
         if self._room is not None:
             self._share()
@@ -357,6 +363,7 @@ class Host:
     def _take(self, answer: dict[str, Any]) -> None:
         if "opened" in answer:
             self._info = Display(**answer["opened"])
+            self.calibration = answer["calibration"]
         self._ready = self._ready or "ready" in answer
         if answer.get("event"):
             self._events.append(from_json(answer["event"]))

@@ -22,10 +22,12 @@ import time
 from contextlib import suppress
 from dataclasses import asdict, replace
 from io import FileIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.devices import opened_device
 from vbraille.devices.blame import TRACEBACK
+from vbraille.devices.calibrations import correct_by_kept
 from vbraille.devices.events import is_known, shortened, to_json
 from vbraille.devices.serial.notices import EVERY_NS, Notices
 from vbraille.display import Display
@@ -242,7 +244,8 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
     wanted = Display(**config["wanted"])
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
     with opened_device(config["device"], wanted, fits=config["fits"]) as device:
-        channel.say(opened=asdict(device.display))
+        corrected = correct_by_kept(Path(config["settings"]), device)
+        channel.say(opened=asdict(device.display), calibration=corrected and corrected.to_json())
         told = wait_for_line(orders, device, wanted.rate_hz)
         if not told:
             return  # the parent has gone, or given up

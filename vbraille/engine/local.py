@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
@@ -86,6 +86,12 @@ class LocalEngine:
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""
         self.loop.device.set_zero()
+
+    @property
+    def calibration(self) -> dict[str, Any] | None:
+        """What is made up for in the device's actuators, as `Calibration.to_json` says it."""
+        found = self.loop.device.calibration
+        return None if found is None else found.to_json()
 
     @property
     def counts(self) -> Mapping[str, int]:

@@ -308,4 +308,8 @@ class Loop:
             faded_ns += self._period_ns
             self.state.fade(faded_ns / self._fade_ns if faded_ns < self._fade_ns else 1.0)
             self.device.write(self.output)
+        while self.device.uncorrect():
+            self._deadline_ns = max(self._deadline_ns + self._period_ns, self.clock.now_ns())
+            self.clock.sleep_until_ns(self._deadline_ns)
+            self.device.write(self.output)
         self.state.want(None, 0)

@@ -23,7 +23,7 @@ class FigureTable:
     Parameters
     ----------
     kind
-        Which picture it is: profile, mapping, wave, strain or page.
+        Which picture it is: profile, mapping, wave, strain, page or resolution.
     title
         What the picture shows, in a line.
     columns

@@ -22,10 +22,10 @@ from vbraille.sessions.running.answers import (
     ScriptedAnswers,
     Typed,
     parse_answers,
-    seed_of,
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.sessions.running.markerports import parse_markers
+from vbraille.sessions.simulated.reader import seed_of
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting

@@ -1,22 +1,19 @@
-"""Settings as a value, and where their file is."""
+"""Settings as a value."""
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from vbraille.render import Model
 
     Values = dict[str, float | int | str]
 
-FILE = "settings.toml"
-ENVIRONMENT = "VBRAILLE_SETTINGS"  # variable with the path of the file
 DEFAULT_PROFILE = "default"
 
 
@@ -60,16 +57,6 @@ class Settings:
     def tuning(self, profile: str, model: Model) -> Values:
         """Values of a profile for a display; none if it has none."""
         return dict(self.profiles.get(profile, {}).get(display_name(model), {}))
-
-
-def settings_path(given: str | None = None) -> Path:
-    """Path of the settings file: an option's, the environment's, or the platform's."""
-    chosen = given or os.environ.get(ENVIRONMENT)
-    if chosen:
-        return Path(chosen).expanduser()
-    from platformdirs import user_config_path  # takes 20 ms to load
-
-    return user_config_path("vbraille") / FILE
 
 
 def display_name(model: Model) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from vbraille.settings.chosen import Settings, settings_path
+from vbraille.files import settings_path
+from vbraille.settings.chosen import Settings
 
 
 def load_settings(given: str | None = None) -> Settings:

@@ -159,7 +159,7 @@ def conversation(**changes):
     talk.state_sequence, talk.sequence, talk.device_us = 10, 7, 5_000
     talk.count_bits, talk.mm_per_count = 24, 0.005
     talk.slew_per_ns, talk.period_ns = math.inf, 1e6
-    talk.top_level, talk.bits, talk.idle_ns = 1023, 10, IDLE_MS * NS_PER_MS
+    talk.bits, talk.idle_ns = 10, IDLE_MS * NS_PER_MS
     talk.state_type, talk.state_bytes = steady.STATE2, steady.STATE2_BYTES
     talk.button_mask, talk.knobs_fitted, talk.knobs = 0xFF, 3, 0x80_8080
     for name, value in changes.items():

@@ -19,7 +19,7 @@ def fill(deflections, top, *, gain=255, inverted=0, last=None, step=math.inf):
     swing = np.broadcast_to(np.asarray(gain) / 255 * top, shape).copy()
     rest = np.broadcast_to(np.asarray(inverted) * top, shape).astype(np.int64)
     last = np.zeros(shape) if last is None else last
-    felt = packing.fill(deflections, last, wanted, step, swing, rest, top, levels.bits, out)
+    felt = packing.fill(deflections, last, wanted, step, swing, rest, levels.bits, out)
     return levels.unpack(out.tobytes()).reshape(shape), wanted, felt, out.tobytes()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from vbraille.cli.commands.calibrate import calibrate, say_calibration
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices import opened_device
@@ -12,6 +13,7 @@ from vbraille.engine.checking import check
 from vbraille.engine.checkup import warm_up
 from vbraille.engine.clock import RealClock
 from vbraille.engine.realtime import go_real_time
+from vbraille.files import settings_path
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:
@@ -26,12 +28,15 @@ def run(arguments: argparse.Namespace) -> int:
     """List, describe or check."""
     if arguments.action == "list":
         return _list()
+    if arguments.action == "calibrate":
+        return calibrate(arguments, _wanted(arguments))
     if arguments.action == "check":
         with EAR.at_once():
             warm_up(_wanted(arguments) or MODELS["stress2"].display)
     with opened_device(arguments.spec, _wanted(arguments)) as device:
         _describe(device)
         if arguments.action == "info":
+            say_calibration(device, settings_path())
             return 0
         try:
             return _check(device)

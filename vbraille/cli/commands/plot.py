@@ -44,6 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     path = Path(arguments.out) if arguments.out is not None else _new_name(arguments.kind)
     draw.save(draw.draw(table), path)
     print(f"drawn: {table.title}, {path}")
+    if arguments.kind == "resolution":
+        print("\n".join(pictures.resolution_words()))
     if arguments.kind == "page":
         drawn = np.unique(table["line"]).size
         chosen = "" if arguments.lines[1] else "; --lines chooses others"
@@ -60,6 +62,10 @@ def _new_name(kind: str) -> Path:
 
 
 def _table(arguments: argparse.Namespace) -> FigureTable:
+    if arguments.kind == "resolution":
+        if arguments.model is not None:
+            raise InputError("the resolution is of the Tactograph's arms; leave --model out")
+        return pictures.resolution()
     settle(arguments, TRANSLATION)
     if arguments.model is None:
         arguments.model = "vbd" if arguments.kind in ("wave", "strain") else "stress2"
@@ -77,8 +83,8 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
             return pictures.strain(style.geometry, style.tuning)
         case "mapping":
             if model is VBD:
-                raise InputError("the VBD has one row; the mappings are of stress2")
-            return pictures.mapping(style, **_letter(arguments))
+                raise InputError("the VBD has one row; the mappings are of displays of several")
+            return pictures.mapping(style, **_letter(arguments), model=model)
     if not math.isfinite(arguments.at):
         raise InputError(f"--at is {arguments.at}; it must be a number of mm")
     page = lay_out(arguments, build_book(arguments), shown)

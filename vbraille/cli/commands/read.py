@@ -8,14 +8,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.build import build_lengths, build_show, lay_out, note_unseen_dots
+from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
-from vbraille.devices.registry import check_actuators, check_travel
+from vbraille.devices.registry import check_actuators, check_height, check_travel
 from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
@@ -69,7 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
     parse_hand(hand, seed, pointed=arguments.monitor)
     # Display that the options ask for: a simulated device is like it, a real device is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
-    wanted = asked.on(asked.style.geometry, rate_hz)
+    wanted = build_page(arguments, replace(asked, display=asked.on(asked.style.geometry, rate_hz)))
+    wanted = wanted.display
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     if (note := compiling_note()) is not None:
@@ -108,7 +109,8 @@ def run(arguments: argparse.Namespace) -> int:
             model = build_show(arguments, opened.tuned(own))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
-            model = build_lengths(arguments, model, display.travel_mm)
+            check_height(display, arguments.height)
+            model = build_page(arguments, build_lengths(arguments, model, display.travel_mm))
             page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
             device.start(page.model)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from vbraille.cli.build import build_lengths, build_show
 from vbraille.cli.settled import chosen_profile
 from vbraille.cli.terminal import say_line
+from vbraille.files import settings_path
 from vbraille.render import MODELS
 from vbraille.render.braille.knobs import KNOBS
 from vbraille.settings.applying import with_profile
-from vbraille.settings.chosen import settings_path
 from vbraille.settings.loading import load_settings
 from vbraille.settings.origins import USUAL, said, say_bindings, say_settings, say_tuning
 

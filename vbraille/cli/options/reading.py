@@ -11,7 +11,7 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-PLOTS = ("profile", "mapping", "wave", "strain", "page")
+PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
 
 
 def nothing(_parser: ArgumentParser) -> None:
@@ -96,6 +96,7 @@ def _reading(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--verbose", action="store_true", help="Say more, such as how far a search has come."
     )
+    groups.page(parser)
     groups.hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
@@ -179,13 +180,7 @@ def render(parser: ArgumentParser) -> None:
     groups.show(parser)
     groups.hand(parser)
     parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
-    parser.add_argument(
-        "--height",
-        type=number,
-        metavar="MM",
-        help="Let the carriage go so far down the page, too: the hand reads pages of lines "
-        "(default: it goes along a line only).",
-    )
+    groups.page(parser)
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
@@ -202,7 +197,8 @@ def plot(parser: ArgumentParser) -> None:
         metavar="KIND",
         help="Choose the picture: profile (how far an actuator leans along a dot), mapping (which "
         "row of actuators shows which row of dots), wave (the actuators as the array passes a "
-        "dot), strain (between neighbouring actuators) or page (lines with the array on one).",
+        "dot), strain (between neighbouring actuators), page (lines with the array on one) or "
+        "resolution (how finely the arms of the Tactograph measure, over its tray).",
     )
     groups.text(parser, optional=True)
     groups.show(parser)
@@ -228,10 +224,18 @@ def plot(parser: ArgumentParser) -> None:
 def simulate(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille simulate``."""
     parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("serial", "latero"),
+        default="serial",
+        help="Be a device at a serial port, or a Latero on the network (default: serial).",
+    )
+    parser.add_argument(
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Be this display: the STReSS² or the VBD (default: stress2).",
+        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, or the VBD "
+        "(default: stress2).",
     )
     groups.hand(parser)
     parser.set_defaults(rate=1000)
@@ -319,11 +323,55 @@ def simulate(parser: ArgumentParser) -> None:
         help="Be built wrong in this way, which vbraille device check finds (default: none).",
     )
 
+    simulate_latero(parser)
+
+
+def simulate_latero(parser: ArgumentParser) -> None:
+    """Add the options that only a simulated Latero has."""
+    latero = parser.add_argument_group("a Latero's own options")
+    latero.add_argument(
+        "--port",
+        type=whole,
+        metavar="N",
+        help="Listen at this UDP port, 0 for any that is free (default: 8900).",
+    )
+    latero.add_argument(
+        "--lines",
+        type=whole,
+        metavar="N",
+        help="Have the hand read so many lines of a page, 10 mm apart (default: 1).",
+    )
+    latero.add_argument(
+        "--wait",
+        type=duration,
+        metavar="DURATION",
+        help="Have the hand wait so long at the lower left when a program comes, such as 5s "
+        "(default: 1s).",
+    )
+    for name, text in (
+        ("late", "Send this share of the answers 20 ms late"),
+        ("double", "Have this share of the datagrams come twice, both ways"),
+        ("foreign", "Send somebody else's datagram along with this share of the answers"),
+    ):
+        latero.add_argument(f"--{name}", type=number, metavar="0…1", help=f"{text} (default: 0).")
+
 
 def device_info(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille device info`` and ``check``."""
     parser.add_argument("spec", metavar="SPEC", help=f"{SPEC}.")
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
+
+
+def device_calibrate(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille device calibrate``."""
+    device_info(parser)
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument(
+        "--show", action="store_true", help="Print what is kept of the device's actuators only."
+    )
+    chosen.add_argument(
+        "--forget", action="store_true", help="Remove what is kept of the device's actuators."
+    )
 
 
 def tables(parser: ArgumentParser) -> None:

@@ -105,7 +105,7 @@ class Lending:
         talk["idle_ns"] = IDLE_MS * _NS_PER_MS
         talk["moved_ns"], talk["period_ns"] = drive.last_ns, drive.period_ns
         talk["slew_per_ns"] = drive.slew_per_ns if drive.limited else math.inf
-        talk["top_level"], talk["bits"] = drive.top_level, drive.bits
+        talk["bits"] = drive.bits
         self.received[: len(begun)] = np.frombuffer(begun, np.uint8)
         return len(begun)
 

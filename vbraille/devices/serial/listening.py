@@ -49,6 +49,7 @@ from vbraille.pose import Pose
 
 if TYPE_CHECKING:
     from vbraille.devices.base import Particulars
+    from vbraille.devices.calibration import Calibration
     from vbraille.devices.events import Event
     from vbraille.devices.wire.codec import Heard
     from vbraille.display import Display
@@ -160,6 +161,7 @@ class Listening:
         self.panel = Panel()
         self.time = DeviceTime()
         self._rate_hz = rate_hz
+        self._calibration: Calibration | None = None
         self._notices = Notices()
         self._placing = Placing.DONE
         self._away = False  # from an event that says so to one that it is back
@@ -183,6 +185,11 @@ class Listening:
                 self.decoder.bad_info = ""
         self._pass(now_ns)
         return pose
+
+    def correct(self, calibration: Calibration | None) -> None:
+        """Make up for what was found of the actuators, now and whenever the device is back."""
+        self._calibration = calibration
+        self.drive.correct(calibration)
 
     def _go(self, cause: Cause) -> bool:
         """Go to the stage that a cause leads to; tell whether it leads to one from here."""
@@ -322,6 +329,7 @@ class Listening:
             self._placing = self.place.placing
         self._mind_placing(now_ns)
         self.drive = Drive(info, now_ns, self._rate_hz or float(self.display.rate_hz))
+        self.drive.correct(self._calibration)
         self._rest_frame = np.zeros((info.rows, info.columns))
 
     def _turn_away(self, stranger: Stranger, now_ns: int) -> None:

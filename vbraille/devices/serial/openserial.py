@@ -61,7 +61,10 @@ def open_serial(
     DeviceError
         If the port cannot be opened, or no device that speaks our protocol answers.
     """
-    return begin(SerialPort(parse_address(address), look_s=look_s), wanted, now_ns, pause)
+    port = SerialPort(parse_address(address), look_s=look_s)
+    device = begin(port, wanted, now_ns, pause)
+    device.serial_number = port.serial_number
+    return device
 
 
 def begin(

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.devices.calibration import Calibration
     from vbraille.devices.events import Event
     from vbraille.devices.serial.conversation import Conversation
     from vbraille.devices.serial.serialport import SerialPort
@@ -82,6 +83,20 @@ class SerialDevice(Device):
         """Display that the device described first."""
         return self._display
 
+    @property
+    def has_own_gains(self) -> bool:
+        """Whether the device's INFO says that its actuators differ."""
+        return self.conversation.drive.has_own_gains
+
+    def correct(self, calibration: Calibration | None) -> None:
+        """Make up for what was found of the actuators, where INFO says nothing of it."""
+        self.conversation.correct(calibration)
+        self.calibration = None if self.has_own_gains else calibration
+
+    def uncorrect(self) -> bool:
+        """Do nothing: told to rest, the device takes its actuators to its own rest by a ramp."""
+        return False
+
     def rest(self) -> None:
         """Tell the device to rest: it ramps there, where a FRAME of rest would be a jump."""
         self.conversation.rest(self._now_ns())
@@ -141,7 +156,7 @@ class SerialDevice(Device):
     def lend(self) -> Lent | None:
         """What the engine needs to do steady ticks by itself; None if the line does not suit."""
         descriptor = self.port.bare_descriptor
-        if descriptor is None or self._left_over:
+        if descriptor is None or self._left_over or not self.conversation.drive.settled:
             return None
         begun = self._lending.lend(self.conversation)
         if begun is None:

@@ -68,6 +68,11 @@ class SerialPort:
         self._line = open_line(address)
 
     @property
+    def serial_number(self) -> str:
+        """Serial number of the device on USB; empty if none is known."""
+        return "" if self._identity is None else self._identity.serial_number
+
+    @property
     def lost(self) -> int:
         """Number of frames that were taken and then did not go out."""
         return self._lost_before + self._line.lost

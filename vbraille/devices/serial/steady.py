@@ -80,7 +80,6 @@ CONVERSATION = np.dtype(
         ("moved_ns", "<i8"),  # since when the actuators are on their way to the last
         ("slew_per_ns", "<f8"),  # fastest of an actuator, in swings; infinite for no limit
         ("period_ns", "<f8"),  # of the host's FRAMEs
-        ("top_level", "<i8"),
         ("bits", "<i8"),  # of a level
     ],
     align=True,
@@ -278,7 +277,6 @@ def make(deflections, now_ns, talk, actuators, out):
         step,
         actuators.swing,
         actuators.rest,
-        talk.top_level,
         talk.bits,
         actuators.packed,
     )

@@ -11,7 +11,7 @@ from vbraille.caching import keep_compiled
 
 
 @njit(cache=keep_compiled(), error_model="numpy")
-def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
+def fill(deflections, last, wanted, step, swing, rest, bits, out):
     """Fill in the packed levels of a FRAME; tell whether there is anything to feel in it.
 
     Parameters
@@ -24,9 +24,10 @@ def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
     swing : float64[rows, columns]
         Number of levels in a full swing, before it is inverted.
     rest : int64[rows, columns]
-        Level at rest: 0, or ``top`` where the actuator is inverted.
-    top, bits : int64
-        Highest level, and the number of bits in a level.
+        Level at rest: 0, or above it where the actuator is inverted, whose levels count down from
+        there; no less than its swing.
+    bits : int64
+        Number of bits in a level.
     out : uint8[bytes]
         Packed levels, most significant bit first.
     """
@@ -43,7 +44,7 @@ def fill(deflections, last, wanted, step, swing, rest, top, bits, out):
             felt = felt or place > 0.0
             level = int(np.rint(place * swing[row, column]))
             if rest[row, column] > 0:
-                level = top - level
+                level = rest[row, column] - level
             held = (held << bits) | level
             count += bits
             while count >= 8:

@@ -171,6 +171,12 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     monitor
         What the live view shows: whether it is `blind`, the `host` at which it is served, and
         whether its `pointer` may be the hand; left out without a live view. From format 5 on.
+    calibration
+        What was made up for in the device's actuators, after the frame that the trace keeps:
+        `scale`, by which each deflection was multiplied (below 0: the actuator is inverted, and
+        sent 1 more), which are `dead` and which `weak`, by row and column from 0, and how many of
+        the `actuators` were `tried`; left out if deflections were sent as they are. From format 6
+        on.
     """
 
     durable: ClassVar[bool] = True
@@ -192,6 +198,7 @@ class Run(JournalEvent, frozen=True, kw_only=True):
     torn_bytes: int = 0
     torn_file: dict[str, Any] = {}
     monitor: LiveView | None = None
+    calibration: dict[str, Any] | None = None
 
 
 class Presented(WithStimulus, frozen=True, kw_only=True):
@@ -248,7 +255,7 @@ class Ended(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     by
-        Which key it was: "button:N" of the device, or "key:enter".
+        Which key it was: "button:N" of the device, or "key:NAME".
     time_ns
         Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
     """
@@ -281,7 +288,7 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence_s
         Seconds from the answer to its confidence, with which it was written. From format 5 on.
     ended_by
-        What ended reading: "button:N", "key:enter", or "answer" if the answer came before the
+        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
         participant's key; left out if the protocol has no such key. From format 5 on.
     """
 

@@ -85,7 +85,7 @@ COLUMNS = {
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the participant's key, or to the answer where there "
     "was none, pauses left out",
-    "ended_by": "what ended reading: button:N, key:enter, or answer if the answer came before the "
+    "ended_by": "what ended reading: button:N, key:NAME, or answer if the answer came before the "
     "participant's key; empty if the protocol has no such key",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
@@ -97,6 +97,12 @@ COLUMNS = {
     "cue_time": "wall clock at the start signal, UTC",
     "answer_time": "wall clock at the answer, UTC",
     "trace": "file of the trace of the last attempt",
+}
+
+# Columns of protocols whose strings are texts.
+WRITTEN = {
+    "table": "braille table that made the cells of the text",
+    "text": "text that the cells asked for stand for; empty for a blank catch trial",
 }
 
 
@@ -292,10 +298,12 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
     for name, level in protocol.levels(trial.condition).items():
         cells[f"factor_{name}"] = level
     if protocol.item_columns:
-        own = protocol.told(trial.stimuli[0].masks[slice(*trial.asked)])
+        own = protocol.told(trial.item)
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch
+    if protocol.written:
+        cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("table", "text")}
     return cells
 
 
@@ -311,6 +319,8 @@ def describe_design(protocol: Protocol) -> dict[str, str]:
         told[f"item_{name}"] = f"column {name} of the protocol's file of items"
     if protocol.design.catch is not None:
         told["catch"] = "blank or repeat for a trial that only keeps watch; else empty"
+    if protocol.written:
+        told |= WRITTEN
     return told
 
 

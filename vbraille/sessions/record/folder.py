@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.journal import JournalContents, Tie
 
-FORMAT = 5
+FORMAT = 6
 _CENTRED_FROM = 3  # the first format whose traces have places of the array's centre
 SHOWN_FROM = 4  # the first format whose journal has what was shown
 WATCHED_FROM = 5  # the first format whose journal has who may have watched

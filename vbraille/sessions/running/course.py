@@ -160,7 +160,11 @@ class Course:
         self._watched = {"monitor": started["monitor"]} if "monitor" in started else {}
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
-            started |= {"trace": trace, "device": asdict(display.engine.display)}
+            started |= {
+                "trace": trace,
+                "device": asdict(display.engine.display),
+                "calibration": display.engine.calibration,
+            }
             while not display.now_ns:  # the session runs by the device's clock, which has to start
                 display.poll()
                 self.sleep()
@@ -246,10 +250,18 @@ class Course:
             told = self.progress.told(trial)
             self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
 
+    @property
+    def reading(self) -> bool:
+        """Whether a stimulus is read, so that the participant's key may end it."""
+        display = self.display
+        if self.open_trial is None or display is None or display.ended:
+            return False
+        return not (self.paused or self.half or self.ended_by)
+
     def end_reading(self, by: str, **when: int) -> None:
         """Take the participant's key, which ends reading of the stimulus that is shown."""
         trial, display = self.open_trial, self.display
-        if trial is None or display is None or self.paused or self.half or self.ended_by:
+        if trial is None or display is None or not self.reading:
             return
         self.book.log(
             events.Ended, trial, attempt=self._attempt, stimulus=self._stimulus, by=by, **when

@@ -64,6 +64,11 @@ class RunEngine(Engine, Protocol):
         """How often each thing went wrong with the device, by name; known after `close`."""
         ...
 
+    @property
+    def calibration(self) -> dict[str, Any] | None:
+        """What is made up for in the device's actuators; known once the device is open."""
+        ...
+
     def start(self) -> None:
         """Open the device, and begin to drive it."""
         ...
@@ -186,6 +191,11 @@ class OnDevice:
     def read(self) -> bool:
         """Whether the hand has gone to the end of the stimulus and back."""
         return self._read
+
+    @property
+    def ended(self) -> bool:
+        """Whether the participant's key has ended the reading of this stimulus."""
+        return self._ended
 
     @property
     def reached(self) -> bool:

@@ -1,0 +1,77 @@
+"""Carriers by name: how far each goes, how finely it measures, and a display that stands on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+from vbraille.carriers import latero, tactograph
+
+if TYPE_CHECKING:
+    from vbraille.display import Display
+
+
+@dataclass(frozen=True, slots=True)
+class Carrier:
+    """What a display stands on, and what that measures.
+
+    Parameters
+    ----------
+    name, title
+        Name in options, and in sentences.
+    travel_mm, height_mm
+        How far the array's centre goes along x and along y.
+    turns
+        Whether it measures which way the array is turned.
+    counts_per_mm
+        Resolution where it is worst, in counts a mm; the places between are measured more finely.
+    """
+
+    name: str
+    title: str
+    travel_mm: float
+    height_mm: float
+    turns: bool
+    counts_per_mm: float
+
+    def under(self, display: Display) -> Display:
+        """Make the display that an array is when it stands on this carrier."""
+        return replace(
+            display,
+            name=f"{display.name} on the {self.title}",
+            travel_mm=self.travel_mm,
+            height_mm=self.height_mm,
+            turns=self.turns,
+            counts_per_mm=self.counts_per_mm,
+        )
+
+
+# Lévesque 2009, ch. 7: at worst 45.2 µm.
+TACTOGRAPH: Final = Carrier(
+    "tactograph",
+    "Tactograph",
+    tactograph.WIDTH_MM,
+    tactograph.HEIGHT_MM,
+    turns=True,
+    counts_per_mm=1 / 0.0452,
+)
+# Lévesque 2009, 5.2 and 6.2: a canvas of 11.3 × 6.0 cm, measured to "better than 13 µm"; the reader
+# keeps the array upright, and nothing measures it: θ = 0. Its five arms are not in the source.
+PANTOGRAPH: Final = Carrier(
+    "pantograph",
+    "Pantograph",
+    113.0,
+    60.0,
+    turns=False,
+    counts_per_mm=1 / 0.013,
+)
+# A count too many or too few in each of its three joints moves the array by 76.5 µm at worst.
+LATERO: Final = Carrier(
+    "latero",
+    "Latero",
+    latero.WIDTH_MM,
+    latero.HEIGHT_MM,
+    turns=True,
+    counts_per_mm=1 / 0.0766,
+)
+CARRIERS: Final = {carrier.name: carrier for carrier in (TACTOGRAPH, PANTOGRAPH, LATERO)}

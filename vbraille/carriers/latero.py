@@ -1,0 +1,108 @@
+"""The Latero's carrier: three arms whose encoders tell where its array is.
+
+Lengths, offsets and signs are those of the author's own client of the Latero; Lévesque 2009 does
+not know the device. The first joint is behind the tray, near its right edge. In the frame of the
+arms x grows to the reader's left and y towards the reader. On the tray x grows to the right, and
+the origin is where the array's centre is when the disc under it touches the left and the far edge.
+Angles grow against the clock as the reader sees it, in both.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from vbraille.carriers.planar import Arms, ThreeArms
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+ARMS: Final = ThreeArms(Arms(222.3, 245.6), 62.7)
+COUNTS_A_TURN: Final = 65_536
+# The tray, and the disc under the array, whose edge cannot leave it.
+TRAY_MM: Final = (381.0, 317.5)
+DISC_MM: Final = 100.0
+# How far the array's centre goes: 281 × 217.5 mm.
+WIDTH_MM: Final = TRAY_MM[0] - DISC_MM
+HEIGHT_MM: Final = TRAY_MM[1] - DISC_MM
+# Place of the first joint in the tray's frame: 11.1 mm left of its right edge, 61.2 mm behind it.
+ROOT_X_MM: Final = TRAY_MM[0] - 11.1 - DISC_MM / 2
+ROOT_Y_MM: Final = -61.2 - DISC_MM / 2
+# Where the array is put when the encoders are reset: the lower left corner, not turned, so that
+# the third arm points straight at the reader.
+RESET: Final = (0.0, HEIGHT_MM, 0.0)
+_RAD_A_COUNT: Final = 2 * math.pi / COUNTS_A_TURN
+_HALF, _WHOLE = 1 << 31, 1 << 32  # the encoders count modulo 2³²
+
+
+def pose_at(first: float, second: float, third: float) -> tuple[float, float, float]:
+    """Where the array is at three joint angles, counted from the root, in radians.
+
+    Returns
+    -------
+    x_mm, y_mm, theta_rad
+        Centre of the array on the tray, from 0 to `WIDTH_MM` and 0 to `HEIGHT_MM` if it lies flat
+        on it, and how far it is turned against the clock.
+    """
+    x_mm, y_mm, whole_rad = ARMS.forward(first, second, third)
+    return ROOT_X_MM - x_mm, y_mm + ROOT_Y_MM, whole_rad - math.pi / 2
+
+
+def joints_at(x_mm: float, y_mm: float, theta_rad: float = 0.0) -> tuple[float, float, float]:
+    """Three joint angles, from the root, in radians, at which the array is there: undo `pose_at`.
+
+    Raises
+    ------
+    InputError
+        If the arms do not reach there, turned as asked; unturned they reach every place.
+    """
+    return ARMS.inverse(ROOT_X_MM - x_mm, y_mm - ROOT_Y_MM, theta_rad + math.pi / 2)
+
+
+RESET_JOINTS: Final = joints_at(*RESET)
+
+
+def offsets_at(encoders: Sequence[int]) -> tuple[int, int, int]:
+    """Counts of the encoders at angle 0 of their joints, if the array now stands at `RESET`.
+
+    Parameters
+    ----------
+    encoders
+        Counts of the first three encoders in the device's order, which is from the array to the
+        root: encoder 2 is on joint 0. Further ones are not looked at.
+
+    Returns
+    -------
+    tuple of three int
+        In the same order, cut to whole counts as the author's client does.
+    """
+    third, second, first = (
+        int(count + joint / _RAD_A_COUNT)
+        for count, joint in zip(encoders[:3], reversed(RESET_JOINTS), strict=True)
+    )
+    return third, second, first
+
+
+def joints_of(encoders: Sequence[int], offsets: Sequence[int]) -> tuple[float, float, float]:
+    """Three joint angles, from the root, in radians, from the first three encoders' counts.
+
+    They count against the angle. A count that has passed 2³² since the reset is no turn.
+    """
+    return (
+        _angle(encoders[2] - offsets[2]),
+        _angle(encoders[1] - offsets[1]),
+        _angle(encoders[0] - offsets[0]),
+    )
+
+
+def encoders_of(joints: Sequence[float], offsets: Sequence[int]) -> tuple[int, int, int]:
+    """Counts of the three encoders, 0 … 2³² - 1, in the device's order, at three joint angles."""
+    third, second, first = (
+        (offset - round(joint / _RAD_A_COUNT)) % _WHOLE
+        for offset, joint in zip(offsets, reversed(joints), strict=True)
+    )
+    return third, second, first
+
+
+def _angle(counts: int) -> float:
+    return -((counts + _HALF) % _WHOLE - _HALF) * _RAD_A_COUNT
