@@ -293,3 +293,18 @@ def test_device_list_and_a_simulated_device_without_a_model(call):
     done = call("device", "info", "sim")
     assert done.code == 2
     assert "--model" in done.err
+
+
+@heavy  # the same of one axis is tested in every run
+def test_a_device_of_two_axes_is_shown_its_corner(tmp_path, text):
+    options = ("--encoder", "incremental", "--axes", "xyθ", "--height", "60")
+    with (
+        simulated(tmp_path, *options) as (spec, _),
+        Terminal("read", text, "--device", spec, "--echo", "text") as terminal,
+    ):
+        terminal.until("place: move to the far left corner, with the array straight, then press")
+        terminal.type("x")
+        terminal.until("place: known")
+        terminal.until("line: 1")
+        terminal.type("q")
+        assert terminal.end() == 0
