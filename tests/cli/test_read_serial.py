@@ -241,12 +241,17 @@ def test_device_info(call, tmp_path):
             "levels: 1024",
             "rest side: left",
             "travel: 300 mm",
+            "axes: along the line",
             "encoder: 200 counts a mm, absolute",
             "rate: 1000 Hz",
+            "protocol: serial, version 2",
+            "buttons: 8",
+            "knobs: 4",
             f"firmware: {__version__}",
             "slew: without a limit",
             "disabled actuators: none",
             "inverted actuators: none",
+            "calibration: none; vbraille device calibrate makes one",
         ]
         assert call("device", "info", spec, "--model", "stress2").code == 2
 
