@@ -89,6 +89,7 @@ def head_of(
     """
     display = protocol.model.display
     group = {"group": plan.group} if plan.group else {}
+    also = {} if conditions.also is None else {"also": conditions.also}
     return {
         "format": FORMAT,
         "protocol": protocol.name,
@@ -109,5 +110,6 @@ def head_of(
         "answers": conditions.answers,
         "fast": conditions.fast,
         "rate_hz": conditions.rate_hz,
+        **also,
         "versions": versions() | (made_by() if protocol.written else {}),
     }

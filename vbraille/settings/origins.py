@@ -28,6 +28,7 @@ USUAL = {
     "echo": "none at a terminal, otherwise both",
     "speech": "no",
     "cues": "none",
+    "also": "none",
     "verbose": "no",
     "straying": "line",
     "band": f"{BAND:g}",

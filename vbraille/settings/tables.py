@@ -26,6 +26,8 @@ class ReadTable(Table, frozen=True):
     straying, band
         What a page shows to a finger that strays from its line; see
         `vbraille.render.braille.straying`.
+    also
+        Conventional display that shows the lines, too.
     """
 
     profile: str | None = None
@@ -40,6 +42,7 @@ class ReadTable(Table, frozen=True):
     echo: Literal["none", "text", "cells", "both"] | None = None
     speech: bool | None = None
     cues: Literal["sound", "bell", "none"] | None = None
+    also: str | None = None
     verbose: bool | None = None
     straying: Literal["line", "free"] | None = None
     band: float | None = None

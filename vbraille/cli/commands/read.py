@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from vbraille.cli.live import LiveView
     from vbraille.devices.events import Event
     from vbraille.engine.tally import Tally
+    from vbraille.reading.alongside import Alongside
     from vbraille.render import Model
 
 _POLL_S = 0.02
@@ -86,6 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
             listening.enter_context(live)
         say = say_line if live is None else live.say
         hearing = listening.enter_context(Hearing(say, cues, echo=echo))
+        also = _also(arguments, listening, hearing)
         device = OpenDevice(
             arguments.device,
             wanted,
@@ -146,7 +148,7 @@ def run(arguments: argparse.Namespace) -> int:
             if live is not None:
                 live.show(device, hand)
             try:
-                _Reading(page, device, keyboard, suspension, hearing, live).run()
+                _Reading(page, device, keyboard, suspension, hearing, live, also).run()
             finally:
                 opened.leave(device.reader, model, page.model.style)
         finally:
@@ -171,6 +173,7 @@ class _Reading:
         suspension: Suspension,
         hearing: Hearing,
         live: LiveView | None,
+        also: Alongside | None,
     ) -> None:
         self._page = page
         self._device = device
@@ -178,6 +181,7 @@ class _Reading:
         self._suspension = suspension
         self._hearing = hearing
         self._live = live
+        self._also = also
 
     def run(self) -> None:
         """Read to the end."""
@@ -204,6 +208,8 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
+            if self._also is not None:
+                self._also.attend(device.reader)
             self._hearing.see(device.line)
             if device.reader.layout is self._page.layout:
                 self._page.see(device.reader.line_number)
@@ -253,6 +259,8 @@ class _Reading:
         self._hearing.say("stopped: the array rests; fg goes on")
         self._tell(standing="stopped: the array rests")
         self._keyboard.release()
+        if self._also is not None:
+            self._also.rest()
         self._suspension.stop()
         self._keyboard.take()
         device.paused = paused
@@ -309,6 +317,20 @@ def _live(arguments: argparse.Namespace) -> LiveView | None:
     from vbraille.cli.live import LiveView
 
     return LiveView(arguments)
+
+
+def _also(
+    arguments: argparse.Namespace, listening: ExitStack, hearing: Hearing
+) -> Alongside | None:
+    """Conventional display that was asked for, which comes while the text is laid out."""
+    if arguments.also is None:
+        return None
+    # Only a reading that has such a display needs what drives it.
+    from vbraille.conventional.display import ConventionalDisplay
+    from vbraille.reading.alongside import Alongside
+
+    display = listening.enter_context(ConventionalDisplay(arguments.also))
+    return Alongside(display, hearing.say)
 
 
 def _save(path: Path, profile: str, model: Model) -> str:

@@ -113,7 +113,7 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
     from vbraille.sessions.conditions import LiveAddress
 
-    names = ("device", "hand", "answers", "sound", "markers")
+    names = ("device", "hand", "answers", "sound", "markers", "also")
     given = {name: getattr(arguments, name) for name in names}
     check_live_options(arguments)
     given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None

@@ -27,6 +27,7 @@ SETTLED = (
     "echo",
     "speech",
     "cues",
+    "also",
     "verbose",
     "straying",
     "band",

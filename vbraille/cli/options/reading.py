@@ -87,6 +87,12 @@ def _reading(parser: ArgumentParser) -> None:
         "none).",
     )
     parser.add_argument(
+        "--also",
+        metavar="DISPLAY",
+        help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
+        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
+    )
+    parser.add_argument(
         "--cells",
         type=whole,
         metavar="N",

@@ -87,15 +87,30 @@ def _paste(reader: Reader, key: str, text: str) -> None:
 
 def press_button(reader: Reader, number: int) -> None:
     """Call the command that a button of the device stands for."""
-    command = (reader.bound or BOUND).buttons.get(number)
+    _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
+
+
+def press_display_key(reader: Reader, name: str) -> None:
+    """Call the command that a key of a conventional display stands for.
+
+    Parameters
+    ----------
+    name
+        BRLTTY's name for the key.
+    """
+    _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
+
+
+def _call(reader: Reader, name: str, command: Command | None) -> None:
+    """Call the command of something that is pressed and is no key of the keyboard."""
     if reader.context is Context.LEARNING:
-        _learn(reader, f"button {number}", command)
+        _learn(reader, name, command)
     elif command is None:
-        reader.say(f"button {number}: no command; the settings file can give it one")
+        reader.say(f"{name}: no command; the settings file can give it one")
     elif reader.context in command.contexts:
         command.handler(reader)
     else:
-        reader.say(f"button {number}: not now; answer first")
+        reader.say(f"{name}: not now; answer first")
 
 
 def turn_knob(reader: Reader, number: int, share: float) -> str:

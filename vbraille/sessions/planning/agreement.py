@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.render import Profile
+from vbraille.sessions.planning import standing
 from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, StringList
 from vbraille.sessions.planning.factors import problem
 from vbraille.sessions.planning.fitting import check_cells, check_lines
@@ -48,6 +49,9 @@ def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
+    said = standing.problem(protocol)
+    if said:
+        raise ValueError(said)
     _check_question(protocol)
     said = protocol.practice.problem(protocol.design)
     if said:

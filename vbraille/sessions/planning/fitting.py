@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.spelling import name_dots, to_braille
 from vbraille.sessions.planning.appearance import LENGTHS
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.design import Choice, StringList
 from vbraille.sessions.planning.knobs import KNOBS, with_value
 from vbraille.sessions.planning.writing import cells_of
@@ -25,7 +26,7 @@ def check_cells(protocol: Protocol) -> None:
         If it cannot show a dot, or a braille table cannot make cells of a text.
     """
     model = protocol.model
-    for condition in protocol.conditions:
+    for condition in _on_device(protocol):
         mapping = protocol.style_of(condition).mapping
         shown = mapping.shown_dots()
         how = (
@@ -64,7 +65,7 @@ def check_lines(protocol: Protocol) -> None:
         unit = KNOBS[design.parameter].unit
     compared = (*values, *sorted(set(practice.values)))
     longest = 0
-    for condition, value in product(protocol.conditions, compared):
+    for condition, value in product(_on_device(protocol), compared):
         lengths = {table: length for table, (_, length) in _cells(protocol, condition).items()}
         whose = max(lengths, key=lambda table: lengths[table])
         longest = max(longest, lengths[whose])
@@ -83,6 +84,11 @@ def check_lines(protocol: Protocol) -> None:
                 f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
             )
     _check_varied(protocol, longest)
+
+
+def _on_device(protocol: Protocol) -> list[Condition]:
+    """Conditions whose strings are put under the hand on the device."""
+    return [c for c in protocol.conditions if protocol.place_of(c) != CONVENTIONAL]
 
 
 def _cells(protocol: Protocol, condition: Condition) -> dict[str, tuple[frozenset[int], int]]:

@@ -24,9 +24,9 @@ _Plan = TypeVar("_Plan")
 
 VERSIONS = (1, 2)  # rules that plans were made by; the file's layout is the same for both
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-# Left out where the display's mapping is used, and where a protocol gives cells, as in all older
-# plans.
-_OPTIONAL = ("mapping", "text", "table")
+# Left out where the display's mapping is used, where a protocol gives cells, and on the device,
+# as in all older plans.
+_OPTIONAL = ("mapping", "text", "table", "on")
 
 
 class _Version(msgspec.Struct):

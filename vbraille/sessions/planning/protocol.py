@@ -24,6 +24,7 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL, ConventionalTable
 from vbraille.sessions.planning.design import (
     Choice,
     Combinations,
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 ONLY_CONDITION = "all"
+_ALL_DOTS = 0xFF  # what a conventional display shows
 _NAME = re.compile(r"[a-z0-9-]{1,40}")
 
 
@@ -79,6 +81,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     factors: tuple[Factor, ...] = ()
     cross: Cross = "all"
+    conventional: ConventionalTable = ConventionalTable()
     order: BlockOrder | None = None
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
@@ -117,6 +120,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Where the strings come from; None if the design has them.
     factors, cross
         Factors that conditions and groups are named from, and which combinations are shown.
+    conventional
+        What stands on a conventional display, and where on it.
     order
         Order of the blocks of conditions; None if the design says it.
     rules
@@ -279,6 +284,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
         """How cells may be typed in answers about a stimulus."""
+        if stimulus.on == CONVENTIONAL:
+            return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
     @property
@@ -323,6 +330,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Styles of the conditions that were asked for."""
         return {}
 
+    def place_of(self, condition: Condition) -> str:
+        """Where the strings of a condition stand: "device", or "brlapi"."""
+        return condition.on or self.display.on or "device"
+
     def shown(
         self, condition: Condition, masks: tuple[int, ...], value: float | None = None
     ) -> Stimulus:
@@ -342,12 +353,17 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
             of the text.
         """
         style = self.style_of(condition)
-        text, table = None, self.table_of(condition)
+        text = table = None
         if isinstance(masks, WrittenText):
+            table = self.table_of(condition)
             if table is None:
                 raise ValueError(f"the condition {condition.name} has no table; give it one")
             text = str(masks)
             masks = cells_of(text, table)
+        if self.place_of(condition) == CONVENTIONAL:
+            return Stimulus(
+                masks, style.tuning, style.geometry, text=text, table=table, on=CONVENTIONAL
+            )
         own = condition.mapping is not None or condition.dot_row is not None
         mapping = style.mapping.name if own else None
         stimulus = Stimulus(masks, style.tuning, style.geometry, value, mapping)

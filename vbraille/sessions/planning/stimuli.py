@@ -64,6 +64,9 @@ class Stimulus:
     text, table
         Text that the cells stand for, and the braille table that made them of it; None where a
         protocol gives the cells themselves. The text is empty where a catch trial shows nothing.
+    on
+        "brlapi" if it stands on the conventional display that BRLTTY drives; None if it is put
+        under the hand on the device.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class Stimulus:
     mapping: str | None = None
     text: str | None = None
     table: str | None = None
+    on: str | None = None
 
     def __post_init__(self) -> None:
         if not self.masks:

@@ -163,7 +163,7 @@ class Console:
     def _ask(self) -> None:
         """Ask a source that does not type for a line, where a person would be waited for."""
         course, correcting = self._course, self._progress.correcting
-        if course.display is None and not correcting and not course.read:
+        if course.by_key and not correcting and not course.read:
             course.press()  # answers that are not typed take no time to read paper
         last = course.phase is Phase.LAST
         if not (correcting or course.half or course.paused or course.read or last):
@@ -171,7 +171,9 @@ class Console:
         trial = correcting or course.trial or self._progress.last_answered
         if trial is None or course.phase is Phase.OVER:
             return
-        felt = course.display.explorations if course.display and self._answers.felt else []
+        felt = []
+        if course.display is not None and self._answers.felt and not course.by_key:
+            felt = course.display.explorations
         given = self._answers.next(trial, self._progress.told(trial).attempts, felt)
         if given is not None:
             self.take(*given)
@@ -233,8 +235,7 @@ class Console:
         if course.half is not None:
             self._say("pause: the array is at rest; the confidence is waited for")
             return
-        if course.display is not None:
-            course.display.rest()
+        course.rest()
         course.paused = True
         course.book.log(events.Pause, course.open_trial)
         self._say("pause: the array is at rest; Enter goes on")
@@ -247,15 +248,14 @@ class Console:
         if course.paused:
             course.paused = False
             course.book.log(events.Go, course.open_trial)
-            if course.display is not None and course.open_trial is not None:
-                course.display.go()
+            course.go()
             self._say("go: on")
         elif course.phase is Phase.BREAK:
             course.book.log(events.Go)
             course.next(gap=False)
         elif course.phase is Phase.LAST and self._progress.correcting is None:
             course.end("all trials are done")
-        elif course.display is None:
+        elif course.by_key:
             course.press()
         elif self._end == ENTER:
             course.end_reading(ENTER)

@@ -143,7 +143,7 @@ class Inquiry:
         if not self._typed or early == self._early:
             return False
         self._early = early
-        if self._course.display is None:
+        if self._course.by_key:
             why = "Enter has not said yet that it was read"
         elif "contact" in told.t_s:
             why = "it was not read to its end yet"

@@ -37,6 +37,7 @@ _SAFE: Final = frozenset(
         "break",
         "cue",
         "device",
+        "display",
         "end",
         "fault",
         "go",
@@ -143,7 +144,7 @@ def _unhidden(state: ViewState, course: Course) -> ViewState:
     if trial is None:
         return structs.replace(state, facts=facts)
     facts.append(("condition", trial.condition))
-    if course.phase is not Phase.OPEN:
+    if course.phase is not Phase.OPEN or course.by_key:
         return structs.replace(state, facts=facts)
     stimulus = trial.stimuli[course.stimulus]
     tuning = asdict(stimulus.tuning) | course.progress.tuning

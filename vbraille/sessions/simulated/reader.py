@@ -11,6 +11,7 @@ import numpy as np
 
 from vbraille.braille.spelling import to_answer
 from vbraille.errors import InputError
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.design import Choice
 from vbraille.sessions.planning.questions import (
     DIFFERENT,
@@ -83,6 +84,11 @@ class Simulated:
             raise InputError(
                 f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
                 f"type the answers, or give a file of them"
+            )
+        if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
+            raise InputError(
+                f"{protocol.name} is read on a conventional display too, which the simulated "
+                f"reader cannot feel; {_INSTEAD}"
             )
         if not 0 <= noise <= MOST_NOISE:
             raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
