@@ -33,7 +33,14 @@ from vbraille.devices.serial.openserial import greet
 from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.wire.codec import Decoder
-from vbraille.devices.wire.messages import FIRST_STEP, RAMP_MS, WATCHDOG_MS, Encoder, Frame
+from vbraille.devices.wire.messages import (
+    FIRST_STEP,
+    RAMP_MS,
+    VERSION,
+    WATCHDOG_MS,
+    Encoder,
+    Frame,
+)
 from vbraille.display import Display
 from vbraille.engine.loop import Loop
 from vbraille.engine.record import X
@@ -110,6 +117,8 @@ class Wired:
         Of the picture: 0 is the same everywhere, so that only fades move actuators.
     speed_mm_s
         Speed of the hand to the right, in mm/s.
+    version
+        Version of the protocol that the controller speaks.
     """
 
     def __init__(
@@ -122,6 +131,7 @@ class Wired:
         slew_per_s: int = 0,
         swing: float = 0.0,
         speed_mm_s: float = 60.0,
+        version: int = VERSION,
     ) -> None:
         self.now_us = 0
         self.breaches: list[str] = []
@@ -129,7 +139,7 @@ class Wired:
         self.gate = 0.0  # furthest that the first FRAME after a rest may leave it
         self.controller = controller(
             replace(
-                describe(INFO, Encoder.ABSOLUTE),
+                describe(INFO, Encoder.ABSOLUTE, version),
                 inverted=bytes((0, 1, 0)),
                 largest_slew_per_s=slew_per_s,
             )
@@ -396,6 +406,8 @@ def reading(
         slew_per_s=chance.choice((0, 0, 8, 40)),
         swing=chance.choice((0.0, 0.0, 0.5)),
         speed_mm_s=chance.choice((0.0, 60.0, 300.0)),
+        # What was built in 2026 speaks version 1.
+        version=1 + seed % 2 if controller is Controller else 1,
     )
     wired.gate = 0.0 if kind == "host" else 1 / FIRST_STEP
     wired.run(0.5)

@@ -41,7 +41,7 @@ class Felt(Controller):
         self._place_mm, self._going = 0.0, STEP_MM
         self._came, self._ticked_us = 0, 0
 
-    def tick(self, now_us, way_mm):  # noqa: ARG002 - where it is, is its own
+    def tick(self, now_us, *_at):  # where it is, is its own
         if self.resting or now_us - self._ticked_us > LATE_US:
             self._came = self.frames
         elif self.frames - self._came >= FRAMES:

@@ -22,8 +22,8 @@ TOP = STRESS2.display.levels - 1
 # A knob that is turned in many steps, then jitters by one count, then is pressed a button beside.
 SCRIPT = "\n".join(
     [
-        *(f"{3000 + 20 * step}ms knob 1 {0.5 - step / 100}" for step in range(31)),
-        *(f"{4200 + 10 * step}ms knob 1 {0.2 + step % 2 / 255}" for step in range(100)),
+        *(f"{3000 + 20 * step}ms knob 1 {0.5 - step / 100:.4f}" for step in range(31)),
+        *(f"{4200 + 10 * step}ms knob 1 {0.2 + step % 2 / 255:.4f}" for step in range(100)),
         "5.5s press 2",
         "5.7s release 2",
     ]

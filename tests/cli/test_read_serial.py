@@ -241,12 +241,17 @@ def test_device_info(call, tmp_path):
             "levels: 1024",
             "rest side: left",
             "travel: 300 mm",
+            "axes: along the line",
             "encoder: 200 counts a mm, absolute",
             "rate: 1000 Hz",
+            "protocol: serial, version 2",
+            "buttons: 8",
+            "knobs: 4",
             f"firmware: {__version__}",
             "slew: without a limit",
             "disabled actuators: none",
             "inverted actuators: none",
+            "calibration: none; vbraille device calibrate makes one",
         ]
         assert call("device", "info", spec, "--model", "stress2").code == 2
 
@@ -293,3 +298,18 @@ def test_device_list_and_a_simulated_device_without_a_model(call):
     done = call("device", "info", "sim")
     assert done.code == 2
     assert "--model" in done.err
+
+
+@heavy  # the same of one axis is tested in every run
+def test_a_device_of_two_axes_is_shown_its_corner(tmp_path, text):
+    options = ("--encoder", "incremental", "--axes", "xyθ", "--height", "60")
+    with (
+        simulated(tmp_path, *options) as (spec, _),
+        Terminal("read", text, "--device", spec, "--echo", "text") as terminal,
+    ):
+        terminal.until("place: move to the far left corner, with the array straight, then press")
+        terminal.type("x")
+        terminal.until("place: known")
+        terminal.until("line: 1")
+        terminal.type("q")
+        assert terminal.end() == 0

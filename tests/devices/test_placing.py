@@ -101,7 +101,7 @@ def test_times_do_not_go_back_when_the_device_starts_anew():
     made.controller = Controller(shown())
     begun_us = made.us
     tick, made.controller.tick = made.controller.tick, None
-    made.controller.tick = lambda us, way_mm: tick(us - begun_us, way_mm)
+    made.controller.tick = lambda us, *at: tick(us - begun_us, *at)
     again = made.back(device)
     assert again.time_ns - last.time_ns == pytest.approx(made.us * 1000 - 5_005_000_000, abs=5e7)
     device.close()

@@ -99,7 +99,7 @@ def together(*spoils):
 def clock_at(speed):
     def spoil(bench):
         tick, receive = bench.controller.tick, bench.controller.receive
-        bench.controller.tick = lambda us, way_mm: tick(round(us * speed), way_mm)
+        bench.controller.tick = lambda us, *at: tick(round(us * speed), *at)
         bench.controller.receive = lambda chunk, us: receive(chunk, round(us * speed))
 
     return spoil

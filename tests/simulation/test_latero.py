@@ -15,6 +15,7 @@ from vbraille.errors import InputError
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import LateroFaults, LateroSimulator, Network
 from vbraille.simulation.pressing import Press
+from vbraille.simulation.script import parse_script
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.tray import OFFSETS, Tray
 
@@ -147,6 +148,22 @@ def test_its_buttons_are_low_while_they_are_pressed():
         TableClient(latero._socket.getsockname()[1]) as client,
     ):
         until(lambda: client.full([150] * 64)[4] == 0x0020)
+
+
+def test_a_script_and_keys_press_its_buttons():
+    keys = iter([["2"], ["3"]])
+    said = []
+    with (
+        simulated(
+            script=parse_script("0s press 1\n0s press 2\n", "script"),
+            keys=lambda: next(keys, []),
+            say=said.append,
+        ) as latero,
+        TableClient(latero._socket.getsockname()[1]) as client,
+    ):
+        until(lambda: client.full([150] * 64)[4] == 0x0000)
+        until(lambda: said[-1:] == ["button 2: pressed"])
+    assert [line for line in said if line.startswith("button")] == ["button 2: pressed"]
 
 
 def test_an_interface_that_is_away_says_0():

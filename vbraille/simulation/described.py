@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from vbraille.devices.wire.messages import (
     MOST_BUTTONS,
@@ -42,11 +42,12 @@ def describe(info: Display, encoder: Encoder, version: int = VERSION) -> Info:
     first = _describe(info, encoder)
     if version == 1:
         return first
-    known = {field.name: getattr(first, field.name) for field in fields(first)}
+    known: dict[str, Any] = {field.name: getattr(first, field.name) for field in fields(first)}
+    known["version"] = version
     width_mm, height_mm = info.contactor_mm or (0.0, 0.0)
     relative = encoder is Encoder.INCREMENTAL
     return Info2(
-        **known | {"version": version},
+        **known,
         buttons=MOST_BUTTONS,
         knobs=MOST_KNOBS,
         contactor_width_nm=round(width_mm * 1e6),

@@ -17,16 +17,20 @@ from typing import TYPE_CHECKING, Final
 from vbraille.devices.latero.datagrams import FULLR0, PORT, VERSION, Answer, pack_answer
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.pressing import held
+from vbraille.simulation.script import Controls
 from vbraille.simulation.tray import OFFSETS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.simulation.pressing import Press
+    from vbraille.simulation.script import ControlEvent
     from vbraille.simulation.tray import Tray
 
 _ROOM_BYTES: Final = 2048
+# It has two buttons, and no knob.
+_FITTED: Final = 0b11
+_KEYS: Final = ("1", "2")
 _LOOK_S: Final = 0.05
 # A client that asks nothing for so long has gone, and the hand goes back to the lower left.
 GONE_S: Final = 0.3
@@ -178,6 +182,10 @@ class LateroSimulator:
         What the network does.
     presses
         When its two buttons are held, in seconds since it was first asked; the left one is 1.
+    script
+        What else is done to its buttons, by the same time.
+    keys
+        Function that gives the keys typed since its last call, which press buttons.
     wait_s
         How long the hand waits at the lower left after the first question.
 
@@ -203,13 +211,15 @@ class LateroSimulator:
         port: int = PORT,
         faults: LateroFaults | None = None,
         presses: Sequence[Press] = (),
+        script: Sequence[ControlEvent] = (),
+        keys: Callable[[], Iterable[str]] = tuple,
         wait_s: float = WAIT_S,
     ) -> None:
         self.board = LateroBoard()
         self.network = Network(faults or LateroFaults())
         self.tray = tray
         self._say = say
-        self._presses = presses
+        self._controls, self._keys = Controls(script, presses), keys
         self._wait_s = wait_s
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
@@ -301,8 +311,13 @@ class LateroSimulator:
 
     def _mind(self, now_us: int) -> None:
         """Let the hand go back once nobody asks, and press what is to be pressed."""
-        if self._ever_us is not None and self._presses:
-            self.board.buttons = held(self._presses, (now_us - self._ever_us) / 1e6)
+        if self._ever_us is not None:
+            since_s = (now_us - self._ever_us) / 1e6
+            self._controls.advance(since_s)
+            for key in self._keys():
+                if key in _KEYS:
+                    self._say(self._controls.type(key, since_s))
+            self.board.buttons = self._controls.buttons & _FITTED
         if self._asked_us is not None and now_us - self._asked_us > GONE_S * 1e6:
             self._asked_us = self._first_us = None
             self.tray.go_back(now_us)

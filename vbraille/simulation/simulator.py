@@ -151,7 +151,7 @@ class Simulator:
         Lines of the page that the hand reads, on a carriage of two axes; None where it reads lines
         as wide as the travel.
     controls
-        Its buttons and knobs, in seconds since a host first greeted it; None if nobody moves them.
+        Moves its buttons and knobs, by the time since a host first greeted it; None for nobody.
     keys
         Function that gives the keys typed since its last call, which move buttons and knobs.
 
@@ -190,14 +190,11 @@ class Simulator:
             self.controller.watchdog_us = _LATE_TIMES * WATCHDOG_US
         self.states_sent = self.states_dropped = 0
         span_mm = (info.columns - 1) * info.column_pitch_nm / 1e6
-        newer = isinstance(info, Info2)
+        height_mm, turns = 0.0, False
+        if isinstance(info, Info2):
+            height_mm, turns = info.height_um / 1000, info.counts_per_turn > 0
         self._carriage = Carriage(
-            hand,
-            span_mm,
-            info.travel_um / 1000,
-            height_mm=info.height_um / 1000 if newer else 0.0,
-            turns=newer and info.counts_per_turn > 0,
-            area=area,
+            hand, span_mm, info.travel_um / 1000, height_mm=height_mm, turns=turns, area=area
         )
         self._port = port
         self._say = say

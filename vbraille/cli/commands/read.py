@@ -52,6 +52,7 @@ _PLACES = {
     Placing.MARK: "place: move the carriage over its mark",
     Placing.STOP: "place: move left to the stop, then press a key",
 }
+_CORNER = "place: move to the far left corner, with the array straight, then press a key"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -241,7 +242,11 @@ class _Reading:
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:
             raise InputError("the device must be told where its left stop is; read at a terminal")
-        self._hearing.say(_PLACES.get(self._device.placing, "place: known"))
+        said = _PLACES.get(self._device.placing, "place: known")
+        across = self._device.reader.engine.display.height_mm > 0
+        if across and self._device.placing is Placing.STOP:
+            said = _CORNER
+        self._hearing.say(said)
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""

@@ -44,7 +44,6 @@ _SERIAL_ONLY: Final[dict[str, object]] = {
     "axes": "x",
     "height": None,
     "protocol": "2",
-    "script": None,
     "corrupt": 0.0,
     "stall": 0.0,
     "unplug_every": 0.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.latero.datagrams import BUTTONS, PORT
@@ -12,6 +13,7 @@ from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
 from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator
 from vbraille.simulation.pressing import parse_presses
+from vbraille.simulation.script import load_script
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.tray import Tray
 
@@ -27,9 +29,13 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
     """Be a Latero until a signal says to stop, with this real-time priority if it may."""
     hand = parse_hand(arguments.hand, arguments.seed)
     presses = parse_presses(arguments.press)
-    for press in presses:
-        if press.button > len(BUTTONS):
-            raise InputError(f"button is {press.button}; a Latero has 1 and 2, left and right")
+    script = () if arguments.script is None else load_script(arguments.script)
+    pressed = [press.button for press in presses]
+    for button in pressed + [event.number for event in script if not event.knob]:
+        if button > len(BUTTONS):
+            raise InputError(f"button is {button}; a Latero has 1 and 2, left and right")
+    if any(event.knob for event in script):
+        raise InputError(f"{arguments.script} turns a knob, and a Latero has none")
     port = PORT if arguments.port is None else arguments.port
     if not 0 <= port <= _MOST_PORT:
         raise InputError(f"port is {port}; it must be 0 to {_MOST_PORT}")
@@ -46,17 +52,21 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
         )
     except ValueError as error:
         raise InputError(str(error)) from None
-    with EAR.deferred():
+    with EAR.deferred(), ControlKeys() as keys:
         simulator = LateroSimulator(
             Tray(hand, DISPLAY.span_mm, lines, _PITCH_MM),
             say=say_line,
             port=port,
             faults=faults,
             presses=presses,
+            script=script,
+            keys=keys.pressed,
             wait_s=WAIT_S if arguments.wait is None else arguments.wait,
         )
         try:
             say_line(f"device: {simulator.spec}")
+            if keys.attached:
+                say_line("keys: 1 and 2 press the left and the right button")
             come_first(priority)
             simulator.run(stopped=lambda: EAR.heard)
         finally:

@@ -154,17 +154,20 @@ def _lend_panel(talk: np.void, conversation: Conversation) -> None:
 def _lend_place(talk: np.void, place: Place) -> None:
     """Fill in the numbers of the carriage, whose place is known."""
     x, y, turn = place.x, place.y, place.turn
+    # A place that is known has all of its counts.
+    assert x.count is not None
+    assert x.zero is not None
     talk["count"], talk["count_bits"], talk["zero"] = x.count, x.bits, x.zero
     talk["home_mm"], talk["mm_per_count"] = x.home_mm, x.mm_per_count
     talk["must_be_placed"] = place.needs_mark
     talk["y_mm"] = talk["theta_rad"] = 0.0
     talk["has_y"] = y is not None
-    if y is not None:
+    if y is not None and y.count is not None and y.zero is not None:
         talk["y_count"], talk["y_zero"], talk["y_mm_per_count"] = y.count, y.zero, y.mm_per_count
-        talk["y_mm"] = y.place_mm
+        talk["y_mm"] = y.place_mm or 0.0
     talk["counts_per_turn"] = 0 if turn is None else turn.counts_per_turn
     if turn is not None:
-        talk["straight"], talk["rad_per_count"] = turn.straight, turn.rad_per_count
+        talk["straight"], talk["rad_per_count"] = turn.straight or 0, turn.rad_per_count
         talk["theta_count"], talk["theta_rad"] = turn.count, turn.theta_rad
 
 
