@@ -8,7 +8,7 @@ from vbraille.devices.calibration import Calibration, Tried
 from vbraille.devices.wire.codec import Decoder, Levels
 from vbraille.devices.wire.messages import Frame
 
-TICKS, TOP = 400, 1023
+ENOUGH, MOST, TOP = 120, 4000, 1023
 
 
 def test_compiled_ticks_send_what_python_alone_sends_and_record_what_was_asked_for():
@@ -27,7 +27,10 @@ def test_compiled_ticks_send_what_python_alone_sends_and_record_what_was_asked_f
         loop.show(shown, 0)
     messages, levels = Decoder(), Levels(rows * columns, TOP)
     compiled, differing = 0, 0
-    for tick in range(TICKS):
+    # A machine that stalls has the actuators rest, and an inverted one set out again.
+    for tick in range(MOST):
+        if differing >= ENOUGH:
+            break
         rig.way_mm = 60.0 + 40.0 * np.sin(tick / 60)
         chunk = rig.say()
         rig.put(chunk)
@@ -45,6 +48,5 @@ def test_compiled_ticks_send_what_python_alone_sends_and_record_what_was_asked_f
             np.testing.assert_array_equal(levels.unpack(sent[-1].packed), wanted.reshape(-1))
             np.testing.assert_array_equal(record["frame"], asked.astype(np.float32))
             differing += bool((wanted != np.rint(asked * TOP)).any())
-    assert compiled > TICKS / 3
-    assert differing > TICKS / 3
+    assert compiled >= differing == ENOUGH
     rig.close()
