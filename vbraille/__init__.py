@@ -29,9 +29,12 @@ if TYPE_CHECKING:
     from vbraille.reading.opened import OpenDevice as OpenDevice
     from vbraille.reading.opening import open_to_read as open  # noqa: A004
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
+    from vbraille.render.braille.models import LATERO as LATERO
     from vbraille.render.braille.models import STRESS2 as STRESS2
+    from vbraille.render.braille.models import STRESS2_8X8 as STRESS2_8X8
     from vbraille.render.braille.models import VBD as VBD
     from vbraille.render.braille.models import Model as Model
+    from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
     from vbraille.render.braille.tuning import Tuning as Tuning
     from vbraille.sessions.conditions import Conditions as Conditions
@@ -46,6 +49,7 @@ _PLACES = {
     "Display": "vbraille.display",
     "Geometry": "vbraille.braille.geometry",
     "InputError": "vbraille.errors",
+    "LATERO": "vbraille.render.braille.models",
     "MAPPINGS": "vbraille.render.braille.mappings",
     "Model": "vbraille.render.braille.models",
     "OpenDevice": "vbraille.reading.opened",
@@ -53,7 +57,9 @@ _PLACES = {
     "RenderedLine": "vbraille.reading.frames",
     "Results": "vbraille.analysis.results",
     "STRESS2": "vbraille.render.braille.models",
+    "STRESS2_8X8": "vbraille.render.braille.models",
     "Session": "vbraille.sessions.session",
+    "Straying": "vbraille.render.braille.straying",
     "Tuning": "vbraille.render.braille.tuning",
     "VBD": "vbraille.render.braille.models",
     "VbrailleError": "vbraille.errors",
@@ -62,8 +68,10 @@ _PLACES = {
     "render_text": "vbraille.reading.frames",
 }
 __all__ = [
+    "LATERO",
     "MAPPINGS",
     "STRESS2",
+    "STRESS2_8X8",
     "VBD",
     "BrailleStyle",
     "Conditions",
@@ -78,6 +86,7 @@ __all__ = [
     "RenderedLine",
     "Results",
     "Session",
+    "Straying",
     "Tuning",
     "VbrailleError",
     "analyse",

@@ -48,6 +48,123 @@ CHANGES = {
         {"toml": COMPARED}, "compared 2 pairs of 2 values of the dot width, 1 to 2 mm"),
 }  # fmt: skip
 
+DETECTING = MINI + '[question]\nkind = "detect"\nask = "Anything?"\n'
+STAIRS = """
+[procedure]
+kind = "staircase"
+parameter = "contrast"
+least = 0.1
+most = 1.0
+start = [0.9, 0.5]
+steps = [0.2, 0.1]
+right = 2
+reversals = 3
+trials = 4
+"""
+FACTORS = (
+    '[[factors]]\nname = "t"\nlevels = [{ name = "a", texture = 0.0 }, '
+    '{ name = "b", texture = 1.0 }]\n'
+    '[[factors]]\nname = "w"\nlevels = [{ name = "c", dot_width_mm = 1.0 }, '
+    '{ name = "d", dot_width_mm = 1.5 }]\n'
+    '[[factors]]\nname = "g"\nbetween = true\nlevels = [{ name = "near", cell_gap_mm = 6.0 }, '
+    '{ name = "far", cell_gap_mm = 7.0 }]\n'
+)
+CROSSED = 'cross = [["a", "c"], ["a", "d"], ["b", "c"]]\n'
+# What a paragraph says of each kind of question, design and procedure.
+KINDS = {
+    "which": (
+        COMPARED + '[question]\nkind = "which"\nright = "more"\n',
+        ["Of each pair one was chosen; the one with more dot width was right."],
+    ),
+    "nearest": (
+        COMPARED + '[question]\nkind = "which"\nright = "nearest"\nreference = 1.5\n',
+        ["chosen; the one nearest to 1.5 mm was right."],
+    ),
+    "same": (
+        COMPARED.replace("string", "same = 1\nstring") + '[question]\nkind = "same-different"\n',
+        [
+            "compared 4 pairs of 2 values of the dot width, 1 to 2 mm",
+            "whether the two were the same or different; 2 of 4 pairs differed.",
+            "condition: all (texture 0, contrast 1, 4 trials)",
+        ],
+    ),
+    "detect": (
+        DETECTING + 'confidence = { least = 1, most = 4 }\n',
+        [
+            "felt 4 strings of 1 cell each",
+            "They were asked: “Anything?”.",
+            "there was something in 3 of 4 trials.",
+            "After all 4 answers they said how sure they were, from 1 to 4.",
+        ],
+    ),
+    "rating": (
+        MINI + '[question]\nkind = "rating"\nscale = "roughness"\nleast = 1\nmost = 7\n'
+        'labels = ["smooth", "rough"]\n',
+        ["They rated roughness in whole numbers, from 1 (smooth) to 7 (rough)."],
+    ),
+    "magnitude": (
+        MINI + '[question]\nkind = "magnitude"\nmodulus = 10\n',
+        ["estimated a magnitude, as a number above 0; the standard was 10."],
+    ),
+    "stairs": (
+        DETECTING + STAIRS,
+        [
+            "by 2 interleaved staircases, which began at 0.9, 0.5 with steps of 0.2, then 0.1, "
+            "between 0.1 to 1.",
+            "made harder after 2 “yes” answers running, and easier after 1 “no” answer.",
+            "A condition was to end by 4 trials, or by 3 reversals of each staircase.",
+        ],
+    ),
+    "quest": (
+        COMPARED.replace("2.0]", "2.0]\nrepeats = 3")
+        + '[procedure]\nkind = "quest"\nstep = 0.25\nspread = [0.3]\nwidth = 0.5\ntrials = 3\n'
+        "at_least = 2\n",
+        [
+            "The dot width of each trial was chosen by the answers before it, by QUEST+ (Watson "
+            "2017) from 5 values, 1 to 2 mm.",
+            "end by 3 trials, or by an interval of 95 % that was 0.5 mm wide (after 2 trials or "
+            "more).",
+        ],
+    ),
+    "catch": (
+        MINI.replace("length", "catch = { every = 3 }\nlength"),
+        [
+            "read 4 strings of 1 cell each",
+            "Beside these there were 2 catch trials that showed no dots; all 2 were answered "
+            "right.",
+            "All was of one condition: all (texture 0, contrast 1, 4 trials)",
+        ],
+    ),
+    "factors": (
+        CROSSED + MINI + FACTORS,
+        [
+            "Participants were in 1 group: near (1 participant).",
+            "Within participants varied t (a, b) and w (c, d), 3 of the 4 combinations of them.",
+            "a-d (texture 0, contrast 1, dot width 1.5 mm, 4 trials)",
+            "Each condition had blocks of its own, 3 blocks in a session, balanced by Williams "
+            "squares (of 6 orders: 1)",
+        ],
+    ),
+    "order": (
+        CONDITIONS.replace("length", 'order = "listed"\nlength')
+        + "[rules]\nnever_twice_running = true\nat_most_running = { condition = 4 }\n",
+        [
+            "2 blocks in a session, always in the same order;",
+            "No two neighbouring trials showed the same; at most 4 neighbouring trials had the "
+            "same condition.",
+        ],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", by_tier(["same", "detect", "catch"], [*KINDS], [*KINDS]))
+def test_each_kind_is_told(tmp_path, kind):
+    toml, said = KINDS[kind]
+    Session(tmp_path / "s", toml).sit()
+    text = told(tmp_path / "s")
+    for sentence in said:
+        assert sentence in text
+
 
 def told(*folders, **options):
     return methods(load_study(folders, **options))
@@ -110,6 +227,40 @@ def test_people_practice_repeats_breaks_and_what_is_missing(tmp_path):
     assert "1 trial had to be shown again." in text
     assert "1 planned trial had no answer. 1 session did not come to the end." in text
     assert "1 trial of s (no answer)" in text
+
+
+@heavy  # three sessions
+def test_groups_are_told_with_what_they_differ_in(tmp_path):
+    for who in ("P01", "P02", "P04"):
+        Session(tmp_path / who, CROSSED + MINI + FACTORS, participant=who).sit()
+    text = told(*(tmp_path / who for who in ("P01", "P02", "P04")))
+    assert (
+        "Participants were in 2 groups: far (2 participants, cell gap 7 mm), near (1 participant, "
+        "cell gap 6 mm)." in text
+    )
+    assert "from cell to cell" not in text
+
+
+def test_the_participants_key_practice_and_what_is_compared(tmp_path):
+    toml = COMPARED.replace("dot_width_mm", "texture").replace("2.0", "0.5")
+    toml += '[trial]\nend = "key:enter"\n[practice]\ntrials = 1\nvalues = [0.1, 0.2]\n'
+    toml += "feedback = false\n"
+    Session(tmp_path / "s", toml).sit(
+        ("cue: practice", ""), ("cue: .*second", ""), ("ended: .* s", "1"),
+        ("cue: trial 1 of 2$", ""), ("cue: .*second", ""), ("ended: .* s", "1"),
+        ("cue: trial 2 of 2$", ""), ("cue: .*second", "2"), ("no answer", "2"), ("last", ""),
+    )  # fmt: skip
+    text = told(tmp_path / "s")
+    assert "compared 2 pairs of 2 values of the texture, 0.5 to 1, in" in text
+    assert "Of each pair one was chosen, and neither was right or wrong." in text
+    assert "ended by key enter in 1 of 2 trials, by their answer in 1 of 2 trials" in text
+    assert "Before them came 1 trial of practice, without feedback." in text
+
+
+def test_words_are_told_to_be_scored_by_nobody(tmp_path):
+    session = Session(tmp_path / "s", MINI + '[question]\nkind = "free"\n')
+    session.sit(*[("read:", "sand")] * 4, ("last", ""))
+    assert "They answered in words of their own, which were not scored." in told(tmp_path / "s")
 
 
 def test_protocols_are_told_one_after_the_other(plain, tmp_path):

@@ -25,6 +25,7 @@ PARTS = (
     "reader",
     "turning",
     "live",
+    "straying",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

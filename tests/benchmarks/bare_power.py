@@ -1,6 +1,8 @@
-"""Studies simulated by a bare process: every STEP-th portion from FIRST on, of so many STUDIES."""
+"""Every STEP-th portion from FIRST on of MANY studies, by a bare process; says as shared_power."""
 
+import json
 import sys
+from time import process_time
 
 from vbraille.forecast.power import PORTION, SEED, PowerQuestion
 from vbraille.forecast.studies import StudyTask, count_found
@@ -19,3 +21,4 @@ if __name__ == "__main__":
     plan = question(many).plan()
     for start in range(first * PORTION, many, step * PORTION):
         count_found(StudyTask(plan, SEED, start, min(PORTION, many - start)))
+    print(json.dumps({"own": process_time(), "workers": []}))

@@ -9,12 +9,21 @@ from scipy.special import expit, logit
 
 from tests.benchmarks.coverage_people import Found, centre_of, mean_of
 from tests.conftest import SEED
-from vbraille.analysis.statistics.marginalmeans import difference, mean, separate_cells
+from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.marginalmeans import (
+    compare,
+    compare_all,
+    difference,
+    odds_ratio,
+    separate_cells,
+)
+from vbraille.analysis.statistics.shares import MEANS, SPREADS, log_likelihood, quantiles
 from vbraille.analysis.statistics.trialsmodel import combine, fit_trials
 
 TRIALS = 78  # of each participant, as in the source's sessions
 APART = 0.5  # log odds that conditions, and groups, differ by where they do
 DIFFERING = 0.5  # SD over people of how conditions differ
+AT_ONCE = 2_000  # studies
 WHAT = ("mean share", "odds ratio", "difference of shares")
 
 
@@ -24,15 +33,19 @@ class Misled:
 
     given: int
     misled: int
+    studies: int
 
     @property
     def share(self) -> float:
         """Of the studies that can be tested, in per cent."""
-        return 100 * self.misled / self.given
+        return 100 * self.misled / self.given if self.given else np.nan
 
     def text(self) -> str:
-        """The share in words for a table."""
-        return f"{self.share:.1f}"
+        """The share, and that of the studies with a test where not all have one."""
+        if not self.given:
+            return "none"
+        rest = "" if self.given == self.studies else f" ({100 * self.given / self.studies:.0f})"
+        return f"{self.share:.1f}{rest}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,39 +96,64 @@ def population(
 def intervals(people: int, share: float, sd: float, kind: str, what: str, studies: int) -> Found:
     """Coverage of one of `WHAT`."""
     made = population(people, share, sd, kind, APART if share < 0.9 else -APART, studies)
-    fit = fit_trials(made.correct, made.trials, separate_cells(people, 2))
     first, second = made.shares
     if what == "mean share":
-        found, truth = mean(fit, [0, 1]), second
-        low, high = found.low, found.high
-    elif what == "odds ratio":
-        (low, high), truth = combine(fit, [-1, 1]).ends(), logit(second) - logit(first)
+        (low, high), truth = mean_shares(made.correct[..., 1], made.trials[..., 1]), second
     else:
-        found, truth = difference(fit, [0, 1], [1, 0]), second - first
+        fit = fit_trials(made.correct, made.trials, separate_cells(people, 2))
+        if what == "odds ratio":
+            found, truth = odds_ratio(fit, [0, 1], [1, 0]), logit(second) - logit(first)
+        else:
+            found, truth = difference(fit, [0, 1], [1, 0]), second - first
         low, high = found.low, found.high
     given = np.isfinite(low)
     held = (low <= truth) & (truth <= high)
     return Found(int(given.sum()), int(held.sum()), studies)
 
 
+def mean_shares(correct: np.ndarray, trials: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of `shares.mean_share` for many studies, of whom some participants have no trials."""
+    ends = []
+    for right, asked in zip(correct, trials, strict=True):
+        likely = np.zeros((MEANS, SPREADS), np.float32)
+        for k, n in zip(right[asked > 0].tolist(), asked[asked > 0].tolist(), strict=True):
+            likely = likely + log_likelihood(float(k), float(n))
+        ends.append(quantiles(likely[None], float(asked[asked > 0].mean()), LEVEL))
+    low, high = zip(*ends, strict=True)
+    return np.concatenate(low), np.concatenate(high)
+
+
 def misled(people: int, share: float, sd: float, kind: str, studies: int) -> Misled:
-    """False positives: conditions or groups do not differ, and neither does any participant."""
+    """False positives: conditions or groups do not differ, and neither does any participant.
+
+    Of two or three conditions ("within", "three within"), groups ("between", "three between"), or
+    of a slope over six sixths of a session ("covariate").
+    """
     random = np.random.default_rng([SEED, people, round(100 * share), round(10 * sd), len(kind)])
-    own = expit(random.normal(centre_of(share, sd), sd, (studies, people, 1)))
-    if kind == "between":
-        trials = TRIALS * np.eye(2, dtype=int)[np.arange(people) % 2]
-    elif kind == "covariate":
-        trials = np.full((people, 6), TRIALS // 6)
+    cells = 6 if kind == "covariate" else 3 if kind.startswith("three") else 2
+    if kind.endswith("between"):
+        trials = TRIALS * np.eye(cells, dtype=int)[np.arange(people) % cells]
     else:
-        trials = np.full((people, 2), TRIALS // 2)
-    trials = np.broadcast_to(trials, (studies, *trials.shape))
-    if kind == "covariate":  # a slope over six sixths of a session
-        design = np.ones((people, 6, 2))
-        design[..., 1] = np.arange(6) / 5
-        weights = [0, 1]
-    else:
-        design, weights = separate_cells(people, 2), [-1, 1]
-    correct = random.binomial(trials, np.broadcast_to(own, trials.shape))
-    p = combine(fit_trials(correct, trials, design), weights).p_values()
-    given = np.isfinite(p)
-    return Misled(int(given.sum()), int((p[given] < 0.05).sum()))
+        trials = np.full((people, cells), TRIALS // cells)
+    given = found = 0
+    for part in np.array_split(np.arange(studies), max(1, studies // AT_ONCE)):
+        own = expit(random.normal(centre_of(share, sd), sd, (part.size, people, 1)))
+        asked = np.broadcast_to(trials, (part.size, *trials.shape))
+        p = _tested(random.binomial(asked, np.broadcast_to(own, asked.shape)), asked, kind)
+        known = np.isfinite(p)
+        given += int(known.sum())
+        found += int((p[known] < 1 - LEVEL).sum())
+    return Misled(given, found, studies)
+
+
+def _tested(correct: np.ndarray, trials: np.ndarray, kind: str) -> np.ndarray:
+    """P of the test that is asked for, float[studies]."""
+    people, cells = trials.shape[1:]
+    if kind == "covariate":
+        design = np.ones((people, cells, 2))
+        design[..., 1] = np.arange(cells) / (cells - 1)
+        return combine(fit_trials(correct, trials, design), [0, 1]).p_values()
+    fit = fit_trials(correct, trials, separate_cells(people, cells))
+    if cells == 3:
+        return compare_all(fit, [[-1, 1, 0], [-1, 0, 1]]).p
+    return compare(fit, [0, 1], [1, 0]).p_values()

@@ -28,13 +28,14 @@ def sensitivity(trials: int, d: float, criterion: float, studies: int) -> Found:
     return Found(studies, held, studies)
 
 
-def curve(trials: int, shape: str, free: bool, what: str, studies: int) -> Found:
-    """Coverage of a psychometric function's threshold or spread; `free` of yes and no."""
+def curve(trials: int, shape: str, free: bool, studies: int) -> dict[str, Found]:
+    """Coverage of a psychometric function's threshold and spread; `free` of yes and no."""
     random = np.random.default_rng([SEED, trials, len(shape), free])
     guess = 0.03 if free else 0.5
     rising = SHAPES[shape](LEVELS, np.array(THRESHOLD), np.array(SPREAD))
     shares = guess + (1 - guess - LAPSES) * rising
-    given = held = 0
+    given = 0
+    held = {"threshold": 0, "spread": 0}
     for _ in range(studies):
         try:
             found = fit_psychometric(
@@ -43,7 +44,10 @@ def curve(trials: int, shape: str, free: bool, what: str, studies: int) -> Found
             )  # fmt: skip
         except Unanswerable:
             continue
-        ends = found.threshold_interval if what == "threshold" else found.spread_interval
         given += 1
-        held += ends.low <= (THRESHOLD if what == "threshold" else SPREAD) <= ends.high
-    return Found(given, held, studies)
+        for what, ends, truth in (
+            ("threshold", found.threshold_interval, THRESHOLD),
+            ("spread", found.spread_interval, SPREAD),
+        ):
+            held[what] += ends.low <= truth <= ends.high
+    return {what: Found(given, of, studies) for what, of in held.items()}

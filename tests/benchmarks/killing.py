@@ -67,6 +67,15 @@ most = 1.0
 step = 0.05
 spread = [0.1, 0.2, 0.4]
 """
+STAIRCASES = f"""{KILLS}
+[procedure]
+kind = "staircase"
+parameter = "contrast"
+least = 0.1
+most = 1.0
+start = [0.9, 0.4]
+steps = [0.2, 0.1, 0.05]
+"""
 TRIALS = 64
 MOST_LINES = 24
 MOST_PAUSE_S = 0.012  # some more than a trial takes

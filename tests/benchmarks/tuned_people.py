@@ -14,6 +14,8 @@ from vbraille.sessions.planning.protocolfiles import load_protocol
 if TYPE_CHECKING:
     from vbraille.adaptive.questplus import GridQuest
 
+PROTOCOLS = ("tuning-width", "tuning-spacing")
+PEOPLE, SEED = 500, 15
 ADAPTIVE_TRIALS, FIXED_REPEATS = 30, 6  # of the 15 pairs of six values, in either order: 90 trials
 
 
@@ -72,7 +74,23 @@ class Tuned:
 
     def rmse(self) -> tuple[float, float, float]:
         """Root mean squares of the errors: 30 adaptive, 30 on six values, 90 fixed."""
-        return tuple(float(np.sqrt((e**2).mean())) for e in (self.adaptive, self.six, self.fixed))
+        return tuple(self.rmse_between(e)[1] for e in (self.adaptive, self.six, self.fixed))
+
+    @staticmethod
+    def rmse_between(errors: np.ndarray) -> tuple[float, float, float]:
+        """Lower end, value, and upper end of a root mean square, with an interval of 95 %."""
+        squares = errors**2
+        rmse = float(np.sqrt(squares.mean()))
+        # The root's slope is 1 / (2 rmse).
+        apart = 1.96 * float(squares.std(ddof=1)) / np.sqrt(errors.size) / (2 * rmse)
+        return rmse - apart, rmse, rmse + apart
+
+    def ratio_error(self) -> float:
+        """Standard error of the adaptive root mean square by that of the fixed trials."""
+        more, less = self.adaptive**2, self.fixed**2
+        each = more / more.mean() - less / less.mean()
+        ratio = np.sqrt(more.mean() / less.mean())
+        return float(ratio / 2 * each.std(ddof=1) / np.sqrt(each.size))
 
 
 def tune(kind: str, people: int, seed: int, name: str = "tuning-width") -> Tuned:

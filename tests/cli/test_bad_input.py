@@ -175,7 +175,7 @@ def test_options_of_a_showing(call, text, options, pattern, command):
 @pytest.mark.parametrize(
     ("options", "pattern"),
     [
-        ("--device latero", r"there is no device kind 'latero'; there is .*sim"),
+        ("--device netbox", r"there is no device kind 'netbox'; there is .*latero.*sim"),
         ("--device=", r"there is no device kind ''; there is .*sim"),
         (
             "--device serial:x --hand sweep:60",

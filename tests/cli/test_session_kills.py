@@ -1,8 +1,10 @@
 """The program killed in the middle of sessions: what it said is in, is in."""
 
-from tests.benchmarks.killing import ADAPTIVE, kill_often
+import pytest
+
+from tests.benchmarks.killing import ADAPTIVE, STAIRCASES, kill_often
 from tests.conftest import SEED
-from tests.tiers import by_tier
+from tests.tiers import by_tier, heavy
 
 KILLS = by_tier(6, 20, 300)
 KILLS_BY_ANSWERS = by_tier(2, 20, 300)
@@ -19,9 +21,12 @@ def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):
     assert tally.most_attempts > 1
 
 
-def test_one_that_goes_by_the_answers_asks_what_it_would_have_asked(tmp_path):
+@pytest.mark.parametrize(
+    "protocol", [ADAPTIVE, pytest.param(STAIRCASES, marks=heavy)], ids=["quest", "staircases"]
+)
+def test_one_that_goes_by_the_answers_asks_what_it_would_have_asked(protocol, tmp_path):
     print(f"seed: {SEED}")
-    tally = kill_often(KILLS_BY_ANSWERS, SEED, tmp_path, ADAPTIVE)
+    tally = kill_often(KILLS_BY_ANSWERS, SEED, tmp_path, protocol)
     assert (tally.lost, tally.skipped, tally.others) == ([], [], [])
     assert tally.kills == KILLS_BY_ANSWERS
     assert tally.acknowledged >= KILLS_BY_ANSWERS

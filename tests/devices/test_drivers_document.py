@@ -50,7 +50,7 @@ class Peer:
 
 @pytest.fixture
 def driver():
-    module = types.ModuleType("latero")
+    module = types.ModuleType("netbox")
     exec(compile(printed("python")[0], str(PAGE), "exec"), module.__dict__)
     return module
 
@@ -68,7 +68,7 @@ def address(peer):
 
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_it_conforms(driver, address, check):
-    check(lambda: driver.open_latero(address, None))
+    check(lambda: driver.open_netbox(address, None))
 
 
 def test_it_has_under_60_lines():
@@ -76,7 +76,7 @@ def test_it_has_under_60_lines():
 
 
 def test_what_it_sends_and_reads(driver, peer, address):
-    with driver.open_latero(address, None) as device:
+    with driver.open_netbox(address, None) as device:
         device.write(np.linspace(0, 1, 60).reshape(6, 10))
         sample = None
         while sample is None:
@@ -87,16 +87,16 @@ def test_what_it_sends_and_reads(driver, peer, address):
 
 
 def test_an_address_that_is_none(driver):
-    with pytest.raises(InputError, match="latero:HOST:PORT"):
-        driver.open_latero("nowhere", None)
+    with pytest.raises(InputError, match="netbox:HOST:PORT"):
+        driver.open_netbox("nowhere", None)
 
 
 def test_the_entry_point_and_the_checks_are_as_printed(driver, address):
     name, target = re.search(r'^(\w+) = "(.+)"$', printed("toml")[0], re.MULTILINE).groups()
-    assert (name, target) == ("latero", "latero:open_latero")
+    assert (name, target) == ("netbox", "netbox:open_netbox")
     test = printed("python")[1].replace('"127.0.0.1", 8900', "*ADDRESS")
     host, port = address.split(":")
     scope = {**driver.__dict__, "ADDRESS": (host, int(port))}
     exec(compile(test, str(PAGE), "exec"), scope)
     for check in CHECKS:
-        scope["test_latero"](check)
+        scope["test_netbox"](check)

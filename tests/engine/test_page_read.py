@@ -9,17 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.shown import LATERO
+from tests.tiers import heavy
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.record import Flag
-from vbraille.render import STRESS2, Tuning, model_of
+from vbraille.render import LATERO, STRESS2, STRESS2_8X8, Tuning
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import ReadPage, Steering
 
 LINES, CELLS = 25, 5
-PITCH_MM = STRESS2.style.geometry.line_pitch_mm
-PLANE = {"height_mm": LINES * PITCH_MM, "turns": True}
+LARGE = 25, 40
 _PLACES = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2)}
 
 
@@ -31,53 +30,61 @@ def places(ticks, display):
     return ticks["x_mm"][:, None, None] + right * np.cos(theta) + down[:, None] * np.sin(theta)
 
 
-def decoded(ticks, model):
+def decoded(ticks, model, size):
     """Dot masks of the page, uint8[lines, cells], from poses and frames."""
+    lines, cells = size
     geometry, mapping = model.style.geometry, model.style.mapping
     first = model.style.rows_on(model.display).start
-    at = ticks["y_mm"] / PITCH_MM
-    x_mm = places(ticks, model.display)
-    masks = np.zeros((LINES, CELLS), np.uint8)
-    for line in range(LINES):
-        on = (np.abs(at - line - 0.5) < 0.3) & (ticks["share"] == 1)
-        for cell in range(CELLS):
-            for bit, (side, dot_row) in _PLACES.items():
-                shown = mapping.right if side else mapping.left
-                row = first + shown.index(dot_row)
-                centre_mm = (
-                    cell * geometry.cell_pitch_mm
-                    + side * geometry.dot_spacing_mm
-                    + geometry.dot_width_mm / 2
-                )
-                over = np.abs(x_mm[on, row] - centre_mm) < geometry.dot_width_mm / 8
-                assert over.any(), f"the hand missed cell {cell} of line {line}"
-                felt = ticks["frame"][on, row][over]
-                assert (felt > 0.5).all() or (felt == 0).all()
-                masks[line, cell] |= bool(felt.max() > 0.5) << bit
+    at = ticks["y_mm"] / geometry.line_pitch_mm
+    masks = np.zeros(size, np.uint8)
+    for line in range(lines):
+        on = ticks[(np.abs(at - line - 0.5) < 0.3) & (ticks["share"] == 1)]
+        x_mm = places(on, model.display)
+        for bit, (side, dot_row) in _PLACES.items():
+            row = first + (mapping.right if side else mapping.left).index(dot_row)
+            first_mm = side * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
+            pitches = (x_mm[:, row] - first_mm) / geometry.cell_pitch_mm
+            cell = np.rint(pitches).astype(int)
+            off_mm = np.abs(pitches - cell) * geometry.cell_pitch_mm
+            over = (off_mm < geometry.dot_width_mm / 8) & (cell >= 0) & (cell < cells)
+            felt = on["frame"][:, row][over]
+            assert ((felt > 0.5) | (felt == 0)).all()
+            raised = np.bincount(cell[over][felt > 0.5], minlength=cells)
+            flat = np.bincount(cell[over][felt == 0], minlength=cells)
+            assert ((raised > 0) != (flat > 0)).all(), f"missed a cell of line {line}, or felt two"
+            masks[line] |= ((raised > 0) << bit).astype(np.uint8)
     return masks
 
 
 @pytest.mark.parametrize(
-    ("array", "seed"), [(STRESS2.display, 1), (LATERO, 2)], ids=["stress2", "latero"]
+    ("model", "size", "seed"),
+    [
+        (STRESS2, (LINES, CELLS), 1),
+        pytest.param(STRESS2_8X8, LARGE, 3, marks=heavy),
+        pytest.param(LATERO, LARGE, 2, marks=heavy),
+    ],
+    ids=["stress2", "stress2-8x8", "latero"],
 )
-def test_a_page_is_read_along_a_wandering_path_without_a_next_line(rng, array, seed):
-    display = replace(array, **PLANE)
-    model = model_of(display)
+def test_a_page_is_read_along_a_wandering_path_without_a_next_line(rng, model, size, seed):
+    lines, cells = size
+    geometry = model.style.geometry
+    pitch_mm, end_mm = geometry.line_pitch_mm, geometry.extent_mm(cells)
+    room = {"height_mm": lines * pitch_mm, "travel_mm": end_mm + 20.0, "turns": True}
+    display = replace(model.display, **room)
     model = replace(model, style=replace(model.style, tuning=Tuning(texture=0.0)))
-    page = rng.integers(0, 64, (LINES, CELLS)).astype(np.uint8)
+    page = rng.integers(0, 64, size).astype(np.uint8)
     steering = Steering()
     with SimulatedDevice(display, hand=parse_hand("fluent", seed), steering=steering) as device:
         engine = BatchEngine(device, poll_ticks=20_000)
         engine.show(model.style.render_page(list(page), display), 1)
-        end_mm = model.style.geometry.extent_mm(CELLS)
-        steering.give(ReadPage(LINES, PITCH_MM, end_mm))
+        steering.give(ReadPage(lines, pitch_mm, end_mm))
         parts = [engine.poll()]
         while not steering.done_at(int(parts[-1]["device_ns"][-1])):
             parts.append(engine.poll())
     ticks = np.concatenate(parts)
     assert set(ticks["line"].tolist()) == {1}
     assert np.ptp(ticks["theta_rad"]) > 0.1  # it wanders, and turns
-    assert np.abs(ticks["y_mm"] / PITCH_MM % 1 - 0.5).max() > 0.1
-    np.testing.assert_array_equal(decoded(ticks, model), page)
+    assert np.abs(ticks["y_mm"] / pitch_mm % 1 - 0.5).max() > 0.1
+    np.testing.assert_array_equal(decoded(ticks, replace(model, display=display), size), page)
     # A line is come to by a fade: no actuator moves faster than that and the hand ask for.
-    assert (ticks["flags"] & int(Flag.CHANGED) != 0).sum() >= LINES
+    assert (ticks["flags"] & int(Flag.CHANGED) != 0).sum() >= lines

@@ -32,7 +32,7 @@ def wandering(seconds):
     return (
         40 + 35 * math.sin(1.3 * seconds),
         LINES * LINE_MM * (0.5 - 0.52 * math.cos(0.4 * seconds)),
-        0.4 * math.sin(0.9 * seconds),
+        0.3 * math.sin(0.9 * seconds),  # never farther than braille is shown
     )
 
 

@@ -1,5 +1,6 @@
 """Workers: every task once, whoever does it, and what goes wrong in one sentence."""
 
+import multiprocessing
 import os
 import re
 import signal
@@ -33,6 +34,15 @@ def slow(task):
     return task
 
 
+def begun(_task):
+    """Process of a worker, and what it was told as it began."""
+    quiet = [signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)]
+    return os.getpid(), [handler.name for handler in quiet], BEGUN_BY
+
+
+BEGUN_BY = os.getpid()  # a process that imported this anew would have its own
+
+
 def all_done(workers, tasks, function=doubled):
     found = {}
     workers.work(function, tasks, lambda number, result: found.setdefault(number, result))
@@ -45,7 +55,6 @@ def test_one_worker_does_each_task_in_its_order():
     assert all_done(Workers(), []) == {}
 
 
-@heavy
 def test_more_workers_do_each_task_once():
     pytest.importorskip("dask")
     assert all_done(Workers(2), list(range(7))) == {number: 2 * number for number in range(7)}
@@ -53,6 +62,68 @@ def test_more_workers_do_each_task_once():
         all_done(Workers(2), [12, 13])
     with pytest.raises(VbrailleError, match="a worker was ended from outside after"):
         all_done(Workers(2), [1, 2], ended)
+
+
+def test_workers_are_forks_with_signals_of_their_own():
+    pytest.importorskip("dask")
+    before = signal.signal(signal.SIGTERM, lambda *_: None)
+    try:
+        found = all_done(Workers(2), [1, 2], begun).values()
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert all(signals == ["SIG_DFL", "SIG_IGN"] for _, signals, _ in found)
+    assert {by for _, _, by in found} == {os.getpid()}
+    assert os.getpid() not in {process for process, _, _ in found}
+
+
+class Stop(BaseException):
+    """What a signal raises in the middle of the work."""
+
+
+def test_work_that_is_stopped_waits_for_no_worker(tmp_path):
+    pytest.importorskip("dask")
+    found = []
+
+    def stop(number, _result):
+        found.append(number)
+        raise Stop
+
+    with pytest.raises(Stop):
+        Workers(2).work(lasting, [tmp_path / "first"] * 40, stop)
+    assert len(found) == 1
+    assert not multiprocessing.active_children()
+
+
+def lasting(path):
+    """Whoever makes the file is done at once; the others would take an hour."""
+    try:
+        path.touch(exist_ok=False)
+    except FileExistsError:
+        signal.sigtimedwait([], 3600)
+
+
+@heavy
+def test_workers_end_with_the_process_that_they_work_for():
+    pytest.importorskip("dask")
+    run = subprocess.Popen([sys.executable, "-c", _BEGUN], stdout=subprocess.PIPE, text=True)
+    workers = {int(run.stdout.readline()) for _ in range(2)}
+    run.kill()
+    run.wait()
+    # The pipe is theirs too, so that it ends with the last of them.
+    assert run.stdout.read() == ""
+    run.stdout.close()
+    assert len(workers) == 2
+
+
+_BEGUN = """
+import os
+from vbraille.forecast.workers import Workers
+def said(task):
+    print(os.getpid(), flush=True)
+    while True:
+        os.sched_yield()
+Workers(2).work(said, [1, 2], lambda *_: None)
+"""
 
 
 @heavy
@@ -113,5 +184,5 @@ def test_an_address_is_checked(address):
 
 @pytest.mark.skipif(find_spec("distributed") is not None, reason="distributed is installed")
 def test_a_cluster_needs_distributed():
-    with pytest.raises(InputError, match="pip install distributed installs it"):
+    with pytest.raises(InputError, match="needs distributed; pip install"):
         Workers(cluster="tcp://lab:8786")

@@ -66,7 +66,9 @@ def test_profile_draws_a_panel_a_level():
 def test_mapping_draws_six_rows_a_method():
     figure = drawn(TABLES[1])
     panels = [axes for axes in figure.axes if axes.axison]
-    assert [axes.get_title() for axes in panels] == list(MAPPINGS)
+    assert [axes.get_title() for axes in panels] == [
+        n for n, each in MAPPINGS.items() if each.rows <= 6
+    ]
     for axes in panels:
         assert len(curves(axes)) == 6
         tops = [line.get_ydata().max() for line in curves(axes)]

@@ -10,11 +10,14 @@ import pytest
 
 from tests.pictures.tables import TABLES, make_line, make_page, with_style
 from vbraille.pictures import FigureTable, mapping, profile, strain, wave, write_csv
-from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
+from vbraille.render import LATERO, MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
 
 def peaks(values):
     return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])) + 1
+
+
+SIX = [each for each in MAPPINGS.values() if each.rows <= 6]
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
@@ -61,13 +64,20 @@ def test_contrast_scales_the_profile():
 
 def test_mapping_compares_all_methods_on_six_rows():
     table = mapping(STRESS2.style)
-    assert set(table["method"]) == set(MAPPINGS)
+    assert set(table["method"]) == {n for n, each in MAPPINGS.items() if each.rows <= 6}
     assert [n for n in table.columns if n.startswith("deflection")] == [
         f"deflection_row_{row}" for row in range(6)
     ]
 
 
-@pytest.mark.parametrize("method", MAPPINGS.values(), ids=MAPPINGS)
+def test_mapping_compares_all_methods_on_the_rows_of_a_model():
+    table = mapping(LATERO.style, model=LATERO)
+    assert set(table["method"]) == set(MAPPINGS)
+    assert [n for n in table.columns if n.startswith("deflection")][-1] == "deflection_row_7"
+    assert table.title.startswith("Latero: ⠵ on 8 actuator rows")
+
+
+@pytest.mark.parametrize("method", SIX, ids=[each.name for each in SIX])
 def test_mapping_idles_at_one_where_a_row_is_inverted(method):
     full_cell = np.array([0x3F], np.uint8)
     chosen = mapping(STRESS2.style, full_cell, [method])

@@ -63,7 +63,7 @@ def test_the_path_kernel_equals_its_twin(drawn):
 @pytest.mark.parametrize(
     ("model", "mapping"),
     [(VBD, single_row(dot_row)) for dot_row in (1, 2, 3)]
-    + [(STRESS2, mapping) for mapping in MAPPINGS.values()],
+    + [(STRESS2, mapping) for mapping in MAPPINGS.values() if mapping.rows <= 6],
     ids=lambda part: part.name,
 )
 def test_kernels_equal_their_twin_on_the_displays_as_they_are(model, mapping, texture, rng):

@@ -9,8 +9,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from vbraille.errors import InputError
+from vbraille.reading.foot import STAY_S
 from vbraille.simulation.hand import CLEAR_MM, RETURN_MM_S
-from vbraille.simulation.paging import DRIFT_PITCHES, TILT_RAD, Area
+from vbraille.simulation.paging import DRIFT_PITCHES, FOOT_S, TILT_RAD, Area, Drift
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.wander import ARM_MM, TURN_RAD, Wander
 
@@ -162,3 +163,24 @@ def test_bounds():
     for spec in ("sweep:60", "fluent", "wander:60"):
         with pytest.raises(ValueError, match="a line is from"):
             parse_hand(spec).read_page(replace(PAGE, end_mm=1e6))
+
+
+@pytest.mark.parametrize("spec", ["sweep:60", "slow", "fluent"])
+def test_a_hand_that_is_to_go_on_ends_below_the_last_line_and_stays_there(spec):
+    area = replace(SHORT, foot_mm=5.0)
+    motion, usual = (parse_hand(spec, 5).read_page(each) for each in (area, SHORT))
+    shared = usual.t_s.size - 1
+    np.testing.assert_array_equal(motion.x_mm[:shared], usual.x_mm[:shared])
+    below = motion.y_mm > area.height_mm
+    stays_s = motion.t_s[-1] - motion.t_s[motion.y_mm == area.height_mm + 5.0][0]
+    assert stays_s == pytest.approx(FOOT_S)
+    assert FOOT_S > STAY_S  # which is what the program waits for
+    assert below[-1]
+    assert not below[:shared].any()
+
+
+def test_a_drift_goes_as_far_as_it_is_told():
+    t_s = np.arange(0, 600, 0.05)
+    drift = Drift(np.random.default_rng(1), pitches=0.5, tilt_rad=0.2)
+    assert 0.4 < np.abs(drift.y_pitches(t_s)).max() <= 0.5
+    assert 0.15 < np.abs(drift.theta_rad(t_s)).max() <= 0.2

@@ -12,6 +12,7 @@ from vbraille.analysis.input.trials import Places, written
 from vbraille.analysis.measures import (
     characters,
     confusion,
+    covariates,
     doterrors,
     legibility,
     levels,
@@ -258,10 +259,11 @@ def _compared(scores: Sequence[Scores], options: Options, left_out: list[LeftOut
 
 
 def _modelled(trials: pd.DataFrame, options: Options) -> Chapter:
+    tables = trialsmodel.trials_model(trials, options.factors, options.correction)
     return Chapter(
         "Trials modelled",
         "Conditions, and what else legibility goes with, by a logistic model of single trials.",
-        trialsmodel.trials_model(trials, options.factors, options.correction),
+        (*tables, covariates.covariates(trials, options.factors)),
     )
 
 

@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from vbraille.analysis import taskwords
 from vbraille.analysis.input.trials import natural
 from vbraille.render.braille.models import MODELS
-from vbraille.sessions.planning.choosing import describe
+from vbraille.sessions.planning.factors import within
+from vbraille.sessions.planning.knobs import GAP, KNOBS
 from vbraille.version import __version__
 from vbraille.wording import count
 
@@ -21,14 +23,22 @@ if TYPE_CHECKING:
     from vbraille.analysis.input.sittings import SessionTrials
     from vbraille.analysis.input.study import Study
     from vbraille.analysis.input.trials import LeftOut
+    from vbraille.sessions.planning.protocol import Protocol
 
 _DISTANCES = {
     "dot_width_mm": "dots {} mm wide",
     "dot_spacing_mm": "dot columns {} mm apart",
     "cell_gap_mm": "{} mm from cell to cell",
 }
-# Distances that follow from the one that two stimuli are compared by.
-_VARIED = {"dot_width_mm": ("dot_width_mm",), "dot_gap_mm": ("dot_spacing_mm",)}
+# Looks that follow from another one that two stimuli are compared by.
+_BY = {"dot_spacing_mm": (GAP,)}
+# What conditions and groups may differ in: columns of rows, and their words.
+_ALWAYS = ("texture", "contrast")
+_LOOKS = {
+    **{name: KNOBS[name].words for name in KNOBS if name != GAP},
+    "mapping": "mapping",
+    "table": "table",
+}
 
 
 def methods(study: Study) -> str:
@@ -51,16 +61,28 @@ def methods(study: Study) -> str:
 
 def _told(sittings: Sequence[SessionTrials]) -> Iterable[str]:
     """Sentences on the sessions of one protocol."""
+    protocol = sittings[0].protocol
     answered = [_answered(sitting) for sitting in sittings]
     rows = [row for part in answered for row in part]
-    yield _who(sittings, answered)
+    # Blank trials are what detection needs, and keep no watch there.
+    watches = protocol.asks.name != "detect" and protocol.design.catch is not None
+    tested = [[row for row in part if not (watches and row["catch"])] for part in answered]
+    kept = [row for part in tested for row in part]
+    yield _who(sittings, tested)
     yield from _by_whom(rows)
-    yield _display(sittings)
-    yield from _conditions(answered)
+    yield from taskwords.asked(protocol, kept)
+    yield from taskwords.caught([row for row in rows if watches and row["catch"]])
+    yield _display(sittings, rows)
+    yield from _texts(sittings, rows)
+    yield from _groups(sittings)
+    yield from _factors(protocol, rows)
+    yield from _conditions(tested)
     yield from _order(sittings, answered)
+    yield from taskwords.ended(rows)
     practised = [sitting.counts["practice"] for sitting in sittings]
+    with_feedback = "" if protocol.practice.feedback else ", without feedback"
     yield (
-        f"Before them came {_span(practised, 'trial')} of practice"
+        f"Before them came {_span(practised, 'trial')} of practice{with_feedback}"
         if any(practised)
         else "There was no practice"
     )
@@ -73,27 +95,26 @@ def _answered(sitting: SessionTrials) -> list[dict[str, Any]]:
     return [row for row in sitting.rows if row["answered"] != ""]
 
 
-def _who(sittings: Sequence[SessionTrials], answered: Sequence[Sequence[dict]]) -> str:
+def _who(sittings: Sequence[SessionTrials], tested: Sequence[Sequence[dict]]) -> str:
     """Who read how much of what."""
     protocol = sittings[0].protocol
     people = len({sitting.head["participant"] for sitting in sittings})
-    rows = [row for part in answered for row in part]
-    numbers = [len(part) for part in answered]
+    rows = [row for part in tested for row in part]
+    numbers = [len(part) for part in tested]
     if not rows:
         what = "answered no trial"
-    elif all(row["parameter"] for row in rows):
-        parameter = rows[0]["parameter"].removesuffix("_mm").replace("_", " ")
+    elif protocol.parameter is not None:
+        knob = KNOBS[protocol.parameter]
         values = {float(value) for row in rows for value in row["presented"].split()}
         what = (
-            f"compared {_span(numbers, 'pair')} of {len(values)} values of the {parameter}, "
-            f"{min(values):g} to {max(values):g} mm"
+            f"compared {_span(numbers, 'pair')} of {len(values)} values of the {knob.words}, "
+            f"{min(values):g} to {max(values):g}{knob.unit}"
         )
-    elif any(row["parameter"] for row in rows):
-        what = f"answered {_span(numbers, 'trial')}"
     else:
         cells = _span([len(row["presented"]) for row in rows], "cell")
         each = " each" if max(numbers) > 1 else ""
-        what = f"read {_span(numbers, 'string')} of {cells}{each}"
+        verb = "read" if protocol.asks.name == "identify" else "felt"
+        what = f"{verb} {_span(numbers, 'string')} of {cells}{each}"
     often = f"in {count(len(sittings), 'session')}"
     simulated = {row["answers_from"].partition(":")[0] for row in rows} == {"simulated"}
     who = count(people, "simulated participant" if simulated else "participant")
@@ -105,62 +126,137 @@ def _by_whom(rows: Sequence[dict]) -> Iterable[str]:
     """Where the answers came from, and what moved the array, where that was no person."""
     kinds = Counter(row["answers_from"].partition(":")[0] for row in rows)
     if simulated := kinds.pop("simulated", 0):
-        yield f"A simulated reader gave {_of_all(simulated, rows)} of the answers"
+        yield f"A simulated reader gave {taskwords.of_all(simulated, rows)} of the answers"
     kinds.pop("typed", None)
     if other := sum(kinds.values()):
-        yield f"{_of_all(other, rows)} of the answers came from a program or a file"
+        yield f"{taskwords.of_all(other, rows)} of the answers came from a program or a file"
     moved = sum(row["moved_by"].startswith("simulated") for row in rows)
     if moved:
-        yield f"A simulated hand moved the array in {_of_all(moved, rows)} of the trials"
+        yield f"A simulated hand moved the array in {taskwords.of_all(moved, rows)} of the trials"
 
 
-def _of_all(number: int, rows: Sequence[dict]) -> str:
-    return f"all {number}" if number == len(rows) else f"{number} of {len(rows)}"
-
-
-def _display(sittings: Sequence[SessionTrials]) -> str:
-    """What was read on, with the distances of the record."""
-    if sittings[0].protocol.medium == "paper":
+def _display(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> str:
+    """What was read on, with the distances of the record that were the same for all."""
+    protocol = sittings[0].protocol
+    if protocol.medium == "paper":
         return "Strings were read on paper, and timed by key"
-    parameter = sittings[0].protocol.parameter or ""
+    parameter = protocol.parameter or ""
+    varied = {parameter, *_differing(rows)}
+    varied |= {name for name, by in _BY.items() if parameter in by}
     told: list[str] = []
     for head in (sitting.head for sitting in sittings):
         array, geometry = head["array"], head["geometry"]
         lengths = [
             form.format(f"{geometry[name]:g}")
             for name, form in _DISTANCES.items()
-            if name not in _VARIED.get(parameter, ())
+            if name not in varied
         ]
+        mapping = () if "mapping" in varied else (f"with the mapping {head['mapping']}",)
         model = MODELS[head["model"]].title if head["model"] in MODELS else head["model"]
         device = head["device"].partition(":")[0]
         where = "a simulated device" if device == "sim" else "a device"
-        told.append(
-            f"the {model} ({array['rows']} × {array['columns']} actuators, {where}) at "
-            f"{head['rate_hz']:g} frames a second, with the mapping {head['mapping']}, "
-            f"{', '.join(lengths)}"
-        )
+        how = ", ".join([f"at {head['rate_hz']:g} frames a second", *mapping, *lengths])
+        size = f"{array['rows']} × {array['columns']} actuators"
+        told.append(f"the {model} ({size}, {where}) {how}")
     return f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
+
+
+def _texts(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:
+    """Which braille tables made the cells of texts."""
+    tables = sorted({row["table"] for row in rows if row.get("table")})
+    if tables:
+        versions = {sitting.head["versions"].get("liblouis", "unknown") for sitting in sittings}
+        yield (
+            f"Their cells were made of texts in print by liblouis {', '.join(sorted(versions))}, "
+            f"with the {'table' if len(tables) == 1 else 'tables'} {', '.join(tables)}"
+        )
+
+
+def _groups(sittings: Sequence[SessionTrials]) -> Iterable[str]:
+    """Groups of participants, and how many were in each."""
+    people: dict[str, set[str]] = {}
+    for sitting in sittings:
+        if group := sitting.head.get("group", ""):
+            people.setdefault(group, set()).add(sitting.head["participant"])
+    if not people:
+        return
+    differing = _between(sittings)
+    told = []
+    for group in sorted(people, key=natural):
+        own = [row for s in sittings if s.head.get("group") == group for row in s.rows]
+        looks = [_look(name, own) for name in differing]
+        told.append(f"{group} ({', '.join([count(len(people[group]), 'participant'), *looks])})")
+    many = "1 group" if len(told) == 1 else f"{len(told)} groups"
+    yield f"Participants were in {many}: {', '.join(told)}"
+
+
+def _factors(protocol: Protocol, rows: Sequence[dict]) -> Iterable[str]:
+    """What was crossed within participants, as far as it was shown."""
+    own = within(protocol.factors)
+    if not own or not rows:
+        return
+    told = []
+    possible = 1
+    for factor in own:
+        shown = {row[f"factor_{factor.name}"] for row in rows}
+        levels = [level.name for level in factor.levels if level.name in shown]
+        possible *= len(factor.levels)
+        told.append(f"{factor.name} ({', '.join(levels)})")
+    if len(told) == 1:
+        yield f"Within participants varied {told[0]}"
+        return
+    number = len({row["condition"] for row in rows})
+    part = f"all {number}" if number == possible else f"{number} of the {possible}"
+    yield f"Within participants varied {' and '.join(told)}, {part} combinations of them"
 
 
 def _conditions(answered: Sequence[Sequence[dict]]) -> Iterable[str]:
     """Conditions, with what they were shown with and how many trials each had."""
     rows = [row for part in answered for row in part]
     names = list(dict.fromkeys(row["condition"] for row in rows))
+    within_people = {name for part in answered for name in _differing(part)}
     told = []
     for name in sorted(names, key=natural):
         own = [row for row in rows if row["condition"] == name]
-        values = []
-        for knob in ("texture", "contrast"):
-            levels = sorted({row[knob] for row in own if row[knob] != ""})
-            if levels:
-                ends = f"{levels[0]:g}" if len(levels) == 1 else f"{levels[0]:g} to {levels[-1]:g}"
-                values.append(f"{knob} {ends}")
+        looks = [
+            _look(knob, own)
+            for knob in _LOOKS
+            if (knob in _ALWAYS or knob in within_people) and _values(knob, own)
+        ]
         each = [sum(row["condition"] == name for row in part) for part in answered]
-        told.append(f"{name} ({', '.join([*values, _span(each, 'trial')])})")
+        told.append(f"{name} ({', '.join([*looks, _span(each, 'trial')])})")
     if len(names) > 1:
         yield f"There were {len(names)} conditions: {', '.join(told)}"
     elif names:
         yield f"All was of one condition: {told[0]}"
+
+
+def _values(name: str, rows: Sequence[dict]) -> list[Any]:
+    """Values that rows have of a look, in order; nothing of pairs that are compared by it."""
+    compared = {row["parameter"] for row in rows} & {name, *_BY.get(name, ())}
+    given = set() if compared else {row.get(name, "") for row in rows} - {""}
+    return sorted({float(value) for value in given} if name in KNOBS else given)
+
+
+def _differing(rows: Sequence[dict]) -> list[str]:
+    """Looks of which rows have several values."""
+    return [name for name in _LOOKS if len(_values(name, rows)) > 1]
+
+
+def _between(sittings: Sequence[SessionTrials]) -> list[str]:
+    """Looks that are the same in each session, and differ between sessions."""
+    whole = _differing([row for sitting in sittings for row in sitting.rows])
+    own = {name for sitting in sittings for name in _differing(sitting.rows)}
+    return [name for name in whole if name not in own]
+
+
+def _look(name: str, rows: Sequence[dict]) -> str:
+    """Words for a look of some rows: "texture 0", "dot width 1 to 2 mm"."""
+    values = _values(name, rows)
+    if name not in KNOBS:
+        return f"{_LOOKS[name]} {' and '.join(values)}"
+    ends = f"{values[0]:g}" if len(values) == 1 else f"{values[0]:g} to {values[-1]:g}"
+    return f"{_LOOKS[name]} {ends}{KNOBS[name].unit}"
 
 
 def _order(sittings: Sequence[SessionTrials], answered: Sequence[Sequence[dict]]) -> Iterable[str]:
@@ -173,11 +269,12 @@ def _order(sittings: Sequence[SessionTrials], answered: Sequence[Sequence[dict]]
     if len(protocol.conditions) < 2:
         yield f"Trials came in {blocks}; {drawn}"
     elif protocol.design.blocks == "conditions":
-        yield f"Each condition had blocks of its own, {blocks} in a session; {drawn}"
+        how = taskwords.ordered(protocol, [sitting.head for sitting in sittings])
+        yield f"Each condition had blocks of its own, {blocks} in a session, {how}; {drawn}"
     else:
         yield f"Conditions were mixed in {blocks}; {drawn}"
-    if protocol.adaptive:
-        yield f"The values were chosen by the answers: {describe(protocol)}"
+    yield from taskwords.ruled(protocol)
+    yield from taskwords.procedure(protocol)
 
 
 def _troubles(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> Iterable[str]:

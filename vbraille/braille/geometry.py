@@ -7,7 +7,7 @@ edge of the line's first cell, which is the left edge of its left dot column.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from vbraille.errors import check_range
 
@@ -112,6 +112,11 @@ STRESS2 = Geometry(
     row_spacing_mm=3.6,
     line_pitch_mm=14.0,
 )
+# Lévesque 2009, 6.2, and the Latero: along the line as on the STReSS² of ch. 4, since the columns
+# are as far apart; rows of dots on every second row of actuators, 1.4 and 1.6125 mm apart. The line
+# pitch is ours, as much larger than the row spacing as there. The travel is the carrier's.
+STRESS2_8X8 = replace(STRESS2, row_spacing_mm=2.8, line_pitch_mm=11.0, travel_mm=220.0)
+LATERO = replace(STRESS2, row_spacing_mm=3.225, line_pitch_mm=12.5, travel_mm=281.0)
 # Embossed paper: 2.29 and 3.71 mm as in Lévesque 2009; the others are common values.
 STANDARD = Geometry(
     dot_width_mm=1.5,
@@ -121,4 +126,10 @@ STANDARD = Geometry(
     line_pitch_mm=10.0,
 )
 
-PRESETS = {"vbd": VBD, "stress2": STRESS2, "standard": STANDARD}
+PRESETS = {
+    "vbd": VBD,
+    "stress2": STRESS2,
+    "stress2-8x8": STRESS2_8X8,
+    "latero": LATERO,
+    "standard": STANDARD,
+}

@@ -33,6 +33,10 @@ if TYPE_CHECKING:
     from vbraille.translate import Source
 
 
+_ALL_DOTS = 0xFF
+_MOST_HEIGHT_MM = 10_000.0
+
+
 @dataclass(frozen=True, slots=True)
 class Page:
     """A text laid out for a display and a style.
@@ -140,6 +144,42 @@ def build_lengths(
     except ValueError as error:
         raise InputError(str(error)) from None
     return replace(model, style=replace(model.style, geometry=geometry))
+
+
+def build_page(arguments: argparse.Namespace, model: Model) -> Model:
+    """Display and style with what the options say of a page on a surface of two axes.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range.
+    """
+    display, style = model.display, model.style
+    if arguments.height is not None:
+        display = replace(display, height_mm=check_height(arguments.height))
+    given = {
+        name: value
+        for name, value in (("manner", arguments.straying), ("band", arguments.band))
+        if value is not None
+    }
+    try:
+        style = replace(style, straying=replace(style.straying, **given))
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return replace(model, display=display, style=style)
+
+
+def check_height(height_mm: float) -> float:
+    """How far a carriage goes along y, if one can.
+
+    Raises
+    ------
+    InputError
+        If it is not 0 to 10,000 mm.
+    """
+    if not 0 <= height_mm <= _MOST_HEIGHT_MM:
+        raise InputError(f"--height is {height_mm:g} mm; it must be 0 to {_MOST_HEIGHT_MM:g} mm")
+    return height_mm
 
 
 def build_table(arguments: argparse.Namespace, language: str = "") -> BrailleTable:
@@ -320,7 +360,9 @@ def note_unseen_dots(page: Page) -> None:
     """Say on stderr if the table writes dots that the display does not show."""
     table = page.layout.book.table
     info = None if table is None else table.info
-    if info is not None and info.dots == 8 and page.model.style.mapping.rows > 1:
+    style = page.model.style
+    eight = style.straying.manner == "free" or style.mapping.shown_dots() == _ALL_DOTS
+    if info is not None and info.dots == 8 and style.mapping.rows > 1 and not eight:
         say_line(
             f"table {info.name} has eight dots; the {page.model.title} shows six, "
             f"so that dots 7 and 8 are not felt",

@@ -141,6 +141,16 @@ def check_travel(display: Display, travel_mm: float) -> None:
         )
 
 
+def check_height(display: Display, height_mm: float | None) -> None:
+    """Raise InputError if a page is higher than a device's carriage goes down; None is no page."""
+    if height_mm is not None and height_mm > display.height_mm + TRAVEL_TOLERANCE_MM:
+        far = f"goes {display.height_mm:g} mm down" if display.height_mm else "goes along x only"
+        raise InputError(
+            f"the carriage of {display.name} {far} and {setting('height')} asks for "
+            f"{height_mm:g} mm; leave {setting('height')} out"
+        )
+
+
 def _check_fast_enough(info: Display, rate_hz: float) -> None:
     """Raise InputError if a device is too slow for the loop."""
     if info.rate_hz < rate_hz:

@@ -55,6 +55,7 @@ class Flag(IntFlag):
     RESTED = 128  # the device had gone to rest by itself: the frame before was rest
     HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
     EXPOSED = 512  # the picture has moved by itself for as long as it may, and rests
+    TURNED = 1024  # the array is turned too far for the picture, and rests
 
 
 def tick_dtype(shape: tuple[int, int]) -> np.dtype:

@@ -51,6 +51,7 @@ _STATE = np.dtype(
             "moved_ns",  # when the hand last moved
             "shown",  # serial number of what is under the hand; 0 at rest
             "part",  # of what is shown
+            "turned",  # whether the array is turned too far for what is wanted
             "begun", "shown_ns",  # the picture whose own time goes, and that time
             "exhausted",  # the picture that has moved by itself for as long as it may
             "exposures",  # how often one has

@@ -42,11 +42,11 @@ from vbraille.engine.record import (
     Y,
 )
 from vbraille.render import work
-from vbraille.render.kernels import blend, frame, part_of
+from vbraille.render.kernels import blend, frame, part_of, seamless, too_far
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
-_EXPOSED = int(Flag.EXPOSED)
+_EXPOSED, _TURNED = int(Flag.EXPOSED), int(Flag.TURNED)
 # What a tick is given, each a row of float64; times are whole numbers that fit into one.
 (POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
 _NOWHERE_MM = 1e6
@@ -156,6 +156,8 @@ def _wanted(state, now_ns, taking, numbers):
         return 0
     if now["exhausted"] == now["serial"]:
         return 0
+    if now["turned"]:
+        return 0
     # A picture that moves by itself is felt without moving the hand.
     if numbers[work.FREQUENCY] == 0.0 and now_ns - now["moved_ns"] > now["idle_ns"]:
         return 0
@@ -179,16 +181,18 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
         now["exhausted"] = now["serial"]
         now["exposures"] += 1
+    turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
+    now["turned"] = 1 if turned else 0
     wanted = _wanted(state, now_ns, taking, numbers)
-    same = now["shown"] != 0 and now["shown"] == wanted
-    part = part_of(numbers, y_mm, now["part"] if same else work.NO_PART)
+    # A finger at the edge of its line stays on it when the page comes in another style, too.
+    part = part_of(numbers, y_mm, now["part"] if now["shown"] != 0 else work.NO_PART)
     if wanted != now["shown"]:
         if wanted != now["begun"] and wanted != 0:
             now["begun"] = wanted
             now["shown_ns"] = 0
         now["shown"] = wanted
         _change(state, now["pause_ns"] if now["paused"] else now["fade_ns"], output, held)
-    elif wanted != 0 and part != now["part"]:
+    elif wanted != 0 and part != now["part"] and not seamless(numbers):
         _change(state, now["fade_ns"], output, held)
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
@@ -311,6 +315,8 @@ def advance(
             now["flags"] |= _HELD
         if now["exhausted"] != 0 and now["exhausted"] == now["serial"]:
             now["flags"] |= _EXPOSED
+        if now["turned"]:
+            now["flags"] |= _TURNED
         slot = (first + n) % size
         ints[slot, TICK] = now["tick"]
         ints[slot, TIME] = now_ns

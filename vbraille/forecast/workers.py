@@ -7,9 +7,11 @@ there is more than one worker.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 import signal
+import warnings
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -20,18 +22,20 @@ from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from concurrent.futures import ProcessPoolExecutor
 
 Task = TypeVar("Task")
 Found = TypeVar("Found")
 
 MOST_WORKERS = 256
+HOW_TO_GET_DISTRIBUTED = "pip install 'vbraille[cluster]' installs it"
 HOW_TO_GET_DASK = "pip install 'vbraille[sweeps]' installs it"
 _ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:[\w.-]+|\[[0-9a-fA-F:]+\]):[0-9]{1,5}")
 _PATIENCE_S = 10  # for a cluster to answer
 # Turns of a worker: at each it waits until this process, on a busy machine, gives it more.
-_TURNS = 8
-# Threads of linear algebra beside those of other workers would only take turns with them.
-_ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_TURNS = 16
+_MOST_IN_TURN = 8  # tasks; what a worker has done is known at the end of its turn
+_PR_SET_PDEATHSIG = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +71,7 @@ class Workers:
                 f"that the scheduler says, such as tcp://192.168.1.5:8786"
             )
         if not _is_there("distributed"):
-            raise InputError(
-                f"{setting('cluster')} needs distributed; pip install distributed installs it"
-            )
+            raise InputError(f"{setting('cluster')} needs distributed; {HOW_TO_GET_DISTRIBUTED}")
 
     def available(self, warn: Callable[[str], None]) -> Workers:
         """These workers, or a single one if dask is not installed, which is then told."""
@@ -124,12 +126,12 @@ def _on_processes(
 ) -> None:
     from concurrent.futures.process import BrokenProcessPool
 
-    import dask  # pyright: ignore[reportMissingImports]
     from dask.callbacks import Callback  # pyright: ignore[reportMissingImports]
+    from dask.multiprocessing import get  # pyright: ignore[reportMissingImports]
 
-    keys = {f"task-{number}": number for number in range(len(tasks))}
-    delayed = dask.delayed(function, pure=False)  # pyright: ignore[reportPrivateImportUsage]
-    graph = [delayed(task, dask_key_name=key) for key, task in zip(keys, tasks, strict=True)]
+    # dask begins with the last name of the alphabet.
+    keys = {f"task-{len(tasks) - number:07}": number for number in range(len(tasks))}
+    graph = {key: (function, task) for key, task in zip(keys, tasks, strict=True)}
     finished = 0
 
     def posttask(key: str, found: Found, *_: Any) -> None:
@@ -138,16 +140,10 @@ def _on_processes(
             finished += 1
             done(keys[key], found)
 
+    portion = max(1, min(len(tasks) // (number * _TURNS), _MOST_IN_TURN))
     try:
-        with Callback(posttask=posttask), _one_thread():
-            dask.compute(  # pyright: ignore[reportPrivateImportUsage]
-                *graph,
-                scheduler="processes",
-                num_workers=number,
-                chunksize=max(1, len(tasks) // (number * _TURNS)),
-                optimize_graph=False,
-                initializer=_begin_worker,
-            )
+        with Callback(posttask=posttask), _forked(number) as pool:
+            get(graph, list(keys), pool=pool, chunksize=portion, optimize_graph=False)
     except BrokenProcessPool:
         raise VbrailleError(
             f"a worker was ended from outside after {finished} of {count(len(tasks), 'task')}; "
@@ -155,24 +151,44 @@ def _on_processes(
         ) from None
 
 
-def _begin_worker() -> None:
-    """Leave a Ctrl-C to the process that the workers work for."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 @contextmanager
-def _one_thread() -> Iterator[None]:
-    """Have processes that begin now calculate with one thread each."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+def _forked(number: int) -> Iterator[ProcessPoolExecutor]:
+    """Fork this process for workers, each with one thread of linear algebra.
+
+    A new process would import for some seconds what this one has already. The workers are forked
+    at once, by this thread, before the pool has threads. Threads of linear algebra in each would
+    only take turns with those of other workers. Where the work ends early, nobody waits for them.
+    """
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import active_children, get_context
+
+    from threadpoolctl import threadpool_limits  # pyright: ignore[reportMissingImports]
+
+    others = set(active_children())
+    with threadpool_limits(1), warnings.catch_warnings():
+        # Python 3.12 and later warn of threads, and those of linear algebra are ready for forks.
+        warnings.filterwarnings("ignore", r"This process .* is multi-threaded", DeprecationWarning)
+        with ProcessPoolExecutor(
+            number, get_context("fork"), initializer=_begin_worker, initargs=(os.getpid(),)
+        ) as pool:
+            try:
+                yield pool
+            except BaseException:
+                for worker in set(active_children()) - others:
+                    worker.kill()
+                raise
+
+
+def _begin_worker(parent: int) -> None:
+    """Leave signals to the process that the workers work for, and end when it ends."""
+    signal.set_wakeup_fd(-1)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(OSError, AttributeError):  # where there is no such call
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
+    if os.getppid() != parent:  # the parent was gone before that
+        os._exit(1)
 
 
 def _on_cluster(

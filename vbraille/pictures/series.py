@@ -71,9 +71,10 @@ def profile(model: Model) -> FigureTable:
 def mapping(
     style: BrailleStyle,
     masks: NDArray[np.uint8] = LETTER,
-    methods: Sequence[Mapping] = tuple(MAPPINGS.values()),
+    methods: Sequence[Mapping] = (),
+    model: Model = STRESS2,
 ) -> FigureTable:
-    """Compute the deflection of the six rows of the STReSS² along a letter, for each mapping.
+    """Compute the deflection of each row of a display along a letter, for each mapping.
 
     Lévesque 2009, fig. 4.5, and the two methods of its author's later code.
 
@@ -82,20 +83,23 @@ def mapping(
     masks : uint8[cells]
         Dot masks of the letter, or of several.
     methods
-        The mappings to compare, of six rows each.
+        The mappings to compare; all that the display has rows for, if none is given.
+    model
+        The display.
 
     Returns
     -------
     Table
-        ``method``, ``x_mm`` (of the actuator) and ``deflection_row_0`` … ``_5``.
+        ``method``, ``x_mm`` (of the actuator) and ``deflection_row_0`` and on.
     """
     # All columns sample the same function (eq. 3.1): one of them shows it.
-    column = replace(STRESS2.display, columns=1)
+    column = replace(model.display, columns=1)
+    methods = methods or [way for way in MAPPINGS.values() if way.rows <= column.rows]
     geometry, tuning = style.geometry, style.tuning
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))
     frames = [
-        deflections(x, masks, replace(style, mapping=method), column)[:, :, 0] for method in methods
+        deflections(x, masks, replace(style, mapping=way), column)[:, :, 0] for way in methods
     ]
     columns = {
         "method": np.repeat([method.name for method in methods], x.size),
@@ -103,7 +107,7 @@ def mapping(
         **_numbered("deflection_row_", np.concatenate(frames).T),
     }
     letters = to_braille(masks.tolist())
-    title = f"{STRESS2.title}: {letters} on six actuator rows{tuning_words(tuning)}"
+    title = f"{model.title}: {letters} on {column.rows} actuator rows{tuning_words(tuning)}"
     return FigureTable("mapping", title, columns)
 
 

@@ -182,6 +182,7 @@ class Traced:
         return structs.replace(
             plain,
             geometry=geometry_shown(stimulus.geometry),
+            mapping=f"mapping: {mapping.name}",
             rows_shown=rows_shown(style, self._display),
             lines=[line_shown(scene, protocol.line(stimulus.masks), under=True)],
             place=_name(trial),

@@ -26,6 +26,18 @@ _SPOKEN = {
 _TYPED = {"space": " ", "enter": "\n", "return": "\r", "backspace": "\x7f", "tab": "\t"}
 _TYPED |= {"shift-tab": "backtab", **{f"ctrl-{chr(96 + n)}": chr(n) for n in range(1, 27)}}
 _HELD_KEY = re.compile(rf"((?:{'|'.join(HELD)})*)(.+)", re.DOTALL | re.IGNORECASE)
+_DISPLAY_KEY = re.compile(r"display ([A-Za-z][A-Za-z0-9_]*)")
+# Commands of BRLTTY that are a little more than one of ours, and go by its name.
+NEARLY = {
+    "TOP_LEFT": "TOP",
+    "BOT_LEFT": "BOT",
+    "WINUP": "LNUP",
+    "WINDN": "LNDN",
+    "PRDIFLN": "LNUP",
+    "NXDIFLN": "LNDN",
+    "FWINLTSKIP": "FWINLT",
+    "FWINRTSKIP": "FWINRT",
+}
 _DEVICE_KEY = re.compile(r"(?:(button|knob) )?([1-9][0-9]{0,2})")
 
 
@@ -72,7 +84,8 @@ class Bindings:
         is not named keeps its own keys. "space", "enter", "tab" and "backspace" name those keys.
     buttons
         Names of commands, by the button of the device: "1" or "button 1". "knob 1" names the value
-        of the tuning that a knob turns, such as "CONTRAST".
+        of the tuning that a knob turns, such as "CONTRAST". "display HOME" is a key of a
+        conventional display, by BRLTTY's name for it.
     where
         Function that tells where the settings have a value, by its table and its key.
     """
@@ -94,12 +107,15 @@ class Bound:
         The command of each button of the device that has one, by the button's number.
     knobs
         The value of the tuning that each knob of the device turns, by the knob's number.
+    display_keys
+        The command of each key of a conventional display that has one, by BRLTTY's name for it.
     """
 
     commands: tuple[Command, ...]
     buttons: Mapping[int, Command]
     knobs: Mapping[int, str]
     _by_key: Mapping[tuple[Context, str], Command]
+    display_keys: Mapping[str, Command] = field(default_factory=dict)
 
     def of(self, context: Context) -> Iterator[Command]:
         """Commands that can be called in a context."""
@@ -169,8 +185,9 @@ def bind(commands: tuple[Command, ...], bindings: Bindings, turned: tuple[str, .
     if not any(command.keys for command in bound if command.name == "QUIT"):
         where = bindings.where("keys", "QUIT")
         raise InputError(f"{where}: no key calls QUIT; give it one, or reading cannot be stopped")
-    buttons, knobs = _buttons(bindings, {command.name: command for command in bound}, turned)
-    return Bound(bound, buttons, knobs, by_key)
+    named = {command.name: command for command in bound}
+    buttons, knobs = _buttons(bindings, named, turned)
+    return Bound(bound, buttons, knobs, by_key, _display_keys(bindings, named))
 
 
 def _buttons(
@@ -180,11 +197,14 @@ def _buttons(
     buttons: dict[int, Command] = {}
     knobs: dict[int, str] = {}
     for key, name in bindings.buttons.items():
+        if _DISPLAY_KEY.fullmatch(key.strip()):
+            continue
         where = bindings.where("buttons", key)
         found = _DEVICE_KEY.fullmatch(key.strip().lower())
         if found is None:
             raise InputError(
-                f'{where}: {key!r} is no button; write a number such as "1", or "knob 1"'
+                f'{where}: {key!r} is no button; write a number such as "1", or "knob 1", or '
+                f'"display HOME"'
             )
         if found[1] == "knob":
             _check_name(name, turned, where)
@@ -193,6 +213,17 @@ def _buttons(
             _check_name(name, by_name, where)
             buttons[int(found[2])] = by_name[name]
     return buttons, knobs
+
+
+def _display_keys(bindings: Bindings, by_name: Mapping[str, Command]) -> dict[str, Command]:
+    """Commands of a conventional display's keys, by BRLTTY's names for these."""
+    keys = {**by_name, **{key: by_name[name] for key, name in NEARLY.items() if name in by_name}}
+    for key, name in bindings.buttons.items():
+        found = _DISPLAY_KEY.fullmatch(key.strip())
+        if found is not None:
+            _check_name(name, by_name, bindings.where("buttons", key))
+            keys[found[1].upper()] = by_name[name]
+    return keys
 
 
 def _sent(name: str, where: str) -> str:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.ranged import LineRange
+from vbraille.reading.surface import Surface, around, turned
 from vbraille.reading.underhand import UnderHand
+from vbraille.reading.upright import Upright
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     first_character,
+    is_counted,
     line_name,
     place_sentence,
 )
@@ -33,7 +37,10 @@ _NS_PER_S = 1_000_000_000
 
 
 class LineReader:
-    """Somebody who reads one line after the other.
+    """Somebody who reads one line after the other, each alone or on a page of several.
+
+    The line under the hand is the one that the finger is on: on a page it changes as the finger
+    goes up or down. What is put under the hand there comes into the row that the finger is in.
 
     Parameters
     ----------
@@ -98,6 +105,7 @@ class LineReader:
         self.skip_blank = False
         self.lines = 0
         self.done = False
+        self._upright = Upright()
         self._advance = advance
         self._stay = stay
         self._finished = False  # whether the end was said, until a key brings another line
@@ -166,6 +174,8 @@ class LineReader:
         """Look where the hand was in ticks, which are all since the last call."""
         if not ticks.size:
             return
+        for sentence in self._upright.watch(ticks[-1]):
+            self.say(sentence)
         felt = self.under.felt(ticks)
         if felt.size:
             self._follow(felt)
@@ -173,6 +183,8 @@ class LineReader:
 
     def _follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand was while it felt the line."""
+        if self.under.come_to(ticks, lambda line: line_name(self.layout, line)):
+            self._came(another=True)
         was_reached = self.under.reached
         home = self.under.follow(ticks)
         if self.under.reached and not was_reached:
@@ -184,7 +196,7 @@ class LineReader:
         if self.under.reached and not self._prefetched:
             # On the way back to the start there is time for this.
             self._prefetched = True
-            self.layout.line(self.line_number + 1)
+            self._prefetch()
         self.under.watch(ticks, finished=self._finished)
 
     def attend(self, now_s: float, *, resting: bool) -> None:
@@ -195,7 +207,7 @@ class LineReader:
             scroll.begin(now_s)
         if scroll is None or not scroll.on or resting or self._finished or window is None:
             return
-        if scroll.due(len(window), now_s):
+        if scroll.due(self.under.cells, now_s):
             self.go_on()
 
     def _end_cue(self) -> Cue:
@@ -205,21 +217,81 @@ class LineReader:
             return Cue.LINE_END
         if following.block.kind is BlockKind.PAGE:
             return Cue.PAGE_END
+        surface = self.under.surface
+        if surface is not None and surface.paged:
+            return Cue.PAGE_END if self.window is surface.windows[-1] else Cue.LINE_END
         number = 0 if self.line is None else self.layout.number_of(self.line)
         return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
 
     def go_on(self) -> None:
         """Put what follows under the hand; if there is nothing, reading is finished."""
-        if self.window is not None and not self.pan(1) and not self.go_by(1):
+        if self.window is None:
+            return
+        if self.pan(1):
+            if self._paged:
+                self.cue(Cue.PAGE_END)
+        elif not self.turn_page(1):
             self.finish()
 
     def pan(self, step: int) -> bool:
-        """Put the next part of the line under the hand, or the one before; False without one."""
-        here = self.window
-        window = None if here is None else here.right if step > 0 else here.left
-        if window is not None:
-            self.put(window)
-        return window is not None
+        """Put the next part of the line under the hand, or the one before; False without one.
+
+        On a page the parts of all lines are put there.
+        """
+        here = self._here
+        surface = None if here is None else here.panned(step)
+        if surface is not None:
+            self._put(surface)
+        return surface is not None
+
+    def turn_page(self, step: int) -> bool:
+        """Put the next page under the hand, or the one before; False if there is none.
+
+        It is said which lines a page has. Where one line is shown, that is the page.
+        """
+        here = self.under.surface
+        if here is None:
+            return False
+        if not here.paged:
+            return self.go_by(step)
+        page = turned(self.range, here, step, self.under.rows, skip_blank=self.skip_blank)
+        if page is None:
+            return False
+        self.cue(Cue.PAGE_END)
+        self.say(self._page_sentence(page))
+        row = self.under.row
+        self._put(replace(page, row=row) if page.has(row) else page)
+        return True
+
+    def _page_sentence(self, page: Surface) -> str:
+        """Which lines a page has, or where it begins while lines are not counted."""
+        first, last = page.there[0].line, page.there[-1].line
+        if not is_counted(self.layout):
+            return place_sentence(self.layout, first)
+        numbers = [self.layout.number_of(line) for line in (first, last)]
+        return (
+            f"page: line {numbers[0]}" if first is last else "page: lines {} to {}".format(*numbers)
+        )
+
+    @property
+    def _paged(self) -> bool:
+        return self.under.surface is not None and self.under.surface.paged
+
+    @property
+    def _here(self) -> Surface | None:
+        """What is under the hand, with the row that the finger is in as the one that is meant."""
+        surface, window = self.under.surface, self.window
+        return None if surface is None else replace(surface, row=surface.windows.index(window))
+
+    def _prefetch(self) -> None:
+        """Lay out what comes next."""
+        here = self.under.surface
+        if here is None:
+            return
+        if here.paged:
+            turned(self.range, here, 1, self.under.rows, skip_blank=self.skip_blank)
+        else:
+            self.layout.line(self.line_number + 1)
 
     def go_by(self, step: int, *, at_end: bool = False) -> bool:
         """Put the next line under the hand, or the one before; False if that is not to be read.
@@ -274,12 +346,27 @@ class LineReader:
             self.done = True
 
     def put(self, window: Window) -> None:
-        """Put a part of a line under the hand."""
-        another = self.line is None or self.line.number != window.line.number
-        self.under.put(window, line_name(self.layout, window.line))
+        """Put a part of a line under the hand; on a page, with the lines before and after it."""
+        rows = self.under.rows
+        if rows:
+            row = self.under.row
+            self._put(around(self.range, window, row, rows, skip_blank=self.skip_blank))
+        else:
+            self._put(Surface((window,)))
+
+    def _put(self, surface: Surface) -> None:
+        another = self.line is None or self.line.number != surface.window.line.number
+        self.under.put(surface, line_name(self.layout, surface.window.line))
+        self._finished = False
+        self._came(another=another)
+
+    def _came(self, *, another: bool) -> None:
+        """Take note that a line is under the hand, which may be the same as before."""
+        line = self.line
+        assert line is not None, "a line is under the hand"
         self.lines += another
-        self._finished = self._prefetched = False
+        self._prefetched = False
         self._echoed = another and self.echo is not Echo.NONE
         if another:
-            for sentence in self.echo.sentences(window.line, self.layout):
+            for sentence in self.echo.sentences(line, self.layout):
                 self.say(sentence)

@@ -14,13 +14,14 @@ from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError
 from vbraille.layout.texts import cells_per_line, choose_table, lay_out_text
-from vbraille.pose import Pose
 from vbraille.reading.asked import check_lines
 from vbraille.reading.commands.table import press_button
 from vbraille.reading.echo import Echo
+from vbraille.reading.inuse import DeviceInUse
 from vbraille.reading.knobturns import KnobTurns
 from vbraille.reading.openhand import OpenHand
 from vbraille.reading.reader import Reader
+from vbraille.reading.surface import MOST_LINES
 from vbraille.reading.underhand import MOST_CELLS
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.specs import (
@@ -32,7 +33,7 @@ from vbraille.simulation.specs import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -40,14 +41,11 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
-    from vbraille.engine.local import LocalEngine
     from vbraille.engine.shared import Extent
     from vbraille.engine.spawning import Spawned
-    from vbraille.engine.tally import Tally
     from vbraille.layout.pages import Layout, Line
     from vbraille.reading.beside import Beside
     from vbraille.render.braille.models import Model
-    from vbraille.render.braille.style import BrailleStyle
     from vbraille.simulation.pointing import Pointer
     from vbraille.simulation.steering import Steering
 
@@ -56,7 +54,7 @@ _POLL_S = 0.02
 _HELD = int(Flag.HELD)  # a plain number, as in `vbraille.reading.reader`
 
 
-class OpenDevice:
+class OpenDevice(DeviceInUse):
     """A device that somebody reads on. A context manager; on exit the actuators fade to rest.
 
     `vbraille.open` makes one that is ready to `show`. A program with an order of its own makes
@@ -110,12 +108,8 @@ class OpenDevice:
         self._wanted = wanted
         self._say = say
         self._attended = attended
-        self._reader: Reader | None = None
         self._knobs = KnobTurns()
-        self._newest: np.void | None = None
-        self._model: Model | None = None
         self._device = device if isinstance(device, Device) else None
-        self._engine: Host | LocalEngine
         self._closed = False
         self._simulated = isinstance(device, str) and is_simulated(device)
         moved = parse_hand(hand, seed, pointed=pointer is not None)
@@ -174,7 +168,8 @@ class OpenDevice:
         self._model = model
         if isinstance(self._engine, Host):
             # Cells may come closer while somebody reads.
-            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS))
+            lines = MOST_LINES if model.display.height_mm else 1
+            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS, lines))
         self._engine.start()
 
     def start_again(self) -> None:
@@ -318,94 +313,10 @@ class OpenDevice:
             # The hand was at the end of the line between two ticks, or its recording is over.
             if self._hand.once:
                 reader.quit()
-            elif ticks["line"][-1] == reader.line_number:
+            elif ticks["line"][-1] == reader.under.number:
                 reader.go_on()
         if reader.under.hopeless is not None:
             raise DeviceError(reader.under.hopeless)
-
-    @property
-    def pointer(self) -> Pointer | None:
-        """Where somebody may hold the simulated hand; None also if a person moves the device."""
-        return self._hand.pointer
-
-    @property
-    def held(self) -> bool:
-        """Whether somebody holds the simulated hand."""
-        return self._hand.held
-
-    @property
-    def display(self) -> Display:
-        """Display of the device."""
-        return self.model.display
-
-    @property
-    def model(self) -> Model:
-        """Display and style that lines are shown in."""
-        if self._model is None:
-            raise DeviceError("the device is not open; start it first")
-        return self._model if self._reader is None else replace(self._model, style=self.style)
-
-    @property
-    def style(self) -> BrailleStyle:
-        """Style that lines are shown in; `tune` changes it."""
-        if self._reader is not None:
-            return self._reader.style
-        return self.model.style
-
-    @property
-    def reader(self) -> Reader:
-        """Reader of what is shown, who takes the commands of `vbraille read`."""
-        if self._reader is None:
-            raise DeviceError("nothing is shown; show a text first")
-        return self._reader
-
-    @property
-    def line(self) -> Line | None:
-        """Line under the hand; None before the first."""
-        return None if self._reader is None else self._reader.line
-
-    @property
-    def done(self) -> bool:
-        """Whether all that was shown has been read."""
-        return self._reader is None or self._reader.done
-
-    @property
-    def x_mm(self) -> float | None:
-        """Place of the array's centre along the line at the last poll; None if not known."""
-        return self._engine.x_mm
-
-    @property
-    def pose(self) -> Pose | None:
-        """Pose of the array at the last poll, by the device's clock; None if not known."""
-        tick = self._newest
-        if tick is None or self._engine.x_mm is None:
-            return None
-        x_mm, y_mm, theta_rad = (float(tick[name]) for name in ("x_mm", "y_mm", "theta_rad"))
-        return Pose(int(tick["device_ns"]), x_mm, y_mm, theta_rad)
-
-    @property
-    def frame(self) -> NDArray[np.float32] | None:
-        """Frame sent last, float32[rows, columns], 0 to 1; None before the first poll."""
-        return None if self._newest is None else self._newest["frame"].copy()
-
-    @property
-    def paused(self) -> bool:
-        """Whether the array rests; setting it has the array rest at once, or go on."""
-        return self._engine.paused
-
-    @paused.setter
-    def paused(self, paused: bool) -> None:
-        self._engine.paused = paused
-
-    @property
-    def tally(self) -> Tally:
-        """Counts of what the loop has done so far, such as ticks and late ticks."""
-        return self._engine.tally
-
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """Counts of what went wrong with the device, by name; known after `close`."""
-        return self._engine.counts
 
     def tune(self, **turned: Any) -> None:
         """Show lines in a style of which some values differ from now on; see `Reader.tune`.

@@ -125,10 +125,10 @@ class Reader(LineReader):
         if counted.width == self.layout.width and self.layout.book is self._book:
             self.layout.count_from(counted.block, counted.lines)
 
-    def put(self, window: Window) -> None:
-        """Put a part of a line under the hand."""
-        super().put(window)
-        self.keeping.moved(self.layout, window.line)
+    def _came(self, *, another: bool) -> None:
+        super()._came(another=another)
+        if self.line is not None:
+            self.keeping.moved(self.layout, self.line)
 
     def jump(self, character: int, *, back: bool = True) -> bool:
         """Put the line of a place of the source under the hand; False if it is none of those.
@@ -189,7 +189,11 @@ class Reader(LineReader):
         width = self.under.width_in(style)
         pitch_mm = self.style.geometry.cell_pitch_mm
         if (style.geometry.cell_pitch_mm, width) == (pitch_mm, self.under.width):
+            before = self.under.rows, self.style.geometry.line_pitch_mm
             self.under.show_in(style)
+            after = self.under.rows, style.geometry.line_pitch_mm
+            if before != after and any((before[0], after[0])) and self.window is not None:
+                self.put(self.window)  # the lines of a page stand elsewhere, or there are more
         else:
             self.lay_out_again(style=style)
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.layout.pages import Line
     from vbraille.reading.opened import OpenDevice
+    from vbraille.reading.window import Window
 
 MOST_SAID: Final = 20
 BEFORE, AFTER = 2, 3  # lines around the one under the hand
@@ -168,19 +169,18 @@ class Viewed:
     def _lines(self, line: Line) -> Iterable[LineShown]:
         """Lines to be drawn, from top to bottom."""
         reader = self._device.reader
-        window, layout = reader.window, reader.layout
+        window, layout, surface = reader.window, reader.layout, reader.under.surface
         assert window is not None, "a line is under the hand"
+        assert surface is not None
         pitch_mm = reader.style.geometry.line_pitch_mm
+        if surface.paged:
+            for row, part in enumerate(surface.windows):
+                if part is not None:
+                    yield _part_shown(part, top_mm=row * pitch_mm, under=part is window)
+            return
         for step in range(-BEFORE, AFTER + 1):
             if step == 0:
-                yield line_shown(
-                    line,
-                    first=window.offset,
-                    count=len(window),
-                    start_mm=window.start_mm,
-                    number=line.number & _NUMBER,
-                    under=True,
-                )
+                yield _part_shown(window, under=True)
                 continue
             other = layout.laid_near(line, step)
             if other is not None:
@@ -190,3 +190,16 @@ class Viewed:
                     top_mm=step * pitch_mm,
                     number=other.number & _NUMBER,
                 )
+
+
+def _part_shown(part: Window, *, under: bool, top_mm: float = 0.0) -> LineShown:
+    """Show a part of a line, whose upper edge is at a place, as a page draws it."""
+    return line_shown(
+        part.line,
+        first=part.offset,
+        count=len(part),
+        start_mm=part.start_mm,
+        top_mm=top_mm,
+        number=part.line.number & _NUMBER,
+        under=under,
+    )

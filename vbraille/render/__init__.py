@@ -5,20 +5,32 @@ made, not when this is imported.
 """
 
 from vbraille.render.braille.mappings import MAPPINGS, Mapping, single_row
-from vbraille.render.braille.models import MODELS, STRESS2, VBD, Model, model_of
+from vbraille.render.braille.models import (
+    LATERO,
+    MODELS,
+    STRESS2,
+    STRESS2_8X8,
+    VBD,
+    Model,
+    model_of,
+)
 from vbraille.render.braille.profiles import Profile
+from vbraille.render.braille.straying import Straying
 from vbraille.render.braille.style import BrailleStyle
 from vbraille.render.braille.tuning import Tuning
 
 __all__ = [
+    "LATERO",
     "MAPPINGS",
     "MODELS",
     "STRESS2",
+    "STRESS2_8X8",
     "VBD",
     "BrailleStyle",
     "Mapping",
     "Model",
     "Profile",
+    "Straying",
     "Tuning",
     "model_of",
     "single_row",

@@ -8,7 +8,8 @@ into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
 the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
 with an empty cell before a line's first and one after its last. The table has a word for each slot
 of each line, whose bit r is set if actuator row r shows a dot there; a page has an empty line
-before its first and one after its last.
+before its first and one after its last. Where each actuator shows what lies freely under it, bit r
+stands for row r of the dots instead.
 
 The loops over a block are flat and without calls, so that they become vector instructions: hence
 polynomials instead of the library's sine, good to 1e-14.
@@ -26,8 +27,10 @@ from vbraille.render.work import (
     CELLS_PER_MM,
     COLUMN_PITCH,
     COLUMNS,
+    DOT_ROW_PITCH,
     DOT_SPACING,
     DOTS_PER_MM,
+    FREE,
     FREQUENCY,
     HYSTERESIS,
     IDLE,
@@ -44,6 +47,7 @@ from vbraille.render.work import (
     SLOTS,
     SWING,
     THETA,
+    TILT,
     TIME,
     X,
     Y,
@@ -51,6 +55,9 @@ from vbraille.render.work import (
 
 VIBRATION = 2.0  # `ProgramKind.VIBRATION`; the other kinds are braille
 _PAGE = 1.0
+_DOT_ROWS = 4
+# An array that was turned too far shows braille again once it is upright by so much more.
+_UPRIGHT = 0.85
 _HALF_SINE = 0.0
 _C = [(-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(11)]
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8, _C9, _C10 = _C
@@ -203,6 +210,87 @@ def part_of(numbers, y_mm, before):
 
 
 @_compiled
+def seamless(numbers):
+    """Tell whether one part of a picture goes over into the next without a fade."""
+    return numbers[KIND] == _PAGE and numbers[FREE] != 0.0
+
+
+@_compiled
+def too_far(numbers, theta, before):
+    """Tell whether an array is turned too far for a picture, where it was or was not ``before``."""
+    limit = numbers[TILT]
+    return abs(theta) > (_UPRIGHT * limit if before else limit)
+
+
+@_compiled
+def _dot(numbers, table, slot, row, across_mm, q):
+    """Swing of one dot, which is round, at q = (distance from its centre / its width)²."""
+    if table[slot] >> row & 1 == 0:
+        return 0.0
+    y = _cos_pi(q)
+    value = y
+    if numbers[PROFILE] == _HALF_SINE:
+        d = math.copysign(math.sqrt(q), across_mm)
+        y *= y
+        cosine = -_sin_pi(d, q)
+        wave = 1.0 + y * (-10.0 + y * (24.0 - 16.0 * y))
+        value *= numbers[SHAPE] + numbers[SHAPE + 1] * cosine * wave
+    else:
+        c = 2.0 * y * y - 1.0
+        z = c * c
+        value = numbers[SHAPE + 5]
+        for n in range(4, -1, -1):
+            value = numbers[SHAPE + n] + z * value
+        value = 0.5 + c * value
+    return min(max(value, 0.0), 1.0)
+
+
+@_compiled
+def _free(numbers, table, at, out):
+    """Fill a frame with what lies under each actuator: the dots of a page are round there.
+
+    Lévesque 2009, eq. 6.1 and 8.3.1, with the profile of a line's dots for that of a dot.
+    """
+    rows, columns = out.shape
+    lines, pitch = int(numbers[LINES]), numbers[CELL_PITCH]
+    cells = int(numbers[SLOTS]) // 2 - 2
+    cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
+    radius = 0.5 / numbers[DOTS_PER_MM]
+    for row in range(rows):
+        idle, gain = numbers[IDLE + row], numbers[IDLE + rows + row]
+        down = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
+        for column in range(columns):
+            right = column * numbers[COLUMN_PITCH] - numbers[ANCHOR]
+            x = at[X] + right * cosine + down * sine
+            y = at[Y] + down * cosine - right * sine
+            line = y / numbers[LINE_PITCH]
+            line = line if line > -1.0 else -1.0
+            line = math.floor(line if line < lines else lines)
+            cell = x * numbers[CELLS_PER_MM]
+            cell = cell if cell > -1.0 else -1.0
+            cell = math.floor(cell if cell < cells else cells)
+            swing = 0.0
+            # The lines above and below may reach in, if lines are close or cells have eight dots.
+            for near in range(max(int(line) - 1, 0), min(int(line) + 2, lines)):
+                below = y - (near + 0.5) * numbers[LINE_PITCH] + numbers[DOT_ROW_PITCH]
+                base = (near + 1) * int(numbers[SLOTS])
+                for dot_row in range(_DOT_ROWS):
+                    dy = below - dot_row * numbers[DOT_ROW_PITCH]
+                    if abs(dy) >= radius:
+                        continue
+                    # The dots of this cell, and the right one of the cell before.
+                    for which in range(-1, 2):
+                        slot = int(2 * (cell + 1)) + which
+                        edge = cell * pitch + numbers[DOT_SPACING] * (which & 1)
+                        edge -= pitch if which < 0 else 0.0
+                        dx = x - edge - radius
+                        q = (dx * dx + dy * dy) * numbers[DOTS_PER_MM] ** 2
+                        if q < 0.25 and slot >= 0:
+                            swing = max(swing, _dot(numbers, table, base + slot, dot_row, dx, q))
+            out[row, column] = idle + gain * swing
+
+
+@_compiled
 def frame(numbers, table, scratch, part, at, out):
     """Fill one frame, float[rows, columns], of a part of a picture.
 
@@ -219,6 +307,9 @@ def frame(numbers, table, scratch, part, at, out):
             for column in range(columns):
                 sign = 1.0 - 2.0 * ((row + column) & 1)
                 out[row, column] = numbers[AMPLITUDE] * (0.5 + 0.5 * sign * phase)
+        return
+    if numbers[FREE] != 0.0:
+        _free(numbers, table, at, out)
         return
     base = _base(numbers, part)
     theta = at[THETA]
@@ -266,13 +357,18 @@ def poses(numbers, table, scratch, at, parts, out):
     """Fill a frame for each pose over a picture, and the part that belongs under the array there.
 
     ``at`` is float64[n, 6], each row as `frame` takes it; ``parts``, int64[n], and ``out``,
-    float[n, rows, columns], are filled.
+    float[n, rows, columns], are filled. An array that is turned too far is at rest.
     """
     part = NO_PART
+    turned = False
     for n in range(at.shape[0]):
         part = part_of(numbers, at[n, Y], part)
         parts[n] = part
-        frame(numbers, table, scratch, part, at[n], out[n])
+        turned = too_far(numbers, at[n, THETA], turned)
+        if turned:
+            out[n] = 0.0
+        else:
+            frame(numbers, table, scratch, part, at[n], out[n])
 
 
 @_compiled

@@ -96,11 +96,12 @@ class Program:
         x_mm: float,
         out: NDArray[np.floating],
         *,
+        y_mm: float | None = None,
         theta_rad: float = 0.0,
         part: int = 0,
         time_s: float = 0.0,
     ) -> None:
-        """Fill one frame.
+        """Fill one frame, however far the array is turned.
 
         Parameters
         ----------
@@ -110,6 +111,9 @@ class Program:
         out : float[rows, columns]
             Deflections, 0 … 1. The array need not be contiguous, but for the first array of each
             new type and layout kernels are compiled, which takes some seconds.
+        y_mm
+            Place of the array's centre down the page, which matters where each actuator shows
+            what lies under it; None for that of a carriage that measures no y.
         theta_rad
             Angle by which the array is turned, in radians.
         part
@@ -126,6 +130,7 @@ class Program:
 
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
+        at[work.Y] = self.own_y_mm if y_mm is None else y_mm
         kernels.frame(self.numbers, self.table, self._scratch, part, at, out)
 
     def path(
@@ -217,7 +222,7 @@ def head(
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
     numbers[work.OWN_Y] = own_y_mm
-    numbers[work.EXPOSURE] = math.inf
+    numbers[work.EXPOSURE] = numbers[work.TILT] = math.inf
     numbers[work.ROWS], numbers[work.COLUMNS] = display.shape
     return numbers
 

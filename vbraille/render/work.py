@@ -22,10 +22,11 @@ class ProgramKind(IntEnum):
     FREQUENCY,  # at which a picture moves by itself, Hz; 0 if it does not
     AMPLITUDE,  # its largest swing of an actuator by itself, as a share of the full swing
     EXPOSURE,  # how long it may move by itself before it fades, s
+    TILT,  # angle of the array beyond which nothing is shown, rad; infinite if any will do
     ROWS,  # rows and columns of the display that it was compiled for
     COLUMNS,
     OWN,  # first of the numbers whose meaning differs from kind to kind
-) = range(8)
+) = range(9)
 
 # Braille: a line, or a page of lines.
 (
@@ -35,6 +36,8 @@ class ProgramKind(IntEnum):
     LINES,  # how many lines the page has; 0 for a line alone
     LINE_PITCH,
     HYSTERESIS,  # distance between going to the next line and coming back, in line pitches
+    FREE,  # 1 if each actuator shows what lies under it, 0 if rows keep to the line's rows of dots
+    DOT_ROW_PITCH,  # from one row of dots to the next, mm
     SLOTS,  # slots of a line: 2 · (cells + 2)
     CELLS_PER_MM,
     CELL_PITCH,
@@ -49,7 +52,7 @@ class ProgramKind(IntEnum):
     _S4,
     _S5,
     IDLE,  # deflection of each row off the dots, then how far and which way a dot swings it
-) = range(OWN, OWN + 20)
+) = range(OWN, OWN + 22)
 
 # Numbers that a frame is evaluated at: pose, the picture's own time, velocity.
 X, Y, THETA, TIME, VX, VY = range(6)

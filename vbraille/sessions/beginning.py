@@ -10,6 +10,7 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.making import make_plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.protocolfiles import load_protocol
+from vbraille.sessions.planning.writing import made_by
 from vbraille.sessions.record.folder import FORMAT, versions
 
 if TYPE_CHECKING:
@@ -88,6 +89,7 @@ def head_of(
     """
     display = protocol.model.display
     group = {"group": plan.group} if plan.group else {}
+    also = {} if conditions.also is None else {"also": conditions.also}
     return {
         "format": FORMAT,
         "protocol": protocol.name,
@@ -108,5 +110,6 @@ def head_of(
         "answers": conditions.answers,
         "fast": conditions.fast,
         "rate_hz": conditions.rate_hz,
-        "versions": versions(),
+        **also,
+        "versions": versions() | (made_by() if protocol.written else {}),
     }

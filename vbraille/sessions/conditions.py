@@ -54,6 +54,9 @@ class Conditions:
     markers
         Other recorder that is sent a marker of each event: "lsl", "lsl:NAME", "serial:PORT" or
         "serial:PORT:BAUD"; None for none.
+    also
+        Conventional display, for a protocol that shows something on one, such as
+        "brlapi:HOST:N"; None for the one that BRLTTY drives on this machine.
 
     Raises
     ------
@@ -69,6 +72,7 @@ class Conditions:
     sound: str = "auto"
     live: LiveAddress | None = None
     markers: str | None = None
+    also: str | None = None
 
     def __post_init__(self) -> None:
         check_rate(self.rate_hz)
@@ -79,7 +83,7 @@ class Conditions:
     def of(cls, head: Mapping[str, Any]) -> Conditions:
         """Conditions that a session began with, read from its session.json."""
         names = ("device", "hand", "answers", "rate_hz", "fast")
-        return cls(**{name: head[name] for name in names})
+        return cls(**{name: head[name] for name in names}, also=head.get("also"))
 
 
 USUAL = Conditions()

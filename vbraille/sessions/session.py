@@ -14,6 +14,8 @@ from vbraille.files import check_free
 from vbraille.sessions.beginning import head_of, plan_session, told_fields
 from vbraille.sessions.conditions import USUAL, Conditions
 from vbraille.sessions.planning.choosing import procedure_of
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
+from vbraille.sessions.planning.standing import cells_needed, stands_beside
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
 from vbraille.sessions.record.progress import Progress
@@ -22,10 +24,10 @@ from vbraille.sessions.running.answers import (
     ScriptedAnswers,
     Typed,
     parse_answers,
-    seed_of,
 )
 from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.sessions.running.markerports import parse_markers
+from vbraille.sessions.simulated.reader import seed_of
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
@@ -123,6 +126,7 @@ class Session:
             self._pointer = Pointer() if has_hand(conditions.device) else None
         if conditions.markers is not None:
             parse_markers(conditions.markers)
+        _check_beside(protocol, conditions)
         spec = device_spec(
             conditions.device, conditions.hand, seed_of(drawn), self._steering, self._pointer
         )
@@ -204,7 +208,7 @@ class Session:
             Function that makes the engine, as for `create`.
         changed
             Fields of the `Conditions` that differ from when the session began: device, hand,
-            answers, fast, sound, live or markers. If the answers come from elsewhere now, the
+            answers, fast, sound, live, markers or also. If the answers come from elsewhere now, the
             session is not fast unless that is asked for again.
 
         Raises
@@ -338,9 +342,10 @@ class Session:
         if onlookers is not None:
             say = onlookers.beside(say)
             onlookers.begin(self._engine)
-        markers = None
+        markers = beside = None
         try:
             markers = self._usual_markers()
+            beside = self._usual_beside(given)
             if isinstance(self._engine, Host):
                 self._engine.launch()
             # This import stands here because numba takes long to load; the host starts meanwhile.
@@ -357,6 +362,7 @@ class Session:
                 before_rest=before_rest,
                 onlookers=onlookers,
                 markers=markers,
+                beside=beside,
             )
             if begins:
                 sitting.open(self.protocol, self.plan)
@@ -379,6 +385,8 @@ class Session:
                 self._engine.close()
             if onlookers is not None:
                 onlookers.close()
+            if beside is not None:
+                beside.close()
             if markers is not None:
                 for sentence in markers.close():
                     say(sentence)
@@ -391,6 +399,21 @@ class Session:
         from vbraille.sessions.running.markers import Markers
 
         return Markers(parse_markers(self.conditions.markers))
+
+    def _usual_beside(self, answers: Answers) -> OnConventional | None:
+        """Begin to drive the conventional display that the protocol needs; None if it needs none.
+
+        A simulated reader compares nothing with what stands there.
+        """
+        if self.conditions.fast or answers.felt or not stands_beside(self.protocol):
+            return None
+        from vbraille.conventional.display import ConventionalDisplay
+        from vbraille.sessions.running.conventional import OnConventional
+
+        spec = self.conditions.also or CONVENTIONAL
+        cells = cells_needed(self.protocol, self.plan)
+        table = self.protocol.conventional
+        return OnConventional(ConventionalDisplay(spec), table, cells=cells, spec=spec)
 
     def _usual_onlookers(self) -> Onlookers | None:
         """Make the pages of the live view that is wanted; None if none is."""
@@ -422,6 +445,20 @@ class Session:
         channels = (self._steering, self._pointer)
         inherited = [channel.descriptor for channel in channels if channel is not None]
         return Host(spec, wanted, self.protocol.model.style.room(wanted, most), pass_fds=inherited)
+
+
+def _check_beside(protocol: Protocol, conditions: Conditions) -> None:
+    """Raise InputError if the protocol and a conventional display do not go together."""
+    if conditions.also is not None and not stands_beside(protocol):
+        raise InputError(
+            f"{protocol.name} shows nothing on a conventional display; leave out {setting('also')}"
+        )
+    shows = any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions)
+    if conditions.fast and shows:
+        raise InputError(
+            f"{protocol.name} shows strings on a conventional display, which takes its time; "
+            f"leave out {setting('fast')}"
+        )
 
 
 def _check_live(protocol: Protocol, conditions: Conditions, engine: MakeEngine | None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from vbraille.render.braille.knobs import KNOBS, kept_values
+from vbraille.render.braille.straying import BAND
 from vbraille.settings.applying import with_profile
 from vbraille.settings.chosen import display_name
 
@@ -27,7 +28,10 @@ USUAL = {
     "echo": "none at a terminal, otherwise both",
     "speech": "no",
     "cues": "none",
+    "also": "none",
     "verbose": "no",
+    "straying": "line",
+    "band": f"{BAND:g}",
 }
 
 

@@ -6,6 +6,7 @@ from typing import Literal
 
 from vbraille.errors import check_range
 from vbraille.render.braille.knobs import KNOBS
+from vbraille.render.braille.straying import BAND_BOUNDS
 from vbraille.toml.tomlfile import Table
 
 
@@ -22,6 +23,11 @@ class ReadTable(Table, frozen=True):
         Whether what is said is spoken too.
     cues
         How signals are given.
+    straying, band
+        What a page shows to a finger that strays from its line; see
+        `vbraille.render.braille.straying`.
+    also
+        Conventional display that shows the lines, too.
     """
 
     profile: str | None = None
@@ -36,9 +42,13 @@ class ReadTable(Table, frozen=True):
     echo: Literal["none", "text", "cells", "both"] | None = None
     speech: bool | None = None
     cues: Literal["sound", "bell", "none"] | None = None
+    also: str | None = None
     verbose: bool | None = None
+    straying: Literal["line", "free"] | None = None
+    band: float | None = None
 
     def __post_init__(self) -> None:
+        check_range("band", self.band, *BAND_BOUNDS)
         if self.profile is not None:
             check_name(self.profile)
         if self.table is not None and (self.language is not None or self.grade is not None):

@@ -21,6 +21,7 @@ DRIFT_PITCHES = 0.15
 TILT_RAD = math.radians(5.0)
 _PERIODS_S = (3.0, 9.0)
 _SHARES = (0.5, 0.3, 0.2)  # shares of the waves that make up a drift; their sum is 1
+FOOT_S = 0.8  # how long a hand stays below a page, which is longer than the program waits for
 _KNOTS_S = 0.02  # time between knots, short enough that straight lines between them look smooth
 
 
@@ -36,6 +37,8 @@ class Area:
         Distance from one line to the next.
     start_mm, end_mm
         Places where the array begins and ends each line, along x as in `Motion`.
+    foot_mm
+        How far below the last line a hand goes at the end, and stays there; 0 if it does not.
 
     Raises
     ------
@@ -47,6 +50,7 @@ class Area:
     pitch_mm: float
     start_mm: float
     end_mm: float
+    foot_mm: float = 0.0
 
     def __post_init__(self) -> None:
         if self.lines < 1:
@@ -71,21 +75,30 @@ class Drift:
     ----------
     random
         Generator that draws the drift; each drift is a different one.
+    pitches, tilt_rad
+        How far the hand goes at most, in line pitches, and how far it turns.
     """
 
-    def __init__(self, random: np.random.Generator) -> None:
+    def __init__(
+        self,
+        random: np.random.Generator,
+        pitches: float = DRIFT_PITCHES,
+        tilt_rad: float = TILT_RAD,
+    ) -> None:
+        self._pitches = pitches
+        self._tilt_rad = tilt_rad
         self._waves = [self._draw(random) for _ in range(2)]
 
     def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far below the middle of the line the hand is at some times, in line pitches.
 
-        Values are in -`DRIFT_PITCHES` … `DRIFT_PITCHES`.
+        Values are within the bounds that were given.
         """
-        return DRIFT_PITCHES * self._wave(0, t_s)
+        return self._pitches * self._wave(0, t_s)
 
     def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the hand is turned at some times, -`TILT_RAD` … `TILT_RAD`."""
-        return TILT_RAD * self._wave(1, t_s)
+        """How far the hand is turned at some times, within the bound that was given."""
+        return self._tilt_rad * self._wave(1, t_s)
 
     @staticmethod
     def _draw(random: np.random.Generator) -> list[tuple[float, float, float]]:
@@ -106,6 +119,8 @@ def read_lines(
 ) -> Motion:
     """Motion over a page: along each line and back as on a single line, then down to the next.
 
+    If the area has a foot the hand ends there.
+
     Parameters
     ----------
     read_line
@@ -124,9 +139,16 @@ def read_lines(
         places_mm.append(motion.x_mm)
         middles_mm.append(np.full(motion.t_s.size, area.middle_mm(line)))
         begun_s += motion.duration_s + area.pitch_mm / RETURN_MM_S
+    last_s = times_s[-1][-1]
+    if area.foot_mm:
+        down_s = last_s + (area.pitch_mm / 2 + area.foot_mm) / RETURN_MM_S
+        times_s.append(np.array([down_s, down_s + FOOT_S]))
+        places_mm.append(np.full(2, area.start_mm))
+        middles_mm.append(np.full(2, area.height_mm + area.foot_mm))
     t_s, x_mm, y_mm = map(np.concatenate, (times_s, places_mm, middles_mm))
     if drift is None:
         return Motion(t_s, x_mm, y_mm)
     fine_s = np.union1d(t_s, np.arange(0.0, t_s[-1], _KNOTS_S))
-    y_mm = np.interp(fine_s, t_s, y_mm) + area.pitch_mm * drift.y_pitches(fine_s)
+    strayed_mm = area.pitch_mm * drift.y_pitches(fine_s)
+    y_mm = np.interp(fine_s, t_s, y_mm) + np.where(fine_s > last_s, 0.0, strayed_mm)
     return Motion(fine_s, np.interp(fine_s, t_s, x_mm), y_mm, drift.theta_rad(fine_s))

@@ -256,7 +256,7 @@ class SimulatedDevice(Device):
         elif hand is not None and isinstance(order, ReadLine):
             self.move(hand.read_line(home_mm, order.end_mm))
         elif hand is not None and isinstance(order, ReadPage):
-            area = Area(order.lines, order.pitch_mm, home_mm, order.end_mm)
+            area = Area(order.lines, order.pitch_mm, home_mm, order.end_mm, order.foot_mm)
             self.move(hand.read_page(area))
 
     def move(self, motion: Motion) -> None:

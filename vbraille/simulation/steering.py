@@ -44,16 +44,20 @@ class ReadPage:
         Distance from one line to the next.
     end_mm
         Place where the last dot of the longest line ends.
+    foot_mm
+        How far below the last line the hand then goes and stays, as one does that asks for the
+        next page; 0 if it ends on the last line.
 
     Raises
     ------
     ValueError
-        If there is no line, or the pitch is not above 0.
+        If there is no line, the pitch is not above 0, or the foot is above the last line.
     """
 
     lines: int
     pitch_mm: float
     end_mm: float
+    foot_mm: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lines", int(self.lines))  # numbers in memory are all doubles
@@ -62,6 +66,8 @@ class ReadPage:
                 f"a page of {self.lines} lines {self.pitch_mm:g} mm apart is not possible; "
                 f"it must have 1 or more, and a pitch above 0"
             )
+        if not 0 <= self.foot_mm < math.inf:
+            raise ValueError(f"foot is {self.foot_mm:g} mm; it must be 0 or more")
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,6 +114,11 @@ class TableInfo:
         return tag == language or tag.startswith(f"{language}-")
 
 
+def library_version() -> str:
+    """Version of liblouis, such as 3.24.0."""
+    return louis.version()
+
+
 @cache
 def list_tables() -> tuple[TableInfo, ...]:
     """All tables that have metadata, by name."""

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -29,8 +30,8 @@ answered = { from = "typed" }
 """
 
 
-def sample(program):
-    return sorted(path for path in SAMPLES.glob(f"{program}-*"))
+def sample(program, experiment="letters"):
+    return sorted(SAMPLES.glob(f"{program}-{experiment}-*"))
 
 
 def mapped(tmp_path, text, table, name="theirs.csv"):
@@ -49,6 +50,60 @@ def test_the_samples_are_the_trials_of_our_own_table(program):
     assert theirs[list(own)].equals(own)
 
 
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_questions_of_each_kind_are_those_of_our_own_table(program):
+    mapping = load_mapping(SAMPLES / f"{program}-questions.toml")
+    sheets = [read_mapped(path, mapping)[0] for path in sample(program, "questions")]
+    own, theirs = parse([read_csv(SAMPLES / "questions.csv")]), parse(sheets)
+    assert len(own.judgements) == 26
+    assert len(own.comparisons) == 4
+    assert theirs.comparisons.equals(own.comparisons)
+    told = theirs.judgements
+    # A rating of 6 is 6.0 there.
+    numbers = told["question"].isin(("rating", "magnitude"))
+    assert (told["answered"] == own.judgements["answered"]).where(~numbers, other=True).all()
+    same = [name for name in own.judgements if name != "answered"]
+    assert told[same].equals(own.judgements[same])
+
+
+OWN = "participant,condition,question,presented,answered\n"
+
+
+@pytest.mark.parametrize(
+    ("row", "outcome"),
+    [
+        ("detect,yes,yes", "hit"),
+        ("detect,yes,no", "miss"),
+        ("detect,no,yes", "false alarm"),
+        ("detect,no,no", "correct rejection"),
+        ("same-different,different,different", "hit"),
+        ("same-different,different,same", "miss"),
+        ("same-different,same,different", "false alarm"),
+        ("same-different,same,same", "correct rejection"),
+    ],
+)
+def test_an_outcome_follows_from_what_was_presented_and_answered(tmp_path, row, outcome):
+    path = tmp_path / "own.csv"
+    path.write_text(f"{OWN}A,all,{row}\n")
+    assert [*parse([read_csv(path)]).judgements["outcome"]] == [outcome]
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("detect,st,yes", "outcome is missing, and presented is 'st', which does not tell it"),
+        ("detect,yes,y", "answered is 'y'; to the question 'detect' it must be yes or no"),
+        ("same-different,0.5,same", "give outcome, or presented as different or same"),
+    ],
+)
+def test_an_outcome_that_does_not_follow_is_asked_for(tmp_path, row, said):
+    path = tmp_path / "own.csv"
+    path.write_text(f"{OWN}A,all,detect,yes,yes\nA,all,{row}\n")
+    with pytest.raises(InputError, match=re.escape(said)) as caught:
+        parse([read_csv(path)])
+    assert str(caught.value).startswith("own.csv line 3: ")
+
+
 @heavy  # a whole analysis each
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_the_tables_of_the_samples_are_those_of_our_own(program):
@@ -63,7 +118,7 @@ def test_a_study_tells_the_mapping_and_what_it_left_out():
     about = dict(study.about)
     assert about["Mapping psychopy.toml"].startswith("PsychoPy, wide CSV of Builder; SHA-256 ")
     told = [(left.what, left.reason) for left in study.left_out]
-    assert ("4 rows of psychopy-P01.csv", "practice, or no trial") in told
+    assert ("4 rows of psychopy-letters-P01.csv", "practice, or no trial") in told
 
 
 def test_a_mapping_needs_files_of_another_program(tmp_path):

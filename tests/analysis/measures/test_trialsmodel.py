@@ -7,6 +7,7 @@ import pytest
 from tests.analysis.making import made, record
 from vbraille.analysis.input.parsing import parse
 from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.measures.covariates import covariates
 from vbraille.analysis.measures.trialsmodel import trials_model
 
 CONDITIONS = {"T0": 0.4, "T25": 0.6, "T100": 0.9}
@@ -31,7 +32,12 @@ def study(people=6, trials=20, conditions=CONDITIONS, seed=1, covered=True):
 
 
 def tables(trials, correction="holm", factors=("condition",)):
-    return trials_model(trials, factors, correction)
+    means, _, contrasts = trials_model(trials, factors, correction)
+    return means, contrasts, covariates(trials, factors)
+
+
+def effects(trials, *factors):
+    return trials_model(trials, factors or ("condition",), "holm")[1]
 
 
 def test_means_are_the_shares_of_balanced_trials():
@@ -77,6 +83,44 @@ def test_groups_between_participants_are_compared():
     (row,) = contrasts.records()
     assert row["participants"] == 8
     assert 3 < row["df"] <= 6.01
+    (row,) = effects(trials.assign(group=group), "group").records()
+    assert (row["effect"], row["participants"], row["df1"]) == ("group", 8, 1)
+
+
+def test_factors_and_their_interaction_are_tested():
+    """One of two factors acts, and only at one level of the other."""
+    random = np.random.default_rng(4)
+    shares = {("T0", "V1"): 0.5, ("T0", "V2"): 0.5, ("T1", "V1"): 0.5, ("T1", "V2"): 0.95}
+    rows = [
+        {
+            "participant": f"P{who}", "condition": texture, "speed": speed, "presented": "a",
+            "answered": "a" if random.random() < share else "z",
+        }
+        for who in range(8) for (texture, speed), share in shares.items() for _ in range(30)
+    ]  # fmt: skip
+    trials = parse([from_rows("made", rows)]).trials
+    table = effects(trials, "condition", "speed")
+    assert [row["effect"] for row in table.records()] == [
+        "condition", "speed", "condition × speed",
+    ]  # fmt: skip
+    assert {row["df1"] for row in table.records()} == {1}
+    assert record(table, effect="condition × speed")["p"] < 0.01
+    one = trials[(trials["condition"] == "T0") | (trials["speed"] == "V1")].reset_index(drop=True)
+    part = effects(one, "condition", "speed")
+    row = record(part, effect="condition")
+    assert row["note"].startswith("over the 1 of 2 combinations of the other factors")
+    assert row["p"] > 0.05
+    row = record(part, effect="condition × speed")
+    assert row["p"] is None
+    assert row["note"] == "no test: no combination of the other factors has all of its levels"
+
+
+def test_several_levels_are_tested_at_once():
+    (row,) = effects(study()).records()
+    assert (row["df1"], row["trials"]) == (2, 360)
+    assert row["p"] < 0.01
+    (row,) = effects(study(conditions=dict.fromkeys(CONDITIONS, 0.5), seed=3)).records()
+    assert row["p"] > 0.05
 
 
 def test_factors_are_crossed():
@@ -112,6 +156,33 @@ def test_covariates_tell_of_a_decline():
     assert (dots["trials"], dots["participants"]) == (640, 8)
 
 
+def test_who_reads_slowly_reads_better():
+    """Answers are right by the time taken, which is on the scale of a doubling."""
+    random = np.random.default_rng(6)
+    rows = []
+    for who in range(8):
+        for _ in range(60):
+            doubled = random.normal()
+            right = random.random() < 1 / (1 + np.exp(-1.2 * doubled))
+            rows.append({
+                "participant": f"P{who}", "condition": "T0", "presented": "ab",
+                "answered": "ab" if right else "zz", "duration_s": f"{3 * 2**doubled:.4f}",
+            })  # fmt: skip
+    found = tables(parse([from_rows("made", rows)]).trials)[2]
+    row = record(found, covariate="twice the time for each cell")
+    assert 1 < row["low"] < np.exp(1.2) < row["high"]
+    for at in range(10):
+        rows[at]["duration_s"] = ""
+    part = tables(parse([from_rows("made", rows)]).trials)[2]
+    assert part.notes == ("without 10 of 480 trials, whose duration is not known",)
+    assert record(part, covariate="twice the time for each cell")["trials"] == 470
+    for at in range(300):
+        rows[at]["duration_s"] = ""
+    rest = tables(parse([from_rows("made", rows)]).trials)[2]
+    assert [row["covariate"] for row in rest.records()] == ["10 trials later in the session"]
+    assert rest.records()[0]["trials"] == 480
+
+
 def test_where_no_block_is_given_there_is_none():
     assert not any("block" in row["covariate"] for row in tables(study(covered=False))[2].records())
 
@@ -119,11 +190,9 @@ def test_where_no_block_is_given_there_is_none():
 def test_all_right_is_said():
     trials = study(conditions={"T0": 1.0, "T25": 0.5})
     (row,) = tables(trials)[1].records()
-    assert row["note"] == (
-        "everything is right in T0: the odds are Firth's finite ones; "
-        "no interval of the difference: all are alike in one of them"
-    )
+    assert row["note"] == "everything is right in T0: the odds are Firth's finite ones"
     assert 1 < row["low"] < row["odds_ratio"]
+    assert 0 < row["difference_low"] < row["difference"] < row["difference_high"] < 1
 
 
 def test_two_participants_have_no_interval():
@@ -137,7 +206,7 @@ def test_two_participants_have_no_interval():
 def test_participants_all_alike_have_none_either():
     trials, _ = made(*(f"P{n} {c} ac ac 2" for n in range(4) for c in ("T0", "T25")))
     means, contrasts, _ = tables(trials)
-    assert {row["low"] for row in means.records()} == {None}
+    assert all(0 < row["low"] < row["legibility"] <= row["high"] for row in means.records())
     assert "do not differ" in contrasts.records()[0]["note"]
     assert contrasts.records()[0]["odds_ratio"] == pytest.approx(1)
 

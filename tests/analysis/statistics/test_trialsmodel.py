@@ -7,7 +7,12 @@ from scipy.optimize import minimize
 from scipy.special import expit, logit
 
 from tests.tiers import by_tier
-from vbraille.analysis.statistics.marginalmeans import difference, mean, separate_cells
+from vbraille.analysis.statistics.marginalmeans import (
+    compare,
+    difference,
+    odds_ratio,
+    separate_cells,
+)
 from vbraille.analysis.statistics.trialsmodel import combine, fit_trials, plain_covariance
 from vbraille.analysis.statistics.unanswerable import Unanswerable
 
@@ -125,8 +130,9 @@ def test_a_group_of_one_has_no_error_and_the_other_has():
     correct = np.array([[15, 0], [0, 12], [0, 17], [0, 9]])
     fit = fit_trials(correct, trials, separate_cells(4, 2))
     assert np.isnan(combine(fit, [-1, 1]).errors[0])
-    assert np.isnan(mean(fit, [1, 0]).low[0])
-    assert mean(fit, [0, 1]).low[0] < 38.5 / 61 < mean(fit, [0, 1]).high[0]
+    assert np.isnan(compare(fit, [0, 1], [1, 0]).p_values()[0])
+    low, high = combine(fit, [0, 1]).ends()
+    assert low[0] < logit(38.5 / 61) < high[0]
 
 
 def test_many_studies_are_fitted_as_each_alone(counts):
@@ -142,17 +148,41 @@ def test_many_studies_are_fitted_as_each_alone(counts):
 @pytest.mark.parametrize("sd", [0.5, 1.5])
 @pytest.mark.parametrize("people", [3, 12])
 def test_false_positives_and_coverage(people, sd):
-    """Two conditions alike of 39 trials each: about 5 in 100 differ, and the means hold."""
+    """Two conditions alike of 39 trials each: about 5 in 100 differ, and 95 intervals hold 0."""
     random = np.random.default_rng([people, round(10 * sd)])
     own = expit(random.normal(1.0, sd, (STUDIES, people, 1)))
     correct = random.binomial(39, np.broadcast_to(own, (STUDIES, people, 2)))
     fit = fit_trials(correct, np.full(correct.shape, 39), separate_cells(people, 2))
-    p = combine(fit, [-1, 1]).p_values()
-    assert np.mean(p < 0.05) < 0.06 + 2 * np.sqrt(0.05 / STUDIES)
-    assert np.mean(p < 0.05) > 0.02
-    truth = expit(random.normal(1.0, sd, 400_000)).mean()
-    found = mean(fit, [1, 0])
-    assert 0.92 < np.mean((found.low <= truth) & (truth <= found.high)) < 0.99
+    for p in (combine(fit, [-1, 1]).p_values(), compare(fit, [0, 1], [1, 0]).p_values()):
+        assert np.mean(p < 0.05) < 0.06 + 2 * np.sqrt(0.05 / STUDIES)
+        assert np.mean(p < 0.05) > 0.02
+    for found in (odds_ratio(fit, [1, 0], [0, 1]), difference(fit, [1, 0], [0, 1])):
+        assert 0.92 < np.mean((found.low <= 0) & (found.high >= 0)) < 0.99
+
+
+@pytest.mark.parametrize("people", [2, 5])
+def test_in_the_middle_shares_are_compared_as_by_student(people):
+    """Where as many answers are right as wrong, and everybody has as many trials."""
+    random = np.random.default_rng(people)
+    correct = random.integers(70, 90, (people, 2))
+    correct[:, 1] += 160 - (correct.sum() - correct[:, 0].sum() + correct[:, 0].sum()) // people
+    fit = fit_trials(correct, np.full((people, 2), 160), separate_cells(people, 2))
+    apart = (correct[:, 1] - correct[:, 0]) / 160
+    found = compare(fit, [0, 1], [1, 0])
+    assert found.estimates[0] / found.errors[0] == pytest.approx(
+        apart.mean() / (apart.std(ddof=1) / np.sqrt(people)), rel=2e-2
+    )
+
+
+def test_a_large_study_is_fitted_as_a_small_one(counts):
+    correct, trials, design = counts
+    each = [np.repeat(of, 300, axis=1) for of in (correct, trials, design)]
+    assert 8 * 900 * 16 < 1_000_000
+    many = [np.repeat(of, 9, axis=1) for of in each]
+    small, large = fit_trials(*each), fit_trials(*many)
+    np.testing.assert_allclose(9 * large.spread, small.spread, rtol=1e-3)
+    np.testing.assert_allclose(large.coefficients, small.coefficients, atol=1e-3)
+    np.testing.assert_allclose(large.leverages, 9 * small.leverages, rtol=1e-3)
 
 
 def test_a_difference_of_shares_goes_with_its_odds_ratio():

@@ -59,6 +59,16 @@ TABLES = {
         (0, 0, False),
     ],
     "three-rows": [(1, 4, False), (2, 5, False), (3, 6, False)],
+    "eight-dots": [
+        (1, 4, False),
+        (0, 0, False),
+        (2, 5, False),
+        (0, 0, False),
+        (3, 6, False),
+        (0, 0, False),
+        (7, 8, False),
+        (0, 0, False),
+    ],
 }
 
 
@@ -92,7 +102,7 @@ def test_the_table_of_each_method(name):
         for left, right, inverted in zip(mapping.left, mapping.right, mapping.inverted, strict=True)
     ]
     assert table == TABLES[name]
-    assert mapping.rows == (3 if name == "three-rows" else 6)
+    assert mapping.rows == {"three-rows": 3, "eight-dots": 8}.get(name, 6)
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -140,9 +150,10 @@ def test_row_bits_of_every_cell(name):
             assert bits[mask, side] == sum(1 << row for row in rows)
 
 
-def test_all_methods_show_dots_1_to_6():
-    for mapping in MAPPINGS.values():
-        assert mapping.shown_dots() == cell(1, 2, 3, 4, 5, 6)
+def test_all_methods_show_dots_1_to_6_and_the_one_for_eight_rows_all_dots():
+    for name, mapping in MAPPINGS.items():
+        more = (7, 8) if name == "eight-dots" else ()
+        assert mapping.shown_dots() == cell(1, 2, 3, 4, 5, 6, *more)
 
 
 def test_shown_dots_are_those_in_the_tables():

@@ -7,10 +7,12 @@ import pytest
 
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of
 from vbraille.braille import geometry
+from vbraille.render import LATERO as LATERO_MODEL
 from vbraille.render import (
     MAPPINGS,
     MODELS,
     STRESS2,
+    STRESS2_8X8,
     VBD,
     Profile,
     Tuning,
@@ -20,8 +22,10 @@ from vbraille.render import (
 
 
 def test_models_by_name():
-    assert MODELS == {"vbd": VBD, "stress2": STRESS2}
-    assert (VBD.title, STRESS2.title) == ("VBD", "STReSS²")
+    named = {"vbd": VBD, "stress2": STRESS2, "stress2-8x8": STRESS2_8X8, "latero": LATERO_MODEL}
+    assert named == MODELS
+    titles = [model.title for model in named.values()]
+    assert titles == ["VBD", "STReSS²", "STReSS² 8 × 8", "Latero"]
 
 
 def test_the_vbd_as_the_source_has_it():
@@ -40,6 +44,34 @@ def test_the_stress2_as_the_source_prefers_it():
     assert STRESS2.style.geometry is geometry.STRESS2
     assert STRESS2.style.tuning == Tuning(texture=1.0, contrast=1.0, cycles=7)
     assert STRESS2.display.rest_side == "right"
+
+
+@pytest.mark.parametrize(
+    ("model", "pitch_mm", "surface_mm", "levels", "size_mm"),
+    [
+        # Lévesque 2009, 6.2 and 7: 7 · 1.2 + 0.5 by 7 · 1.4 + 1.2 mm, on 22 × 15 cm, 10 bits.
+        (STRESS2_8X8, 1.4, (220.0, 150.0), 1024, (8.9, 11.0)),
+        # The author's later code: 281 × 217.5 mm, levels 0 … 150.
+        (LATERO_MODEL, 1.6125, (281.0, 217.5), 151, (8.9, 12.6875)),
+    ],
+    ids=["stress2-8x8", "latero"],
+)
+def test_the_arrays_of_eight_rows_show_eight_dots(model, pitch_mm, surface_mm, levels, size_mm):
+    display, geometry = model.display, model.style.geometry
+    assert display.shape == (8, 8)
+    assert (display.column_pitch_mm, display.row_pitch_mm) == (1.2, pitch_mm)
+    assert (display.travel_mm, display.height_mm, display.turns) == (*surface_mm, True)
+    assert (display.levels, display.rest_side) == (levels, "right")
+    assert display.contactor_mm is not None
+    outer = zip((display.span_mm, display.depth_mm), display.contactor_mm, strict=True)
+    assert [centres + touching for centres, touching in outer] == pytest.approx(size_mm)
+    assert model.style.mapping is MAPPINGS["eight-dots"]
+    # Rows of dots stand upon the rows of actuators that show them.
+    assert geometry.row_spacing_mm == pytest.approx(2 * pitch_mm)
+    assert model_of(display) == model
+    line = model.style.render(np.full(3, 255, np.uint8), display)
+    frames = line.path(np.linspace(-12, 30, 200))
+    assert np.flatnonzero(np.ptp(frames, axis=(0, 2)) > 0.9).tolist() == [0, 2, 4, 6]
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
@@ -73,7 +105,7 @@ def test_a_known_array_is_a_model_with_the_device_s_own_pitches():
     ],
 )
 def test_an_array_that_nobody_named_reads_braille_in_its_middle(rows, mapping, shown):
-    display = array_of(rows, 8, 1.2, 1.6125)
+    display = array_of(rows, 8, 1.2, 1.7)
     model = model_of(display)
     assert (model.name, model.title, model.display) == ("", display.name, display)
     assert model.style.mapping.name == mapping

@@ -353,7 +353,11 @@ def test_what_no_search_finds_is_refused_before_anything_is_written():
 
 def test_the_examples_of_the_page_are_protocols():
     page = Path(__file__).parents[3] / "docs" / "protocols.md"
-    (example,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
-    protocol = parse_protocol(example, "page.toml")
-    assert len(make_plan(protocol, "P01", 1).trials) == protocol.trials == 54
+    examples = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
+    trials = []
+    for example in examples:
+        protocol = parse_protocol(example, "page.toml")
+        trials.append(len(make_plan(protocol, "P01", 1).trials))
+        assert trials[-1] == protocol.trials
+    assert trials == [54, 8]
     assert load_protocol("factors").trials == 68

@@ -87,6 +87,11 @@ class TestPlans:
             "rating": "8e5393e0578af44119202f3bb8c848469f4f5332a4c5f6d4fd304edda20825c9",
             "same-different": "394444f09bbcb3dc95dae4ddb6959bb2a3f248a5debe48376f8d89f3c0b7d926",
             "control": "b2be1cb36397f5c2f0a1b0e245666e58cae18af33561335afa91b25087d54436",
+            "control-display": "b321c83ad80741a285dde3c9414e6bbb0380f21b79823f8c57ec62bbba11011d",
+            "tuning-spacing-reference": "eb7d64bf2d27121e37e0927a8df7b0a0"
+            "a822eab4a51c5435d4cc92a86f7bfc58",
+            "tuning-width-reference": "a08248f39997f81270dbb411caa589db"
+            "d6fb1112b5fb80bcaf72083f180cf524",
             "factors": "7c3c7558ecc2561506bea34b60685a67b9030c763604fc40af07150a0a2c138b",
             "legibility": "fbe7e40e52c2606d68605b6377bf79ef5eee646756c83ed906c05775ccb6c713",
             "letters": "65ec34cb91de467edbef7b22f9dbb7a6c7c6f9dfca213eab9d94267b4752dabd",

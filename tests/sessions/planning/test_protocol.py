@@ -40,6 +40,7 @@ class TestBuiltIns:
     def test_names(self):
         assert builtin_names() == [
             "control",
+            "control-display",
             "detection",
             "factors",
             "legibility",
@@ -48,8 +49,10 @@ class TestBuiltIns:
             "same-different",
             "tuning-spacing",
             "tuning-spacing-adaptive",
+            "tuning-spacing-reference",
             "tuning-width",
             "tuning-width-adaptive",
+            "tuning-width-reference",
             "words",
         ]
 

@@ -162,9 +162,9 @@ def test_a_procedure_needs_answers_that_it_can_go_by():
         protocol('kind = "magnitude"', more=stairs)
 
 
-@pytest.mark.parametrize("end", ["button:0", "button:9", "button:x", "key:space", ""])
+@pytest.mark.parametrize("end", ["button:0", "button:9", "button:x", "key:shift", "key:ab", ""])
 def test_a_key_that_there_is_not_is_refused(end):
-    with pytest.raises(InputError, match="it must be 'button:1' to 'button:8', or 'key:enter'"):
+    with pytest.raises(InputError, match="it must be 'button:1' to 'button:8', 'key:enter'"):
         parse_protocol(f'{MINI}[trial]\nend = "{end}"\n', "p.toml")
 
 
@@ -188,3 +188,33 @@ def test_shipped_protocols_have_what_their_question_needs():
     of = load_protocol("same-different")
     told = [of.asks.looked_for(trial) for trial in make_plan(of, "P1", 1).trials]
     assert (told.count(False), len(told)) == (36, 72)
+
+
+def test_a_texture_without_cycles_is_not_compared_by_them():
+    cycles = COMPARED.replace("dot_width_mm", "texture_cycles").replace("1.0, 2.0", "3, 5")
+    said = "the texture of the VBD has a fixed wavelength, so that nothing would vary"
+    with pytest.raises(InputError, match=said):
+        parse_protocol(cycles, "p.toml")
+    assert parse_protocol(cycles.replace("vbd", "stress2"), "p.toml").parameter == "texture_cycles"
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ('[order]\nkind = "williams"\n', "there is one condition, so that nothing can be ordered"),
+        (
+            '[procedure]\nkind = "staircase"\nparameter = "line_pitch_mm"\nleast = 8\nmost = 12\n'
+            "start = [9]\nsteps = [1]\n",
+            "'line_pitch_mm', which no actuator shows in a line of its own",
+        ),
+        (
+            '[procedure]\nkind = "staircase"\nparameter = "contrast"\nleast = 0.1\nmost = 1\n'
+            "start = [0.9, 0.5]\nsteps = [0.1]\nright = 3\nwrong = 3\n",
+            "start is of 2 staircases, and a condition has 4 trials: one of them cannot move",
+        ),
+    ],
+)
+def test_what_could_not_vary_is_refused_but_in_sessions_that_have_begun(more, said):
+    with pytest.raises(InputError, match=said):
+        parse_protocol(MINI + more, "p.toml")
+    assert parse_protocol(MINI + more, "p.toml", planned=True)

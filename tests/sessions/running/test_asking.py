@@ -172,6 +172,19 @@ def test_practice_says_whether_it_was_right(tmp_path):
     assert "practice: wrong, it was something" in sat.said
 
 
+@pytest.mark.parametrize(
+    ("parameter", "said"), [("texture", "0.25 and 0.75"), ("dot_width_mm", "0.25 mm and 0.75 mm")]
+)
+def test_practice_says_values_with_the_unit_of_what_is_compared(tmp_path, parameter, said):
+    toml = COMPARED.replace("dot_width_mm", parameter).replace("2.0", "0.5")
+    toml += "[practice]\ntrials = 1\nvalues = [0.25, 0.75]\n"
+    sat = Session(tmp_path / "s", toml).sit(("read: type", "1"), ("practice: they", "stop"))
+    first, second = said.split(" and ")
+    assert {f"practice: they were {said}", f"practice: they were {second} and {first}"} & set(
+        sat.said
+    )
+
+
 class Pressing(BatchEngine):
     """An engine whose device has its first button pressed when a stimulus has been felt a while."""
 

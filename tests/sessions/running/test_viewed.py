@@ -11,6 +11,8 @@ from tests.sessions.sittings import COMPARED, MINI, Session, of
 from tests.tiers import by_tier
 from vbraille.engine.batch import BatchEngine
 from vbraille.live.messages import PagePress, Turn
+from vbraille.render.braille.knobs import say_mapping
+from vbraille.render.braille.mappings import MAPPINGS
 from vbraille.sessions.record.check import check
 from vbraille.sessions.running.onlookers import ENDED, Onlookers
 from vbraille.sessions.running.viewed import Heard
@@ -264,6 +266,41 @@ class TestNotBlind:
         planned = [s.value for trial in session.plan.trials for s in trial.stimuli]
         assert changes == [v for n, v in enumerate(planned) if v not in planned[n - 1 : n]]
         assert " of " in facts(states[-1])["last answer"]
+
+    @pytest.mark.parametrize(("parameter", "unit"), [("texture", ""), ("dot_width_mm", " mm")])
+    def test_values_have_the_unit_of_what_is_compared(self, tmp_path, parameter, unit):
+        toml = COMPARED.replace("dot_width_mm", parameter).replace("2.0", "0.5") + SEEING
+        session = Session(tmp_path / "s", toml)
+        states, _ = watch(session, ("read: type", "1"), ("answer", "stop"))
+        planned = [f"{s.value:g}{unit}" for s in session.plan.trials[0].stimuli]
+        told = {facts(state)["asked for"] for state in states if "asked for" in facts(state)}
+        assert told == set(planned)
+        last = facts(states[-1])["last answer"]
+        assert last == f"{planned[0]} of {planned[0]} and {planned[1]}"
+
+    def test_the_mapping_is_that_of_the_condition(self, tmp_path):
+        conditions = "".join(
+            f'[[conditions]]\nname = "{name}"\nmapping = "{name}"\n'
+            for name in ("alternate", "paired")
+        )
+        toml = MINI.replace("vbd", "stress2") + conditions
+        session = Session(tmp_path / "s", toml + SEEING)
+        states, _ = watch(session)
+        shown = {(facts(s)["condition"], s.mapping, str(s.rows_shown)) for s in states if s.lines}
+        assert {(name, mapping) for name, mapping, _ in shown} == {
+            ("alternate", say_mapping(MAPPINGS["alternate"])),
+            ("paired", say_mapping(MAPPINGS["paired"])),
+        }
+        assert len({rows for _, _, rows in shown}) == 2
+
+    def test_a_blind_page_is_not_told_by_the_mapping_which_condition_it_is(self, tmp_path):
+        conditions = "".join(
+            f'[[conditions]]\nname = "{name}"\nmapping = "{name}"\n'
+            for name in ("alternate", "paired")
+        )
+        session = Session(tmp_path / "s", MINI.replace("vbd", "stress2") + conditions)
+        states, _ = watch(session)
+        assert len({(state.mapping, str(state.rows_shown)) for state in states}) == 1
 
 
 class TestTheJournal:

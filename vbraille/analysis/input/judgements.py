@@ -6,7 +6,8 @@ Judgements have a row for each answered trial, with the columns ``participant``,
 - ``question``: kind of the question, a key of `QUESTIONS`;
 - ``presented``, ``answered``: text as it was exported;
 - ``number``: float64, the answer as a number; NaN for questions that have none;
-- ``outcome``: one of `OUTCOMES` of the question, or empty;
+- ``outcome``: one of `OUTCOMES` of the question, or empty; where a table has none, it is made of
+  what was presented and answered, or of ``correct``;
 - ``confidence``: float64, NaN where it was not asked;
 - each of `LEVELS`: float64, NaN where it is not known or two values were compared.
 
@@ -41,6 +42,16 @@ QUESTIONS = {
     "free": frozenset(),
 }
 OUTCOMES = _RIGHT | _FOUND
+# Words that are answered, the one that is looked for first; tables of other programs may have them
+# for what was presented as well.
+_WORDS = {"same-different": ("different", "same"), "detect": ("yes", "no")}
+# Outcomes by whether what is looked for was there, and whether the answer says so.
+_FOUND_BY = {
+    (True, True): "hit",
+    (True, False): "miss",
+    (False, True): "false alarm",
+    (False, False): "correct rejection",
+}
 USUAL = ("identify", "which")  # questions whose answers are trials or comparisons
 _NUMBERS = ("rating", "magnitude")
 LEVELS = (
@@ -86,8 +97,8 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
     if "question" not in rows:
         return None
     empty = pd.Series("", rows.index)
-    outcome = rows.get("outcome", empty).astype(str).str.strip()
     kinds = rows["question"].str.strip()
+    outcome = _outcomes(sheet, rows, kinds)
     confidence = _numbers(sheet, rows.get("confidence", empty), "confidence")
     kept = judged(sheet, rows) | (kinds.isin(USUAL) & confidence.notna())
     kept |= (kinds == "which") & (outcome != "")
@@ -118,6 +129,42 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
             f"{sheet.place(row)}: answered is {answered[row]!r}; a magnitude must be above 0"
         )
     return found[kept]
+
+
+def _outcomes(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> pd.Series:
+    """Outcome of each row: as given, else as it follows from what was presented and answered.
+
+    Raises
+    ------
+    InputError
+        If it does not follow, and the question needs one; or a word is none of the question's.
+    """
+    empty = pd.Series("", rows.index)
+    given = rows.get("outcome", empty).astype(str).str.strip()
+    correct = rows.get("correct", empty).astype(str).str.strip()
+    right = correct.map({"1": "right", "1.0": "right", "0": "wrong", "0.0": "wrong"}).fillna("")
+    found = given.where(given != "", right.where(kinds.isin(USUAL), ""))
+    presented, answered = (rows[name].astype(str).str.strip() for name in ("presented", "answered"))
+    for kind, words in _WORDS.items():
+        own = kinds == kind
+        either = f"{words[0]} or {words[1]}"
+        for row in rows.index[own & ~answered.isin(words)][:1]:
+            raise InputError(
+                f"{sheet.place(row)}: answered is {answered[row]!r}; to the question {kind!r} it "
+                f"must be {either}"
+            )
+        untold = own & (found == "")
+        for row in rows.index[untold & ~presented.isin(words)][:1]:
+            raise InputError(
+                f"{sheet.place(row)}: outcome is missing, and presented is {presented[row]!r}, "
+                f"which does not tell it; give outcome, or presented as {either}"
+            )
+        told = (presented + " " + answered).map(
+            {f"{there} {said}": _FOUND_BY[there == words[0], said == words[0]]
+             for there in words for said in words}
+        )  # fmt: skip
+        found = found.mask(untold, told)
+    return found
 
 
 def _numbers(sheet: Sheet, given: pd.Series, column: str) -> pd.Series:

@@ -103,13 +103,15 @@ def _column(
 
 def _value(source: ColumnSource, values: Iterable[str]) -> str:
     """Value of a row before it is replaced: joined, taken out of JSON, matched."""
-    text = " ".join(value.strip() for value in values).strip()
+    absent = [spelling(value) for value in source.missing]
+    parts = [value.strip() for value in values]
+    text = " ".join(part for part in parts if part and part not in absent)
     if source.key is not None and text:
         text = _keyed(text, source.key)
     if source.pattern is not None:
         found = re.search(source.pattern, text)
         text = (found[1] or "").strip() if found else ""
-    return "" if text in map(spelling, source.missing) else text
+    return "" if text in absent else text
 
 
 def _keyed(text: str, key: str) -> str:

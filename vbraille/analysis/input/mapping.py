@@ -68,7 +68,8 @@ class ColumnSource(Table, frozen=True):
         Regular expression; the part that its one group matches is the value, and nothing if it
         matches nowhere.
     missing
-        Values that mean that there is none, such as "NA".
+        Values that mean that there is none, such as "NA"; each of the columns that are joined may
+        have them.
     pick
         Columns of the other program, by the values for which the row's value in that column is
         taken.

@@ -7,7 +7,7 @@ its people.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,13 +15,15 @@ from scipy.special import expit
 from scipy.stats import t as student
 
 from vbraille.analysis.statistics.intervals import LEVEL
+from vbraille.analysis.statistics.jointtest import try_jointly
 from vbraille.analysis.statistics.scores import check_level
 from vbraille.analysis.statistics.trialsmodel import combine
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from vbraille.analysis.statistics.trialsmodel import TrialsFit
+    from vbraille.analysis.statistics.jointtest import JointTest
+    from vbraille.analysis.statistics.trialsmodel import Contrasts, TrialsFit
 
 TO_D = math.sqrt(3) / math.pi
 """What a logarithm of an odds ratio is multiplied by for Cohen's d of what lies beneath: the
@@ -52,23 +54,22 @@ def separate_cells(participants: int, cells: int) -> NDArray[np.float64]:
     return np.tile(np.eye(cells), (participants, 1, 1))
 
 
-def mean(fit: TrialsFit, weights: ArrayLike, level: float = LEVEL) -> Estimates:
-    """Share of right answers where the design's columns have these values, 0…1.
-
-    The interval is found on the scale of log odds.
+def odds_ratio(
+    fit: TrialsFit, first: ArrayLike, second: ArrayLike, level: float = LEVEL
+) -> Estimates:
+    """Logarithm of the odds ratio of two shares of right answers, first against second.
 
     Parameters
     ----------
     fit
         A fitted model.
-    weights : float[p]
-        Values of the design's columns.
+    first, second : float[p]
+        Values of the design's columns at each.
     level
         Level of confidence.
     """
-    at = combine(fit, weights)
-    low, high = at.ends(level)
-    return Estimates(expit(at.estimates), expit(low), expit(high))
+    apart = combine(fit, np.asarray(first, np.float64) - np.asarray(second, np.float64))
+    return Estimates(apart.estimates, *apart.ends(level))
 
 
 def difference(
@@ -76,10 +77,10 @@ def difference(
 ) -> Estimates:
     """Difference of two shares of right answers, first less second, -1…1.
 
-    The interval is put together of the two shares' own, by the degrees of freedom of their odds
-    ratio and with their correlation (Newcombe 1998; Zou and Donner 2008), so that it has not the
-    same width on both sides near 0 and 1. By the slope of the difference along the coefficients
-    instead (delta method), it holds the truth 91 times in 100 near the ceiling.
+    The interval is that of the inverse hyperbolic tangent of the difference, by the slope along
+    the coefficients (delta method) and t with the degrees of freedom of the difference itself.
+    With those of the odds ratio instead it would hold the truth 91 times in 100 near the ceiling,
+    and 99 times when put together of the two shares' own intervals (Newcombe 1998).
 
     Parameters
     ----------
@@ -91,27 +92,68 @@ def difference(
         Level of confidence.
     """
     check_level(level)
-    one, two = (np.asarray(of, np.float64) for of in (first, second))
-    apart = combine(fit, one - two)
-    quantile = student.ppf((1 + level) / 2, apart.degrees)
-    ends, errors = [], []
-    for of in (one, two):
-        at = combine(fit, of)
-        half = quantile * at.errors
-        ends.append([expit(at.estimates + way * half) for way in (-1, 0, 1)])
-        errors.append(at.errors)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        common = (errors[0] ** 2 + errors[1] ** 2 - apart.errors**2) / (2 * errors[0] * errors[1])
-    common = np.clip(common, -1.0, 1.0)
-    (low_1, value_1, high_1), (low_2, value_2, high_2) = ends
-    value = value_1 - value_2
-    down = _both(value_1 - low_1, high_2 - value_2, common)
-    up = _both(high_1 - value_1, value_2 - low_2, common)
-    return Estimates(value, value - down, value + up)
+    (one, up), (two, down) = (_share(fit, of) for of in (first, second))
+    value = one - two
+    apart = combine(fit, up - down)
+    half = student.ppf((1 + level) / 2, apart.degrees) * apart.errors / (1 - value**2)
+    middle = np.arctanh(value)
+    return Estimates(value, np.tanh(middle - half), np.tanh(middle + half))
 
 
-def _both(
-    one: NDArray[np.float64], other: NDArray[np.float64], common: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Half of an interval from the halves of two with a correlation."""
-    return np.sqrt(np.maximum(one**2 + other**2 - 2 * common * one * other, 0.0))
+def compare(fit: TrialsFit, first: ArrayLike, second: ArrayLike) -> Contrasts:
+    """Test that two shares of right answers are the same.
+
+    They are compared as 2 asin √share, by the slope along the coefficients: the errors of this do
+    not depend on the share. Log odds find too much in two groups of twenty people near the ceiling
+    (6.2 % of studies in which there is nothing, where this finds 5.6).
+
+    Parameters
+    ----------
+    fit
+        A fitted model.
+    first, second : float[p]
+        Values of the design's columns at each.
+
+    Returns
+    -------
+    Contrasts
+        Difference of the two, first less second, with its error and degrees of freedom of t.
+    """
+    (one, up), (two, down) = (_even(fit, of) for of in (first, second))
+    return replace(combine(fit, up - down), estimates=one - two)
+
+
+def compare_all(fit: TrialsFit, contrasts: ArrayLike) -> JointTest:
+    """Test that several contrasts of shares are 0 together, the shares as 2 asin √share.
+
+    Parameters
+    ----------
+    fit
+        A model whose columns are cells of their own, as `separate_cells` makes them.
+    contrasts : float[q, cells]
+        Weights of the cells in each contrast.
+
+    Raises
+    ------
+    Unanswerable
+        If there are no more participants than contrasts.
+    """
+    rows = np.asarray(contrasts, np.float64)
+    values, slopes = zip(*(_even(fit, cell) for cell in np.eye(rows.shape[-1])), strict=True)
+    # The slope of a cell is along its own coefficient alone.
+    weights = rows[None] * np.sum(slopes, axis=0)[:, None]
+    return try_jointly(fit, weights, np.stack(values, axis=-1) @ rows.T)
+
+
+def _share(fit: TrialsFit, at: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Share at values of the design's columns, and its slope along the coefficients."""
+    columns = np.asarray(at, np.float64)
+    share = expit(fit.coefficients @ columns)
+    return share, (share * (1 - share))[:, None] * columns
+
+
+def _even(fit: TrialsFit, at: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The same of 2 asin √share."""
+    columns = np.asarray(at, np.float64)
+    share = expit(fit.coefficients @ columns)
+    return 2 * np.arcsin(np.sqrt(share)), np.sqrt(share * (1 - share))[:, None] * columns

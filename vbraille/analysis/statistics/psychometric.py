@@ -36,7 +36,7 @@ FEWEST_LEVELS = 3
 _FEW = 20.0  # second parameter of the lapses' prior; the first is 1
 _SIZE = (64, 40, 7)  # points of the grid along threshold, spread and lapses
 _GUESSES = 7  # and along guesses, where they are free
-_PASSES = 3  # each after the first is over what the one before left likely
+_PASSES = 3  # each after the first is over what the one before left likely, the last on all points
 _UNLIKELY = 12.0  # in log likelihood below the best
 _EDGE = 1e-9  # a share is at least so far from 0 and 1
 
@@ -135,10 +135,9 @@ def fit_psychometric(
     check_level(level)
     asked = _answers(levels, positive, trials, shape, guess)
     axes = _first_axes(asked, shape)
-    log_posterior = _log_posterior(asked, axes)
     for _ in range(_PASSES - 1):
-        axes = _nearer(axes, log_posterior)
-        log_posterior = _log_posterior(asked, axes)
+        axes = _nearer(axes, _log_posterior(asked, [*axes[:2], *(of[::3] for of in axes[2:])]))
+    log_posterior = _log_posterior(asked, axes)
     at = np.unravel_index(np.argmax(log_posterior), log_posterior.shape)
     best = _best(asked, [float(axis[i]) for axis, i in zip(axes, at, strict=True)])
     mass = np.exp(log_posterior - log_posterior.max())

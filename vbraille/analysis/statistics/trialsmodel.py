@@ -37,6 +37,7 @@ SETTLED = 1e-10  # log odds; steps below it end a fit
 _LARGEST_STEP = 2.0  # log odds; first steps from the middle to the ceiling would overshoot
 _ALONE = 1e-9  # share of a coefficient's information that must come from others
 _ALIKE = 1e-9  # of the variance by chance alone, below which participants do not differ at all
+_LARGE = 1_000_000  # numbers of the products of a design's columns that are kept for all steps
 _OWN = 1.0  # trials at the model's share that a participant's own share of a cell is drawn by
 
 
@@ -124,9 +125,11 @@ def fit_trials(
     y, n, x = _checked(correct, trials, design)
     studies, participants, cells = y.shape
     p = x.shape[-1]
-    squares = (x[..., :, None] * x[..., None, :]).reshape(participants, cells, p * p)
-    flat = squares.reshape(-1, p * p)
-    _check_rank(n.reshape(studies, -1), flat, p)
+    if studies * participants * cells * p**2 > _LARGE:
+        squares = None
+    else:
+        squares = (x[..., :, None] * x[..., None, :]).reshape(participants, cells, p * p)
+    _check_rank(_information((n > 0).astype(np.float64), x, squares).sum(axis=1))
     beta = np.zeros((studies, p))
     settled = np.zeros(studies, dtype=bool)
     going = np.arange(studies)
@@ -135,11 +138,18 @@ def fit_trials(
         right, asked = (of[going].reshape(going.size, -1) for of in (y, n))
         share = expit(beta[going] @ rows.T)
         weight = asked * share * (1 - share)
-        spread = np.linalg.inv((weight @ flat).reshape(-1, p, p))
+        if squares is None:
+            whole = _information(weight.reshape(-1, participants, cells), x, None).sum(axis=1)
+        else:
+            whole = (weight @ squares.reshape(-1, p * p)).reshape(-1, p, p)
+        spread = np.linalg.inv(whole)
         residual = right - asked * share
         if penalised:
-            leverage = weight * (spread.reshape(-1, p * p) @ flat.T)
-            residual = residual + leverage * (0.5 - share)
+            if squares is None:
+                along = np.stack([((rows @ of) * rows).sum(axis=1) for of in spread])
+            else:
+                along = spread.reshape(-1, p * p) @ squares.reshape(-1, p * p).T
+            residual = residual + weight * along * (0.5 - share)
         step = np.einsum("spq,sq->sp", spread, residual @ rows)
         longest = np.abs(step).max(axis=1)
         step *= (_LARGEST_STEP / np.maximum(longest, _LARGEST_STEP))[:, None]
@@ -151,14 +161,14 @@ def fit_trials(
             break
     share = expit(np.einsum("kcp,sp->skc", x, beta))
     weight = n * share * (1 - share)
-    each = _summed(weight, squares, p)
+    each = _information(weight, x, squares)
     own_share = (y + _OWN * share) / (n + _OWN)
     return TrialsFit(
         beta,
         np.linalg.inv(each.sum(axis=1)),
         each,
         np.einsum("skc,kcp->skp", y - n * share, x),
-        _summed(n * own_share * (1 - own_share), squares, p),
+        _information(n * own_share * (1 - own_share), x, squares),
         settled,
     )
 
@@ -184,13 +194,13 @@ def combine(fit: TrialsFit, weights: ArrayLike) -> Contrasts:
     ell = np.broadcast_to(np.asarray(weights, np.float64), (studies, p))
     if participants < 2:
         raise Unanswerable("one participant; how people differ is not seen")
-    adjusted, alone = _adjusted(fit, np.einsum("spq,sq->sp", fit.spread, ell))
+    adjusted, alone = adjusted_weights(fit, ell)
     variance = (np.einsum("skp,skp->sk", adjusted, fit.scores) ** 2).sum(axis=1)
     # Firth's penalty leaves a sum of scores that is not 0 even if everybody is alike.
     left = np.einsum("spq,sq->sp", fit.spread, fit.scores.sum(axis=1))
     own = fit.scores - np.einsum("skpq,sq->skp", fit.leverages, left)
     differing = (np.einsum("skp,skp->sk", adjusted, own) ** 2).sum(axis=1)
-    form = _form(fit, adjusted)
+    form = term_covariance(fit, adjusted, adjusted)
     trace = np.trace(form, axis1=1, axis2=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         degrees = trace**2 / (form**2).sum(axis=(1, 2))
@@ -211,15 +221,31 @@ def plain_covariance(fit: TrialsFit) -> NDArray[np.float64]:
     return fit.spread @ meat @ fit.spread
 
 
-def _adjusted(
-    fit: TrialsFit, whole: NDArray[np.float64]
+def adjusted_weights(
+    fit: TrialsFit, weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Weights of each participant's scores, (I - M_k B)^(-1/2)' B l, with B the whole's spread.
+    """Weights of each participant's scores in a combination l of the coefficients.
 
-    Where a participant alone determines something that l is about, it has none: such studies
-    are told of beside it. What a participant alone determines and l is not about is left out, as
-    by a generalised inverse.
+    They are (I - M_k B)^(-1/2)' B l, with M_k the participant's information and B the inverse of
+    the whole's. What a participant alone determines and l is not about is left out, as by a
+    generalised inverse.
+
+    Parameters
+    ----------
+    fit
+        A fitted model.
+    weights : float64[studies, p]
+        The combination l.
+
+    Returns
+    -------
+    adjusted : float64[studies, k, p]
+        Weights of the scores.
+    alone : bool[studies]
+        Whether a participant alone determines something that l is about, so that nobody sees how
+        people differ in it.
     """
+    whole = np.einsum("spq,sq->sp", fit.spread, weights)
     p = whole.shape[-1]
     factor = np.linalg.cholesky(fit.spread)
     kept = np.eye(p) - np.einsum("sji,skjl,slm->skim", factor, fit.leverages, factor)
@@ -235,29 +261,57 @@ def _adjusted(
     return np.einsum("sij,skj->ski", factor, back), alone
 
 
-def _form(fit: TrialsFit, adjusted: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Covariance of the participants' terms in the sandwich, float64[studies, k, k].
+def term_covariance(
+    fit: TrialsFit, first: NDArray[np.float64], second: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Covariance by chance of the participants' terms of two combinations of coefficients.
 
-    A term is a_k'(U_k - M_k B U), U the sum of all scores: the fit takes its part of each. With
-    C_k the covariance of U_k by chance, and C that of U, the covariance of two terms is
-    a_k'(δ C_k - C_k B M_l - M_k B C_l + M_k B C B M_l) a_l.
+    A participant's term is a_k'(U_k - M_k B U), U the sum of all scores: the fit takes its part of
+    each. With C_k the covariance of U_k by chance, and C that of U, the covariance of the term of
+    participant k in the first combination and that of participant l in the second is
+    a_k'(δ C_k - C_k B M_l - M_k B C_l + M_k B C B M_l) b_l.
+
+    Parameters
+    ----------
+    fit
+        A fitted model.
+    first, second : float64[studies, k, p]
+        Weights a and b of the scores, as `adjusted_weights` gives them.
+
+    Returns
+    -------
+    float64[studies, k, k]
     """
-    pulled = np.einsum("skij,skj->ski", fit.leverages, adjusted)
-    noisy = np.einsum("skij,skj->ski", fit.own, adjusted)
-    spread = np.einsum("ski,sij->skj", pulled, fit.spread)
-    mixed = noisy @ spread.swapaxes(1, 2)
-    form = spread @ fit.own.sum(axis=1) @ spread.swapaxes(1, 2) - mixed - mixed.swapaxes(1, 2)
+    noisy = [np.einsum("skij,skj->ski", fit.own, of) for of in (first, second)]
+    pulled = [
+        np.einsum("ski,sij->skj", np.einsum("skij,skj->ski", fit.leverages, of), fit.spread)
+        for of in (first, second)
+    ]
+    form = pulled[0] @ fit.own.sum(axis=1) @ pulled[1].swapaxes(1, 2)
+    form -= noisy[0] @ pulled[1].swapaxes(1, 2)
+    form -= pulled[0] @ noisy[1].swapaxes(1, 2)
     at = np.arange(form.shape[1])
-    form[:, at, at] += np.einsum("ski,ski->sk", adjusted, noisy)
+    form[:, at, at] += np.einsum("ski,ski->sk", first, noisy[1])
     return form
 
 
-def _summed(
-    weight: NDArray[np.float64], squares: NDArray[np.float64], p: int
+def _information(
+    weight: NDArray[np.float64], x: NDArray[np.float64], squares: NDArray[np.float64] | None
 ) -> NDArray[np.float64]:
-    """Sums over cells of weights times products of the design's columns, float64[s, k, p, p]."""
-    sums = np.matmul(weight.swapaxes(0, 1), squares).swapaxes(0, 1)
-    return sums.reshape(*weight.shape[:2], p, p)
+    """Each participant's sum over cells of weights times x x', float64[studies, k, p, p].
+
+    Where `squares` has these products, all studies are summed at once.
+    """
+    p = x.shape[-1]
+    if squares is not None:
+        sums = np.matmul(weight.swapaxes(0, 1), squares).swapaxes(0, 1)
+        return sums.reshape(*weight.shape[:2], p, p)
+    return np.array(
+        [
+            [(of[:, None] * own).T @ own for of, own in zip(study, x, strict=True)]
+            for study in weight
+        ]
+    )
 
 
 def _checked(
@@ -277,9 +331,8 @@ def _checked(
     return y, n, x
 
 
-def _check_rank(n: NDArray[np.float64], flat: NDArray[np.float64], p: int) -> None:
+def _check_rank(information: NDArray[np.float64]) -> None:
     """Refuse a design in which a column follows from the others."""
-    information = ((n > 0) @ flat).reshape(-1, p, p)
     size = np.sqrt(np.diagonal(information, axis1=1, axis2=2))
     if not size.all():
         raise Unanswerable("a part of the model has no trials")

@@ -83,8 +83,8 @@ def _table(arguments: argparse.Namespace) -> FigureTable:
             return pictures.strain(style.geometry, style.tuning)
         case "mapping":
             if model is VBD:
-                raise InputError("the VBD has one row; the mappings are of stress2")
-            return pictures.mapping(style, **_letter(arguments))
+                raise InputError("the VBD has one row; the mappings are of displays of several")
+            return pictures.mapping(style, **_letter(arguments), model=model)
     if not math.isfinite(arguments.at):
         raise InputError(f"--at is {arguments.at}; it must be a number of mm")
     page = lay_out(arguments, build_book(arguments), shown)

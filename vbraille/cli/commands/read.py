@@ -8,14 +8,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
-from vbraille.cli.build import build_lengths, build_show, lay_out, note_unseen_dots
+from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
-from vbraille.devices.registry import check_actuators, check_travel
+from vbraille.devices.registry import check_actuators, check_height, check_travel
 from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from vbraille.cli.live import LiveView
     from vbraille.devices.events import Event
     from vbraille.engine.tally import Tally
+    from vbraille.reading.alongside import Alongside
     from vbraille.render import Model
 
 _POLL_S = 0.02
@@ -69,7 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     parse_hand(hand, seed, pointed=arguments.monitor)
     # Display that the options ask for: a simulated device is like it, a real device is what it is.
     asked = build_lengths(arguments, MODELS[arguments.model or "stress2"])
-    wanted = asked.on(asked.style.geometry, rate_hz)
+    wanted = build_page(arguments, replace(asked, display=asked.on(asked.style.geometry, rate_hz)))
+    wanted = wanted.display
     if arguments.model is not None or is_simulated(arguments.device):
         build_show(arguments, asked)
     if (note := compiling_note()) is not None:
@@ -84,6 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
             listening.enter_context(live)
         say = say_line if live is None else live.say
         hearing = listening.enter_context(Hearing(say, cues, echo=echo))
+        also = _also(arguments, listening, hearing)
         device = OpenDevice(
             arguments.device,
             wanted,
@@ -108,7 +111,8 @@ def run(arguments: argparse.Namespace) -> int:
             model = build_show(arguments, opened.tuned(own))
             if arguments.travel is not None:
                 check_travel(display, arguments.travel)
-            model = build_lengths(arguments, model, display.travel_mm)
+            check_height(display, arguments.height)
+            model = build_page(arguments, build_lengths(arguments, model, display.travel_mm))
             page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
             device.start(page.model)
@@ -143,7 +147,7 @@ def run(arguments: argparse.Namespace) -> int:
             if live is not None:
                 live.show(device, hand)
             try:
-                _Reading(page, device, keyboard, suspension, hearing, live).run()
+                _Reading(page, device, keyboard, suspension, hearing, live, also).run()
             finally:
                 opened.leave(device.reader, model, page.model.style)
         finally:
@@ -168,6 +172,7 @@ class _Reading:
         suspension: Suspension,
         hearing: Hearing,
         live: LiveView | None,
+        also: Alongside | None,
     ) -> None:
         self._page = page
         self._device = device
@@ -175,6 +180,7 @@ class _Reading:
         self._suspension = suspension
         self._hearing = hearing
         self._live = live
+        self._also = also
 
     def run(self) -> None:
         """Read to the end."""
@@ -201,6 +207,8 @@ class _Reading:
                 continue
             if device.placing is not placing:
                 self._say_place()
+            if self._also is not None:
+                self._also.attend(device.reader)
             self._hearing.see(device.line)
             if device.reader.layout is self._page.layout:
                 self._page.see(device.reader.line_number)
@@ -246,6 +254,8 @@ class _Reading:
         self._hearing.say("stopped: the array rests; fg goes on")
         self._tell(standing="stopped: the array rests")
         self._keyboard.release()
+        if self._also is not None:
+            self._also.rest()
         self._suspension.stop()
         self._keyboard.take()
         device.paused = paused
@@ -302,6 +312,20 @@ def _live(arguments: argparse.Namespace) -> LiveView | None:
     from vbraille.cli.live import LiveView
 
     return LiveView(arguments)
+
+
+def _also(
+    arguments: argparse.Namespace, listening: ExitStack, hearing: Hearing
+) -> Alongside | None:
+    """Conventional display that was asked for, which comes while the text is laid out."""
+    if arguments.also is None:
+        return None
+    # Only a reading that has such a display needs what drives it.
+    from vbraille.conventional.display import ConventionalDisplay
+    from vbraille.reading.alongside import Alongside
+
+    display = listening.enter_context(ConventionalDisplay(arguments.also))
+    return Alongside(display, hearing.say)
 
 
 def _save(path: Path, profile: str, model: Model) -> str:

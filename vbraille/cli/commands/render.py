@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,6 +15,7 @@ import numpy as np
 from vbraille.cli.build import (
     build_book,
     build_lengths,
+    build_page,
     build_show,
     lay_out,
     note_unseen_dots,
@@ -59,6 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
     model = build_lengths(arguments, model)
+    model = build_page(arguments, replace(model, display=replace(model.display, height_mm=0.0)))
     pages = _lines_per_page(arguments.height, model.style.geometry.line_pitch_mm)
     page = lay_out(arguments, build_book(arguments), model)
     style, display = model.style, model.display

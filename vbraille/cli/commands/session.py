@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
 from vbraille.errors import InputError
+from vbraille.sessions.planning.knobs import said_value
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record.participants import nearly_same
 from vbraille.sessions.running.answers import Typed
@@ -112,7 +113,7 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
     """Conditions of a session that were given as options."""
     from vbraille.sessions.conditions import LiveAddress
 
-    names = ("device", "hand", "answers", "sound", "markers")
+    names = ("device", "hand", "answers", "sound", "markers", "also")
     given = {name: getattr(arguments, name) for name in names}
     check_live_options(arguments)
     given["live"] = LiveAddress(arguments.host, arguments.port) if arguments.monitor else None
@@ -195,8 +196,12 @@ def _describe(protocol: Protocol, trial: Trial) -> str:
         if protocol.adaptive and not trial.practice:
             first, second = (stimulus.value or 0.0 for stimulus in trial.stimuli)
             return f"{trial.condition}, the {'lower' if first < second else 'higher'} value first"
-        return ", then ".join(f"{stimulus.value:g} mm" for stimulus in trial.stimuli)
-    return f"{trial.condition}, {_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
+        values = [stimulus.value or 0.0 for stimulus in trial.stimuli]
+        return ", then ".join(said_value(value, protocol.parameter) for value in values)
+    text = trial.stimuli[0].text
+    written = "" if text is None else f"{text}, "
+    cells = f"{_cells(trial).to_unicode()}, dots {_cells(trial).to_dots()}"
+    return f"{trial.condition}, {written}{cells}"
 
 
 def _cells(trial: Trial):

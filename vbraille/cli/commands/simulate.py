@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from vbraille.cli.controlkeys import ControlKeys
 from vbraille.cli.stopping import EAR
@@ -22,10 +22,34 @@ from vbraille.simulation.specs import parse_hand
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Mapping
 
     from vbraille.devices.wire.messages import Info
     from vbraille.display import Display
 
+# Options that only one kind of device has, and what they are when they are not given.
+_LATERO_ONLY: Final[dict[str, object]] = {
+    "port": None,
+    "lines": None,
+    "wait": None,
+    "late": None,
+    "double": None,
+    "foreign": None,
+}
+_SERIAL_ONLY: Final[dict[str, object]] = {
+    "model": "stress2",
+    "link": None,
+    "encoder": "absolute",
+    "travel": None,
+    "axes": "x",
+    "height": None,
+    "protocol": "2",
+    "script": None,
+    "corrupt": 0.0,
+    "stall": 0.0,
+    "unplug_every": 0.0,
+    "defect": None,
+}
 # Above the engine's 40: a real controller has a processor of its own.
 PRIORITY = 41
 # Way of a carriage of two axes across the lines, which nobody gives.
@@ -35,6 +59,12 @@ KEYS = "1 to 8 press a button, a to d turn a knob up, A to D turn it down"
 
 def run(arguments: argparse.Namespace) -> int:
     """Be a device until a signal says to stop."""
+    if arguments.what == "latero":
+        from vbraille.cli.commands import simulate_latero
+
+        _refuse(arguments, _SERIAL_ONLY)
+        return simulate_latero.run(arguments, PRIORITY)
+    _refuse(arguments, _LATERO_ONLY)
     display = _display(arguments)
     info = _info(arguments, display)
     hand = parse_hand(arguments.hand, arguments.seed)
@@ -78,6 +108,16 @@ def run(arguments: argparse.Namespace) -> int:
             port.unplug()
     say_line(_summary(simulator))
     return 0
+
+
+def _refuse(arguments: argparse.Namespace, others: Mapping[str, object]) -> None:
+    """Raise InputError if an option is given that another kind of device has."""
+    for name, left_out in others.items():
+        if getattr(arguments, name) != left_out:
+            raise InputError(
+                f"--{name.replace('_', '-')} is not for a simulated {arguments.what} device; leave "
+                f"it out"
+            )
 
 
 def _display(arguments: argparse.Namespace) -> Display:

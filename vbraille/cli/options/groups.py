@@ -8,8 +8,11 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
-MAPPINGS = ("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact")
-MODELS = ("stress2", "vbd")
+MAPPINGS = (
+    *("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact"),
+    "eight-dots",
+)
+MODELS = ("stress2", "stress2-8x8", "latero", "vbd")
 
 # Options of reading that a settings file may say.
 SETTLED = (
@@ -24,7 +27,10 @@ SETTLED = (
     "echo",
     "speech",
     "cues",
+    "also",
     "verbose",
+    "straying",
+    "band",
 )
 
 HANDS = (
@@ -141,12 +147,12 @@ def layout(parser: ArgumentParser) -> None:
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Lay out for this display: the STReSS² or the VBD (default: the device's own, or "
-        "stress2).",
+        help="Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, "
+        "or the VBD (default: the device's own, or stress2).",
     )
     parser.add_argument(
         "--geometry",
-        choices=("stress2", "vbd", "standard"),
+        choices=(*MODELS, "standard"),
         help="Start from the distances of this display, or of embossed braille (default: the "
         "display's own).",
     )
@@ -194,13 +200,37 @@ def show(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--mapping",
         choices=MAPPINGS,
-        help="On the STReSS²: choose which rows of actuators show which dots (default: alternate).",
+        help="On a display of several rows: choose which rows of actuators show which dots "
+        "(default: alternate, or eight-dots where there are eight rows).",
     )
     parser.add_argument(
         "--dot-row",
         type=whole,
         metavar="1|2|3",
         help="On the VBD: show this row of dots (default: 1).",
+    )
+
+
+def page(parser: ArgumentParser) -> None:
+    """Add the options of a page on a surface of two axes."""
+    parser.add_argument(
+        "--height",
+        type=number,
+        metavar="MM",
+        help="Let the carriage go so far down the page, too: the hand reads pages of lines, or one "
+        "line for 0 (default: what the device has).",
+    )
+    parser.add_argument(
+        "--straying",
+        choices=("line", "free"),
+        help="Show a finger that strays from the middle of a line of a page that line, or what "
+        "lies under each actuator (default: line).",
+    )
+    parser.add_argument(
+        "--band",
+        type=number,
+        metavar="0…0.9",
+        help="Leave a line of a page half so far beyond its edge, in line pitches (default: 0.25).",
     )
 
 

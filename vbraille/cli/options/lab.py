@@ -274,6 +274,12 @@ def _conduct(parser: ArgumentParser) -> None:
         "output, otherwise the terminal's bell (default: auto).",
     )
     parser.add_argument(
+        "--also",
+        metavar="DISPLAY",
+        help="For a protocol that shows something on a conventional display: take this one, as "
+        "brlapi:HOST:N for BRLTTY at another address (default: BRLTTY's on this machine).",
+    )
+    parser.add_argument(
         "--markers",
         metavar="lsl[:NAME]|serial:PORT[:BAUD]",
         help="Send a marker of each event to another recorder: to a stream of the Lab Streaming "

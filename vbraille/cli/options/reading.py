@@ -87,6 +87,12 @@ def _reading(parser: ArgumentParser) -> None:
         "none).",
     )
     parser.add_argument(
+        "--also",
+        metavar="DISPLAY",
+        help="Show each line on a conventional display beside, and obey its keys: brlapi for the "
+        "one that BRLTTY drives, brlapi:HOST:N for BRLTTY at another address (default: none).",
+    )
+    parser.add_argument(
         "--cells",
         type=whole,
         metavar="N",
@@ -96,6 +102,7 @@ def _reading(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--verbose", action="store_true", help="Say more, such as how far a search has come."
     )
+    groups.page(parser)
     groups.hand(parser)
     # The model is the device's own, and only a simulated one has a hand.
     parser.set_defaults(model=None, hand=None, seed=None)
@@ -179,13 +186,7 @@ def render(parser: ArgumentParser) -> None:
     groups.show(parser)
     groups.hand(parser)
     parser.add_argument("--out", required=True, metavar="FILE.h5", help="Write to this file.")
-    parser.add_argument(
-        "--height",
-        type=number,
-        metavar="MM",
-        help="Let the carriage go so far down the page, too: the hand reads pages of lines "
-        "(default: it goes along a line only).",
-    )
+    groups.page(parser)
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
@@ -229,10 +230,18 @@ def plot(parser: ArgumentParser) -> None:
 def simulate(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille simulate``."""
     parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("serial", "latero"),
+        default="serial",
+        help="Be a device at a serial port, or a Latero on the network (default: serial).",
+    )
+    parser.add_argument(
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Be this display: the STReSS² or the VBD (default: stress2).",
+        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, or the VBD "
+        "(default: stress2).",
     )
     groups.hand(parser)
     parser.set_defaults(rate=1000)
@@ -319,6 +328,38 @@ def simulate(parser: ArgumentParser) -> None:
         ),
         help="Be built wrong in this way, which vbraille device check finds (default: none).",
     )
+
+    simulate_latero(parser)
+
+
+def simulate_latero(parser: ArgumentParser) -> None:
+    """Add the options that only a simulated Latero has."""
+    latero = parser.add_argument_group("a Latero's own options")
+    latero.add_argument(
+        "--port",
+        type=whole,
+        metavar="N",
+        help="Listen at this UDP port, 0 for any that is free (default: 8900).",
+    )
+    latero.add_argument(
+        "--lines",
+        type=whole,
+        metavar="N",
+        help="Have the hand read so many lines of a page, 10 mm apart (default: 1).",
+    )
+    latero.add_argument(
+        "--wait",
+        type=duration,
+        metavar="DURATION",
+        help="Have the hand wait so long at the lower left when a program comes, such as 5s "
+        "(default: 1s).",
+    )
+    for name, text in (
+        ("late", "Send this share of the answers 20 ms late"),
+        ("double", "Have this share of the datagrams come twice, both ways"),
+        ("foreign", "Send somebody else's datagram along with this share of the answers"),
+    ):
+        latero.add_argument(f"--{name}", type=number, metavar="0…1", help=f"{text} (default: 0).")
 
 
 def device_info(parser: ArgumentParser) -> None:

@@ -32,8 +32,19 @@ def say_line(reader: Reader) -> None:
 
 def say_character(reader: Reader) -> None:
     """Say the cell under the middle of the array by its dots, its text and its word."""
-    line, cell = reader.line, reader.cell
-    if line is None or cell is None:
+    say_cell(reader, reader.cell)
+
+
+def say_cell(reader: Reader, cell: int | None) -> None:
+    """Say a cell of the line by its dots, its text and its word; that there is none if it is not.
+
+    Parameters
+    ----------
+    cell
+        Number of the cell, from 0; None for none.
+    """
+    line = reader.line
+    if line is None or cell is None or not 0 <= cell < len(line):
         reader.say("cell: none here")
         return
     reader.say(f"cell: {_dots(int(line.masks[cell]))}")

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # know, such as that its carriage is at the stop.
 ALLOWED: Final = frozenset(
     {
+        *("WINDN", "WINUP", "STRAYING", "BAND_UP", "BAND_DOWN"),
         *("LNDN", "LNUP", "FWINRT", "FWINLT", "LNBEG", "LNEND", "TOP", "BOT", "BACK"),
         *("NXPGRPH", "PRPGRPH", "NXPAGE", "PRPAGE", "NXHEADING", "PRHEADING"),
         *(f"{way}HEADING{level}" for way in ("NX", "PR") for level in range(1, 7)),

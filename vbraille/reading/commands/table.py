@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         control,
         marking,
         moving,
+        paging,
         searching,
         structure,
         turning,
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
 else:
     asking, choosing, control, marking = map(Deferred, ("asking", "choosing", "control", "marking"))
-    moving, searching, structure, turning = map(
-        Deferred, ("moving", "searching", "structure", "turning")
+    moving, paging, searching, structure, turning = map(
+        Deferred, ("moving", "paging", "searching", "structure", "turning")
     )
 
 HEADING, LIST, TABLE = "heading", "item", "row"  # kinds of blocks
@@ -86,15 +87,30 @@ def _paste(reader: Reader, key: str, text: str) -> None:
 
 def press_button(reader: Reader, number: int) -> None:
     """Call the command that a button of the device stands for."""
-    command = (reader.bound or BOUND).buttons.get(number)
+    _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
+
+
+def press_display_key(reader: Reader, name: str) -> None:
+    """Call the command that a key of a conventional display stands for.
+
+    Parameters
+    ----------
+    name
+        BRLTTY's name for the key.
+    """
+    _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
+
+
+def _call(reader: Reader, name: str, command: Command | None) -> None:
+    """Call the command of something that is pressed and is no key of the keyboard."""
     if reader.context is Context.LEARNING:
-        _learn(reader, f"button {number}", command)
+        _learn(reader, name, command)
     elif command is None:
-        reader.say(f"button {number}: no command; the settings file can give it one")
+        reader.say(f"{name}: no command; the settings file can give it one")
     elif reader.context in command.contexts:
         command.handler(reader)
     else:
-        reader.say(f"button {number}: not now; answer first")
+        reader.say(f"{name}: not now; answer first")
 
 
 def turn_knob(reader: Reader, number: int, share: float) -> str:
@@ -156,6 +172,8 @@ COMMANDS = (
     Command("LNUP", ("p", "up"), "previous line", moving.previous_line),
     Command("FWINRT", ("right",), "on along the line, then the next line", moving.pan_right),
     Command("FWINLT", ("left",), "back along the line, then the line before", moving.pan_left),
+    Command("WINDN", ("]", "ctrl-pagedown"), "next page of the surface", paging.next_page),
+    Command("WINUP", ("[", "ctrl-pageup"), "previous page of the surface", paging.previous_page),
     Command("LNBEG", ("home",), "start of the line", moving.line_start),
     Command("LNEND", ("end",), "end of the line", moving.line_end),
     Command("NXPGRPH", ("a", "ctrl-down"), "next paragraph", structure.next_paragraph),
@@ -217,6 +235,9 @@ COMMANDS = (
         "CELL_GAP_DOWN", ("J",), "cells closer together", made(turning.turn, "cell_gap_mm", -1)
     ),
     Command("MAPPING", ("#",), "another way to show dots by actuators", turning.change_mapping),
+    Command("STRAYING", ("=",), "keep the finger on its line, or show all", paging.change_straying),
+    Command("BAND_UP", (")",), "leave a line of a page later", made(paging.turn_band, 1)),
+    Command("BAND_DOWN", ("(",), "leave a line of a page sooner", made(paging.turn_band, -1)),
     Command("UNDO", ("U",), "take back the last change of how braille feels", turning.undo_turn),
     Command("PREFSAVE", ("P",), "save how braille feels", turning.save_settings),
     Command("HELP", ("h", "f1"), "say the keys", say_keys),

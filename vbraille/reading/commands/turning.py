@@ -113,7 +113,8 @@ def _turn(reader: Reader, field: str, value: object, said: str) -> None:
 
 def _fields(style: BrailleStyle) -> dict[str, Any]:
     """All that commands of this module change in a style."""
-    return {"geometry": style.geometry, "tuning": style.tuning, "mapping": style.mapping}
+    names = ("geometry", "tuning", "mapping", "straying")
+    return {name: getattr(style, name) for name in names}
 
 
 def _stop(reader: Reader, said: str) -> None:

@@ -82,11 +82,16 @@ class Mapping:
         return bits
 
 
+_ALL = tuple(range(DOT_ROWS))
+# Which rows of dots each cell has in its left and in its right dot column; uint16[256, 2].
+DOT_BITS = Mapping("dots", _ALL, _ALL, (False,) * DOT_ROWS).row_bits()
+
 _NO = (False,) * 6
 _PAIRS = (0, 0, 1, 1, 2, 2)
 _EVEN = (0, NONE, 1, NONE, 2, NONE)
 _ODD = (NONE, 0, NONE, 1, NONE, 2)
 _TOP = (0, 1, 2, NONE, NONE, NONE)
+_EIGHT = (0, NONE, 1, NONE, 2, NONE, 3, NONE)
 
 MAPPINGS = {
     mapping.name: mapping
@@ -105,6 +110,9 @@ MAPPINGS = {
         Mapping("compact", _TOP, _TOP, _NO),
         # Our own: as compact, in the middle of any array of three rows or more.
         Mapping("three-rows", (0, 1, 2), (0, 1, 2), (False,) * 3),
+        # For arrays of eight rows: alternate from the first row on, as the later code has it there.
+        # What is left are two rows, of which one takes dots 7 and 8: our own.
+        Mapping("eight-dots", _EIGHT, _EIGHT, (False,) * 8),
     )
 }
 

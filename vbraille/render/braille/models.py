@@ -1,4 +1,4 @@
-"""The two displays of Lévesque 2009 with the style of each, and how any other display is read."""
+"""The displays of Lévesque 2009 and the Latero, how each is read, and how any other display is."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from vbraille.braille import geometry
+from vbraille.carriers import carrier
 from vbraille.display import Display
 from vbraille.render.braille.mappings import MAPPINGS, single_row
 from vbraille.render.braille.profiles import Profile
@@ -94,7 +95,47 @@ STRESS2 = Model(
         Profile.RAISED_COSINE, MAPPINGS["alternate"], geometry.STRESS2, Tuning(texture=1.0)
     ),
 )
-MODELS = {model.name: model for model in (STRESS2, VBD)}
+# Lévesque 2009, 6.2, on the Tactograph of ch. 7; contactors as in its author's later code. Of eight
+# rows every second one shows a row of dots: 2.8 mm apart, which comes nearest to the 2.5 mm of
+# paper (4.2 mm on every third row), and in the order of that code, from the far row on.
+STRESS2_8X8 = Model(
+    "stress2-8x8",
+    "STReSS² 8 × 8",
+    carrier.TACTOGRAPH.under(
+        Display(
+            name="simulated STReSS² 8 × 8",
+            rows=8,
+            columns=8,
+            column_pitch_mm=1.2,
+            row_pitch_mm=1.4,
+            levels=_LEVELS,
+            rest_side="right",
+            rate_hz=_RATE_HZ,
+            contactor_mm=(0.5, 1.2),
+        )
+    ),
+    replace(STRESS2.style, mapping=MAPPINGS["eight-dots"], geometry=geometry.STRESS2_8X8),
+)
+# Not in the source: its successor, by the author's later code; 8 bits, of which it uses 0 … 150.
+LATERO = Model(
+    "latero",
+    "Latero",
+    carrier.LATERO.under(
+        Display(
+            name="simulated Latero",
+            rows=8,
+            columns=8,
+            column_pitch_mm=1.2,
+            row_pitch_mm=1.6125,
+            levels=151,
+            rest_side="right",
+            rate_hz=_RATE_HZ,
+            contactor_mm=(0.5, 1.4),
+        )
+    ),
+    replace(STRESS2.style, mapping=MAPPINGS["eight-dots"], geometry=geometry.LATERO),
+)
+MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, LATERO, VBD)}
 
 
 def same_array(one: Display, other: Display) -> bool:

@@ -11,8 +11,9 @@ import numpy as np
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
 from vbraille.render import work
-from vbraille.render.braille.mappings import Mapping
+from vbraille.render.braille.mappings import DOT_BITS, Mapping
 from vbraille.render.braille.profiles import Profile, coefficients
+from vbraille.render.braille.straying import MOST_TILT_RAD, Straying
 from vbraille.render.braille.tuning import Tuning
 from vbraille.render.work import ProgramKind
 
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.program import Program
 
-# Hysteresis between going to the next line of a page and coming back, in line pitches.
-HYSTERESIS = 0.25
+
+_USUAL = Straying()
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,8 @@ class BrailleStyle:
     first_row
         Row of the display at which the mapping begins; None puts the mapping into the middle.
         Rows outside the mapping rest.
+    straying
+        What is shown of a page to a finger that strays from its line.
     """
 
     profile: Profile
@@ -52,6 +55,7 @@ class BrailleStyle:
     geometry: Geometry
     tuning: Tuning
     first_row: int | None = None
+    straying: Straying = _USUAL
 
     def replace(self, **changes: Any) -> Self:
         """Make a style that differs from this one in the given fields.
@@ -125,7 +129,7 @@ class BrailleStyle:
         lines: Sequence[NDArray[np.uint8]],
         display: Display,
         *,
-        hysteresis: float = HYSTERESIS,
+        hysteresis: float | None = None,
     ) -> Program:
         """Compile a page of lines, one below the other.
 
@@ -136,7 +140,8 @@ class BrailleStyle:
         display
             Display that the page is shown on.
         hysteresis
-            Distance in y between going to the next line and coming back, in line pitches, 0 to 1.
+            Distance in y between going to the next line and coming back, in line pitches, 0 to 1;
+            None for the band of the style's `Straying`.
 
         Raises
         ------
@@ -146,12 +151,22 @@ class BrailleStyle:
         """
         if not lines:
             raise ValueError("a page of no lines cannot be shown")
+        hysteresis = self.straying.band if hysteresis is None else hysteresis
         if not 0 <= hysteresis <= 1:
             raise ValueError(f"the hysteresis is {hysteresis:g}; it must be 0 to 1 line pitches")
         program = self._compile(lines, display, ProgramKind.PAGE)
         program.numbers[work.LINES] = len(lines)
         program.numbers[work.HYSTERESIS] = hysteresis
+        if self.straying.manner == "free":
+            self._free(program, display)
         return program
+
+    def _free(self, program: Program, display: Display) -> None:
+        """Have each actuator of a page show what lies under it, whatever the mapping."""
+        numbers = program.numbers
+        numbers[work.FREE] = 1.0
+        numbers[work.IDLE : work.IDLE + display.rows] = 0.0
+        numbers[work.IDLE + display.rows :] = self.tuning.contrast
 
     def room(self, display: Display, cells: int, lines: int = 1) -> int:
         """Tell how many bytes a program of so many lines and cells takes; each is at least 1."""
@@ -181,12 +196,17 @@ class BrailleStyle:
         numbers[work.OVERLAP] = geometry.dot_width_mm > min(
             geometry.dot_spacing_mm, geometry.cell_gap_mm
         )
+        numbers[work.DOT_ROW_PITCH] = geometry.row_spacing_mm
+        numbers[work.TILT] = MOST_TILT_RAD
         numbers[work.SHAPE : work.SHAPE + 6] = coefficients(self.profile, tuning)
         idle = self.mapping.idle()
         numbers[work.IDLE : work.IDLE + display.rows][own] = idle
         numbers[work.IDLE + display.rows :][own] = tuning.contrast * (1 - 2 * idle)
-        bits = self.mapping.row_bits() << own.start
         page = kind is ProgramKind.PAGE
+        if page and self.straying.manner == "free":
+            bits = DOT_BITS
+        else:
+            bits = self.mapping.row_bits() << own.start
         table = np.zeros((len(lines) + 2 * page, slots), np.uint16)
         for row, masks in zip(table[page:], lines, strict=False):
             row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()
@@ -200,6 +220,7 @@ _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
     "geometry": ((Geometry,), "a vbraille.Geometry"),
     "tuning": ((Tuning,), "a vbraille.Tuning"),
     "first_row": ((Integral, type(None)), "a row, from 0, or None"),
+    "straying": ((Straying,), "a vbraille.Straying"),
 }
 
 

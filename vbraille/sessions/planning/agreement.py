@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING
 
-from vbraille.braille.spelling import name_dots, to_braille
-from vbraille.sessions.planning.appearance import LENGTHS
-from vbraille.sessions.planning.design import MOST_TRIALS, Choice, StringList
+from vbraille.render import Profile
+from vbraille.sessions.planning import standing
+from vbraille.sessions.planning.design import MOST_TRIALS, UNFELT, Choice, StringList
 from vbraille.sessions.planning.factors import problem
-from vbraille.sessions.planning.knobs import GAP, KNOBS, with_value
+from vbraille.sessions.planning.fitting import check_cells, check_lines
+from vbraille.sessions.planning.knobs import GAP
+from vbraille.sessions.planning.procedures import StaircaseProcedure
 from vbraille.sessions.planning.sequencing import CONDITION, impossible, limited
+from vbraille.sessions.planning.writing import problem_of
 from vbraille.toml.tomlfile import which
 
 if TYPE_CHECKING:
@@ -18,8 +20,16 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
 
 
-def check_agreement(protocol: Protocol) -> None:
+def check_agreement(protocol: Protocol, *, planned: bool = False) -> None:
     """Check that the tables of a protocol agree with each other, for each group.
+
+    Parameters
+    ----------
+    protocol
+        The protocol.
+    planned
+        Whether it belongs to a session, whose plan has been made. The plan then has the cells of
+        all texts, and no braille table is asked for them again.
 
     Raises
     ------
@@ -39,18 +49,25 @@ def check_agreement(protocol: Protocol) -> None:
     _check_names(protocol)
     _check_styles(protocol)
     _check_procedure(protocol)
+    said = standing.problem(protocol)
+    if said:
+        raise ValueError(said)
     _check_question(protocol)
     said = protocol.practice.problem(protocol.design)
     if said:
         raise ValueError(f"[practice] {said}")
     _check_trials(protocol)
     _check_order(protocol)
-    _check_cells(protocol)
-    _check_lines(protocol)
+    _check_tables(protocol, planned=planned)
+    if not planned:
+        _check_varies(protocol)
+    if not protocol.written or not (planned or _ungrouped(protocol)):
+        check_cells(protocol)
+        check_lines(protocol)
     _check_letters(protocol)
     _check_rules(protocol)
     if not protocol.group:
-        _check_groups(protocol)
+        _check_groups(protocol, planned=planned)
 
 
 def _check_names(protocol: Protocol) -> None:
@@ -64,12 +81,47 @@ def _check_names(protocol: Protocol) -> None:
             )
 
 
-def _check_groups(protocol: Protocol) -> None:
+def _ungrouped(protocol: Protocol) -> bool:
+    """Whether the groups of a protocol have tables of their own, and none is chosen."""
+    own = any(f.between and f.levels[0].table is not None for f in protocol.factors)
+    return own and not protocol.group
+
+
+def _check_tables(protocol: Protocol, *, planned: bool) -> None:
+    """Check that each condition has a braille table or none has, and that there are texts."""
+    if not protocol.written:
+        return
+    design = protocol.design
+    if not isinstance(design, StringList):
+        kind = "choice" if isinstance(design, Choice) else "combinations"
+        raise ValueError(
+            f"[design] kind is {kind!r}, which shows cells, and table makes cells of texts; give "
+            f"'list' or 'items', or leave table out"
+        )
+    for wrong, words in (
+        (design.reorder, "[design] reorder is of cells"),
+        (protocol.keys, "[keys] spell cells"),
+        (
+            (protocol.rules.each_letter, protocol.rules.each_letter_at_least) != (None, None),
+            "[rules] each_letter counts cells",
+        ),
+    ):
+        if wrong:
+            raise ValueError(f"{words}, and where table is given strings are texts; leave it out")
+    for condition in () if _ungrouped(protocol) else protocol.conditions:
+        table, place = protocol.table_of(condition), _place(protocol, condition)
+        if table is None:
+            raise ValueError(f"{place} has no table, and others have; give it one, or [display]")
+        if problem := "" if planned else problem_of(table):
+            raise ValueError(f"{place} table: {problem}")
+
+
+def _check_groups(protocol: Protocol, *, planned: bool) -> None:
     """Check the protocol as each group has it."""
     for group in protocol.groups:
         number = 1 + next(n for n, factor in enumerate(protocol.factors) if factor.between)
         try:
-            check_agreement(protocol.assigned(group))
+            check_agreement(protocol.assigned(group), planned=planned)
         except ValueError as error:
             raise ValueError(f"[[factors]] number {number} group {group}: {error}") from None
 
@@ -100,6 +152,39 @@ def _check_styles(protocol: Protocol) -> None:
                 f"[design] parameter is {compared!r}, which the condition {condition.name} sets "
                 f"itself; leave it out there"
             )
+
+
+def _check_varies(protocol: Protocol) -> None:
+    """Check that what is compared or chosen can be felt, and that there is something to order.
+
+    Sessions that were planned before this was checked are gone on with.
+    """
+    chosen = getattr(protocol.procedure, "parameter", None)
+    for table, name in (("design", protocol.parameter), ("procedure", chosen)):
+        if name == "texture_cycles" and protocol.model.style.profile is Profile.HALF_SINE:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, and the texture of the {protocol.model.title} "
+                f"has a fixed wavelength, so that nothing would vary; choose another"
+            )
+        if name in UNFELT:
+            raise ValueError(
+                f"[{table}] parameter is {name!r}, which no actuator shows in a line of its own; "
+                f"give another"
+            )
+    stairs = protocol.procedure
+    if isinstance(stairs, StaircaseProcedure):
+        trials = min(stairs.trials or MOST_TRIALS, protocol.design.trials)
+        if trials < min(stairs.right, stairs.wrong) * len(stairs.start):
+            raise ValueError(
+                f"[procedure] start is of {len(stairs.start)} staircases, and a condition has "
+                f"{trials} trials: one of them cannot move; give it more trials"
+            )
+    order = protocol.order
+    if order is not None and order.kind != "listed" and len(protocol.conditions) < 2:
+        raise ValueError(
+            f"[order] kind is {order.kind!r}, and there is one condition, so that nothing can be "
+            f"ordered; leave it out, or give more conditions"
+        )
 
 
 def _sets(condition: Condition, knob: str | None) -> bool:
@@ -182,81 +267,6 @@ def _check_order(protocol: Protocol) -> None:
             f"[order] kind is {order.kind!r}, which orders blocks of a condition each; give "
             f"'random', or [design] blocks = 'conditions'"
         )
-
-
-def _check_cells(protocol: Protocol) -> None:
-    """Check that the display can show every dot of every cell used, in every condition."""
-    model, design = protocol.model, protocol.design
-    practised = {mask for line in protocol.practice.lines(design) for mask in line}
-    for condition in protocol.conditions:
-        mapping = protocol.style_of(condition).mapping
-        shown = mapping.shown_dots()
-        how = (
-            f"'s row {mapping.left[0] + 1}"
-            if mapping.rows == 1
-            else f" with the mapping {mapping.name}"
-        )
-        only = f"the {model.title}{how} shows {name_dots(shown)} only"
-        for table, masks in (("[design]", design.masks), ("[practice]", practised)):
-            for mask in sorted(masks):
-                if mask & ~shown:
-                    cell = f"{to_braille((mask,))} ({name_dots(mask)})"
-                    raise ValueError(f"{table} has the cell {cell}, and {only}; leave the cell out")
-        # Keys may spell what one condition shows and another does not.
-        for key, mask in protocol.keys.items() if len(protocol.conditions) == 1 else ():
-            if mask & ~shown:
-                raise ValueError(
-                    f"[keys] {key} is {name_dots(mask)}, and {only}; leave the key out"
-                )
-
-
-def _check_lines(protocol: Protocol) -> None:
-    """Check that the display has room for the longest line, at each value that is compared."""
-    model, design, practice = protocol.model, protocol.design, protocol.practice
-    values: tuple[float | None, ...] = (None,)
-    unit = ""
-    if isinstance(design, Choice):
-        values = tuple(dict.fromkeys((*design.values, *protocol.procedure.values(design))))
-        values += () if design.reference is None else (design.reference,)
-        unit = KNOBS[design.parameter].unit
-    longest = max((design.cells, *map(len, practice.lines(design))))
-    whose = "[design]" if longest == design.cells else "[practice]"
-    for condition, value in product(protocol.conditions, (*values, *sorted(set(practice.values)))):
-        at = "" if value is None else f" at a value of {value:g}{unit}"
-        if condition.changes.keys() & set(LENGTHS):
-            at += f" in the condition {condition.name}"
-        try:
-            shown = protocol.shown(condition, (0,), value)
-            room = shown.geometry.cells_per_line(model.display.span_mm)
-        except ValueError as error:
-            raise ValueError(f"[design]{at}: {error}") from None
-        cells = protocol.lead_cells + longest
-        if cells > room:
-            raise ValueError(
-                f"{whose} has a line of {cells} cells{at}, lead_cells among them, and the "
-                f"{model.title} has room for {room}; make it shorter, or travel_mm longer"
-            )
-    _check_varied(protocol, longest)
-
-
-def _check_varied(protocol: Protocol, longest: int) -> None:
-    """Check that strings can be shown at both ends of what a procedure varies."""
-    knob = getattr(protocol.procedure, "parameter", None)
-    if knob is None or protocol.task == "choice":
-        return
-    for condition, value in product(
-        protocol.conditions, protocol.procedure.values(protocol.design)
-    ):
-        try:
-            shown = with_value(protocol.shown(condition, (0,)), knob, value)
-        except ValueError as error:
-            raise ValueError(f"[procedure] parameter at {value:g}: {error}") from None
-        room = shown.geometry.cells_per_line(protocol.model.display.span_mm)
-        if protocol.lead_cells + longest > room:
-            raise ValueError(
-                f"[procedure] parameter at {value:g} leaves room for {room} cells, and there are "
-                f"{protocol.lead_cells + longest}; make it less, or travel_mm longer"
-            )
 
 
 def _check_letters(protocol: Protocol) -> None:

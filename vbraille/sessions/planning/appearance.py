@@ -10,6 +10,7 @@ from msgspec import field
 from vbraille.braille.geometry import BOUNDS_MM
 from vbraille.render import MAPPINGS, Profile, Tuning, single_row
 from vbraille.sessions.planning.conduct import check_name
+from vbraille.sessions.planning.conventionaltable import Where
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ MOST_LEAD = 20
 # Lengths that conditions may differ in; the travel is the device's, and the same for all.
 LENGTHS = tuple(name for name in BOUNDS_MM if name != "travel_mm")
 TUNED = ("texture", "contrast", "cycles")
-LOOKS = (*TUNED, "dot_row", "mapping", *LENGTHS)
+LOOKS = (*TUNED, "dot_row", "mapping", "table", "on", *LENGTHS)
 
 
 class Tuned(Table, frozen=True, kw_only=True):
@@ -75,6 +76,11 @@ class Look(Tuned, frozen=True, kw_only=True):
         Row of dots that the VBD shows, from 1.
     mapping
         Name of the mapping that the STReSS² uses.
+    table
+        File name of the braille table of liblouis that makes the cells of texts.
+    on
+        Where strings stand: on the "device", or on the conventional display that BRLTTY drives,
+        "brlapi".
     dot_width_mm, dot_spacing_mm, cell_gap_mm, row_spacing_mm, line_pitch_mm
         These are described at `Geometry`.
 
@@ -86,11 +92,21 @@ class Look(Tuned, frozen=True, kw_only=True):
 
     dot_row: int | None = None
     mapping: str | None = None
+    table: str | None = None
+    on: Where | None = None
     dot_width_mm: float | None = None
     dot_spacing_mm: float | None = None
     cell_gap_mm: float | None = None
     row_spacing_mm: float | None = None
     line_pitch_mm: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.table is not None and (not self.table.strip() or "/" in self.table):
+            raise ValueError(
+                f"table is {self.table!r}; it must be the name of a braille table that liblouis "
+                f"has, such as en-ueb-g2.ctb (vbraille tables lists all)"
+            )
 
     @property
     def changes(self) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from vbraille.braille.spelling import spell_string
 from vbraille.errors import InputError
 from vbraille.sessions.planning.conduct import NAME
-from vbraille.sessions.planning.spellings import Masks
+from vbraille.sessions.planning.spellings import Masks, read_written
 from vbraille.toml.tomlfile import which
 from vbraille.wording import nearest
 
@@ -31,7 +31,7 @@ class ItemRow:
     Parameters
     ----------
     masks
-        Dot masks of its cells.
+        Dot masks of its cells, or its text.
     told
         What the file's other columns tell of it, by column.
     """
@@ -74,7 +74,9 @@ def check_file_name(name: str, what: str) -> None:
         )
 
 
-def read_items(text: str, where: str, keys: SpellingKeys) -> tuple[ItemRow, ...]:
+def read_items(
+    text: str, where: str, keys: SpellingKeys, *, written: bool = False
+) -> tuple[ItemRow, ...]:
     """Read a file of items: a CSV with the column ``string``, and any others.
 
     Parameters
@@ -83,6 +85,8 @@ def read_items(text: str, where: str, keys: SpellingKeys) -> tuple[ItemRow, ...]
         Text of the file, and its name for messages.
     keys
         Dot masks of the characters that may spell a cell beside a to z.
+    written
+        Whether the strings are texts, whose cells braille tables make.
 
     Raises
     ------
@@ -92,7 +96,7 @@ def read_items(text: str, where: str, keys: SpellingKeys) -> tuple[ItemRow, ...]
     """
     found: dict[Masks, ItemRow] = {}
     for line, row in _rows(text, where, (STRING,)):
-        masks = _spelled(row.pop(STRING), f"{where} line {line}: {STRING}", keys)
+        masks = _spelled(row.pop(STRING), f"{where} line {line}: {STRING}", keys, written)
         if masks in found:
             raise InputError(
                 f"{where} line {line}: {STRING} is there before; leave one out, and give repeats "
@@ -104,8 +108,12 @@ def read_items(text: str, where: str, keys: SpellingKeys) -> tuple[ItemRow, ...]
     return tuple(found.values())
 
 
-def read_words(text: str, where: str, keys: SpellingKeys) -> tuple[Masks, ...]:
+def read_words(
+    text: str, where: str, keys: SpellingKeys, *, written: bool = False
+) -> tuple[Masks, ...]:
     """Read a list of words, one on each line; empty lines and lines with # are left out.
+
+    The parameters are described at `read_items`.
 
     Raises
     ------
@@ -114,7 +122,7 @@ def read_words(text: str, where: str, keys: SpellingKeys) -> tuple[Masks, ...]:
     """
     lines = [(n, line.strip()) for n, line in enumerate(text.splitlines(), 1)]
     return tuple(
-        _spelled(word, f"{where} line {n}: word", keys)
+        _spelled(word, f"{where} line {n}: word", keys, written)
         for n, word in lines
         if word and not word.startswith("#")
     )
@@ -207,9 +215,9 @@ def _check_head(head: list[str], at: str, needed: tuple[str, ...]) -> None:
             raise InputError(f"{at}: there is no column {name}; {nearest(name, head)}, or add it")
 
 
-def _spelled(text: str, what: str, keys: SpellingKeys) -> Masks:
+def _spelled(text: str, what: str, keys: SpellingKeys, written: bool) -> Masks:
     try:
-        masks = Masks(spell_string(text, keys))
+        masks = read_written(text) if written else Masks(spell_string(text, keys))
     except ValueError as error:
         raise InputError(f"{what}: {error}") from None
     if not any(masks):

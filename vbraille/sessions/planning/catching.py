@@ -46,7 +46,11 @@ def _caught(trial: Trial, catch: Catch) -> Trial:
         return structs.replace(trial, catch="repeat")
     first, stop = trial.asked
     blank = [
-        replace(s, masks=(*s.masks[:first], *(0,) * (stop - first), *s.masks[stop:]))
+        replace(
+            s,
+            masks=(*s.masks[:first], *(0,) * (stop - first), *s.masks[stop:]),
+            text=None if s.text is None else "",
+        )
         for s in trial.stimuli
     ]
     return structs.replace(trial, catch="blank", stimuli=Stimuli(blank))

@@ -12,8 +12,11 @@ from vbraille.toml.tomlfile import Table
 NAME = re.compile(r"[A-Za-z0-9_-]{1,40}")
 LONGEST_LINE = 200
 ENTER = "key:enter"
+# Keys with names, and what they type; other keys are called by the character that they type.
+KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 MOST_BUTTONS = 8  # the wire has a bit for each
 _BUTTON = re.compile(r"button:([1-8])")
+_KEY = re.compile(r"key:([!-~]|enter|space|tab)")
 
 
 def check_name(what: str, name: str) -> None:
@@ -55,7 +58,8 @@ class TrialPace(Table, frozen=True):
         Seconds from the start signal to the audible warning; None for no warning.
     end
         What the participant ends reading by: "button:N" for button N of the device, from 1, or
-        "key:enter" for Enter; None if the hand's way to the end and back ends it.
+        "key:NAME" for a key: "key:enter", "key:space", "key:tab", or the character of another one,
+        as in "key:+"; None if the hand's way to the end and back ends it.
 
     Raises
     ------
@@ -68,13 +72,20 @@ class TrialPace(Table, frozen=True):
     end: str | None = None
 
     def __post_init__(self) -> None:
-        if self.end is not None and self.end != ENTER and self.button is None:
+        if self.end is not None and self.key is None and self.button is None:
             raise ValueError(
-                f"end is {self.end!r}; it must be 'button:1' to 'button:{MOST_BUTTONS}', or "
-                f"{ENTER!r}"
+                f"end is {self.end!r}; it must be 'button:1' to 'button:{MOST_BUTTONS}', "
+                f"{ENTER!r}, 'key:space', 'key:tab', or a key that types one character, such as "
+                f"'key:+'"
             )
         check_range("gap_s", self.gap_s, 0, 60, " s")
         check_range("warning_s", self.warning_s, 1, 3600, " s")
+
+    @property
+    def key(self) -> str | None:
+        """Character that the key which ends reading types; None if no key does."""
+        found = _KEY.fullmatch(self.end or "")
+        return KEYS.get(found[1], found[1]) if found else None
 
     @property
     def button(self) -> int | None:

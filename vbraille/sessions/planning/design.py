@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.knobs import StimulusKnob
 
 MOST_TRIALS = 10_000
+UNFELT = ("row_spacing_mm", "line_pitch_mm")  # lengths that change nothing in a single line
 
-Item = tuple[float, ...]  # dot masks of the cells asked for, or the values compared
+# Dot masks of the cells asked for, or the values compared, or a `WrittenText`.
+Item = tuple[float, ...]
 
 _LEFT_DOTS, _RIGHT_DOTS = 0b01000111, 0b10111000
 
@@ -247,7 +249,7 @@ class Choice(_Design, frozen=True, tag="choice"):
             raise ValueError("string has no cell with a gap; give one with a left and a right dot")
         if self.parameter == "cell_gap_mm" and sum(map(bool, self.string)) < 2:
             raise ValueError("string has no gap between cells; give two cells with dots or more")
-        if self.parameter in ("row_spacing_mm", "line_pitch_mm"):
+        if self.parameter in UNFELT:
             raise ValueError(
                 f"parameter is {self.parameter!r}, which no actuator shows in a line of its own; "
                 f"give another"

@@ -30,7 +30,7 @@ class Items(Table, frozen=True, kw_only=True):
         "strings" for random strings, "words" for words drawn from the file; None for all rows of
         the file.
     length
-        Number of cells of each string that a rule draws.
+        Number of cells of each string that a rule draws; of characters, if strings are texts.
     count
         Number of strings that a rule draws; None, for words, for all that have the length.
     characters

@@ -73,6 +73,11 @@ def with_value(stimulus: Stimulus, knob: str, value: float) -> Stimulus:
     return replace(stimulus, geometry=geometry, tuning=tuning)
 
 
+def said_value(value: float, knob: str | None) -> str:
+    """Words for a value of a number that stimuli differ in, with its unit if it has one."""
+    return f"{value:g}{KNOBS[knob].unit if knob in KNOBS else ''}"
+
+
 def value_at(stimulus: Stimulus, knob: str) -> float:
     """Value that a number has in a stimulus."""
     if knob == GAP:

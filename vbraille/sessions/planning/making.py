@@ -16,6 +16,7 @@ from vbraille.sessions.planning.design import Choice, Item, StringList
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.rules import check_plan
 from vbraille.sessions.planning.sequencing import arranged
+from vbraille.sessions.planning.spellings import WrittenText
 from vbraille.sessions.planning.stimuli import (
     Stimuli,
     Trial,
@@ -238,9 +239,12 @@ def _trial(protocol: Protocol, item: Item, condition: Condition, block: int) -> 
         asked = (0, len(design.string))
     else:
         before, after = design.around
-        shown = [((*before, *map(int, item), *after), None)]
+        text = isinstance(item, WrittenText)
+        shown = [(item if text else (*before, *map(int, item), *after), None)]
         asked = (len(before), len(before) + len(item))
     stimuli = Stimuli(protocol.shown(condition, masks, value) for masks, value in shown)
+    if stimuli[0].text is not None:
+        asked = (0, len(stimuli[0].masks))
     return Trial(1, block, condition.name, asked, stimuli)
 
 

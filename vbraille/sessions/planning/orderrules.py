@@ -82,7 +82,7 @@ def _level(protocol: Protocol, trial: Trial, name: str) -> str:
     levels = protocol.levels(trial.condition)
     if name in levels:
         return levels[name]
-    return protocol.told(trial.stimuli[0].masks[slice(*trial.asked)])[name]
+    return protocol.told(trial.item)[name]
 
 
 def _check_quarters(tested: Sequence[Trial]) -> None:

@@ -24,7 +24,9 @@ _Plan = TypeVar("_Plan")
 
 VERSIONS = (1, 2)  # rules that plans were made by; the file's layout is the same for both
 _OF_STIMULUS = {"cells", "value_mm", *(f.name for f in (*fields(Tuning), *fields(Geometry)))}
-_MAPPING = "mapping"  # left out where the display's mapping is used, as in all older plans
+# Left out where the display's mapping is used, where a protocol gives cells, and on the device,
+# as in all older plans.
+_OPTIONAL = ("mapping", "text", "table", "on")
 
 
 class _Version(msgspec.Struct):
@@ -72,7 +74,8 @@ def stimulus_to_json(stimulus: Stimulus) -> dict[str, Any]:
         **asdict(stimulus.tuning),
         **asdict(stimulus.geometry),
     }
-    return written if stimulus.mapping is None else written | {_MAPPING: stimulus.mapping}
+    given = {name: getattr(stimulus, name) for name in _OPTIONAL}
+    return written | {name: value for name, value in given.items() if value is not None}
 
 
 def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
@@ -83,9 +86,10 @@ def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
     ValueError
         If a value is missing, has the wrong type or is out of range.
     """
-    if set(written) - {_MAPPING} != _OF_STIMULUS:
+    if set(written) - set(_OPTIONAL) != _OF_STIMULUS:
         raise ValueError(f"a stimulus must have {', '.join(sorted(_OF_STIMULUS))}, nothing else")
-    mapping = msgspec.convert(written.get(_MAPPING), str | None)
+    optional = {name: msgspec.convert(written.get(name), str | None) for name in _OPTIONAL}
+    mapping = optional["mapping"]
     if mapping is not None:
         mapping_named(mapping)
     return Stimulus(
@@ -93,7 +97,7 @@ def stimulus_from_json(written: dict[str, Any]) -> Stimulus:
         msgspec.convert(written, Tuning),
         msgspec.convert(written, Geometry),
         msgspec.convert(written["value_mm"], float | None),
-        mapping,
+        **optional,
     )
 
 

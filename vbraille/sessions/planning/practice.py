@@ -9,7 +9,7 @@ from vbraille.errors import check_range
 from vbraille.sessions.planning.besides import check_file_name
 from vbraille.sessions.planning.design import MOST_TRIALS, Choice, Combinations, Design, Item
 from vbraille.sessions.planning.knobs import KNOBS
-from vbraille.sessions.planning.spellings import Masks
+from vbraille.sessions.planning.spellings import Masks, WrittenText
 from vbraille.toml.tomlfile import Table
 
 
@@ -75,8 +75,15 @@ class Practice(Table, frozen=True):
             if not any(line):
                 return "strings have one without dots, and nothing can be felt of it"
             if _is_shown(design, string):
-                return f"strings have {to_braille(string)}, which the test shows; give another"
+                return f"strings have {name_item(string)}, which the test shows; give another"
         return ""
+
+
+def name_item(item: Item) -> str:
+    """Words for an item: its text in quotation marks, or its cells in Unicode braille."""
+    if isinstance(item, WrittenText):
+        return repr(str(item))
+    return to_braille(map(int, item))
 
 
 def _is_shown(design: Design, item: Item) -> bool:

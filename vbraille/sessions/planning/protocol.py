@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -23,6 +24,7 @@ from vbraille.sessions.planning.conduct import (
     TrialPace,
     check_line,
 )
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL, ConventionalTable
 from vbraille.sessions.planning.design import (
     Choice,
     Combinations,
@@ -48,8 +50,9 @@ from vbraille.sessions.planning.practice import Practice
 from vbraille.sessions.planning.procedures import FixedProcedure, ProcedureTable
 from vbraille.sessions.planning.questions import AnyQuestion, usual_question
 from vbraille.sessions.planning.ruletable import Rules
-from vbraille.sessions.planning.spellings import SpellingKeys
+from vbraille.sessions.planning.spellings import SpellingKeys, WrittenText
 from vbraille.sessions.planning.stimuli import Stimulus
+from vbraille.sessions.planning.writing import cells_of
 from vbraille.toml.tomlfile import Table, which
 
 if TYPE_CHECKING:
@@ -58,6 +61,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 ONLY_CONDITION = "all"
+_ALL_DOTS = 0xFF  # what a conventional display shows
 _NAME = re.compile(r"[a-z0-9-]{1,40}")
 
 
@@ -77,6 +81,7 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     listed: tuple[Condition, ...] = field(name="conditions", default=())
     factors: tuple[Factor, ...] = ()
     cross: Cross = "all"
+    conventional: ConventionalTable = ConventionalTable()
     order: BlockOrder | None = None
     rules: Rules = Rules()
     procedure: ProcedureTable = FixedProcedure()
@@ -115,6 +120,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Where the strings come from; None if the design has them.
     factors, cross
         Factors that conditions and groups are named from, and which combinations are shown.
+    conventional
+        What stands on a conventional display, and where on it.
     order
         Order of the blocks of conditions; None if the design says it.
     rules
@@ -239,6 +246,16 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         return found
 
     @property
+    def written(self) -> bool:
+        """Whether strings are texts, whose cells are made by the tables of the conditions."""
+        looks = (self.display, *self.listed, *(f.levels[0] for f in self.factors))
+        return any(look.table is not None for look in looks)
+
+    def table_of(self, condition: Condition) -> str | None:
+        """Braille table that makes the cells of texts in a condition; None if none does."""
+        return condition.table or self.display.table
+
+    @property
     def block_order(self) -> str | None:
         """Order of the blocks of conditions: "balanced", "listed", "shuffled", "table" or None."""
         if self.order is None:
@@ -267,6 +284,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
 
     def cell_spelling(self, stimulus: Stimulus) -> CellSpelling:
         """How cells may be typed in answers about a stimulus."""
+        if stimulus.on == CONVENTIONAL:
+            return CellSpelling(self.keys, _ALL_DOTS)
         return CellSpelling(self.keys, self.mapping_of(stimulus).shown_dots())
 
     @property
@@ -311,6 +330,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Styles of the conditions that were asked for."""
         return {}
 
+    def place_of(self, condition: Condition) -> str:
+        """Where the strings of a condition stand: "device", or "brlapi"."""
+        return condition.on or self.display.on or "device"
+
     def shown(
         self, condition: Condition, masks: tuple[int, ...], value: float | None = None
     ) -> Stimulus:
@@ -319,19 +342,33 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         Parameters
         ----------
         condition, masks
-            The condition, and the dot masks of all cells with their delimiters.
+            The condition, and the dot masks of all cells with their delimiters; or a text.
         value
             Value of the parameter that is compared; None if none is.
 
         Raises
         ------
         ValueError
-            If the value gives a number out of bounds.
+            If the value gives a number out of bounds, or the condition's table cannot make cells
+            of the text.
         """
         style = self.style_of(condition)
+        text = table = None
+        if isinstance(masks, WrittenText):
+            table = self.table_of(condition)
+            if table is None:
+                raise ValueError(f"the condition {condition.name} has no table; give it one")
+            text = str(masks)
+            masks = cells_of(text, table)
+        if self.place_of(condition) == CONVENTIONAL:
+            return Stimulus(
+                masks, style.tuning, style.geometry, text=text, table=table, on=CONVENTIONAL
+            )
         own = condition.mapping is not None or condition.dot_row is not None
         mapping = style.mapping.name if own else None
         stimulus = Stimulus(masks, style.tuning, style.geometry, value, mapping)
+        if text is not None:
+            stimulus = replace(stimulus, text=text, table=table)
         if value is None or self.parameter is None:
             return stimulus
         return with_value(stimulus, self.parameter, value)
@@ -340,9 +377,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True, dict=True):
         """Which dots the rows of the array show while a stimulus is felt."""
         return self.mapping if stimulus.mapping is None else mapping_named(stimulus.mapping)
 
-    def told(self, masks: tuple[int, ...]) -> dict[str, str]:
-        """What the file of items tells of the item that these cells show, by column."""
-        return self._told.get(self.design.content(masks), dict.fromkeys(self.item_columns, ""))
+    def told(self, item: tuple[int, ...]) -> dict[str, str]:
+        """What the file of items tells of an item, by column; see `Trial.item`."""
+        return self._told.get(self.design.content(item), dict.fromkeys(self.item_columns, ""))
 
     @cached_property
     def item_columns(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec import field
@@ -107,11 +107,12 @@ def parse_protocol(
     file = TomlFile(text, where)
     file.read(_Format)  # this comes first, since another format may have other keys
     keys = file.read(_Keyed, read_keys).keys
-    tables = file.read(ProtocolFile, spelled(keys, planned=planned))
+    written = _names_tables(file)
+    tables = file.read(ProtocolFile, spelled(keys, planned=planned, written=written))
     files = _files(file, tables, beside)
     with file.checking():
-        protocol = _resolved(tables, text, files, keys)
-        check_agreement(protocol)
+        protocol = _resolved(tables, text, files, keys, written=written)
+        check_agreement(protocol, planned=planned)
         if protocol.practice.trials and not protocol.practice.items and not planned:
             raise ValueError(
                 f"[practice] has no items of its own, and those of the test would be given away; "
@@ -140,8 +141,27 @@ def _files(
     return texts
 
 
+def _names_tables(file: TomlFile) -> bool:
+    """Whether a protocol names braille tables, so that its strings are texts."""
+    looks = file.read(_Looks)
+    levels = [level for factor in _tables(looks.factors) for level in _tables(factor.get("levels"))]
+    return any(
+        "table" in look for look in (*_tables([looks.display]), *_tables(looks.conditions), *levels)
+    )
+
+
+def _tables(values: object) -> list[dict[str, Any]]:
+    """Tables among the values of a list; none if it is no list."""
+    return [each for each in values if isinstance(each, dict)] if isinstance(values, list) else []
+
+
 def _resolved(
-    tables: ProtocolFile, text: str, files: dict[str, str], keys: SpellingKeys
+    tables: ProtocolFile,
+    text: str,
+    files: dict[str, str],
+    keys: SpellingKeys,
+    *,
+    written: bool,
 ) -> Protocol:
     """Protocol with the items and orders of its files.
 
@@ -162,10 +182,17 @@ def _resolved(
     if isinstance(design, ItemList) and items is not None:
         if items.rule is None:
             assert items.file is not None
-            rows = read_items(files[items.file], items.file, keys)
+            rows = read_items(files[items.file], items.file, keys, written=written)
             strings = tuple(row.masks for row in rows)
         else:
-            words = () if items.file is None else read_words(files[items.file], items.file, keys)
+            name, words = items.file, ()
+            if name is not None:
+                words = read_words(files[name], name, keys, written=written)
+            elif written:
+                raise ValueError(
+                    "[items] rule is 'strings', which draws cells, and table makes cells of texts; "
+                    "give words or a list, or leave table out"
+                )
             try:
                 strings = items.draw(words)
             except ValueError as error:
@@ -173,7 +200,7 @@ def _resolved(
         design = design.strings_of(strings)
     assert not isinstance(design, ItemList)
     if practice.file is not None:
-        practised = read_items(files[practice.file], practice.file, keys)
+        practised = read_items(files[practice.file], practice.file, keys, written=written)
         own = tuple(row.masks for row in practised)
         practice = msgspec.structs.replace(practice, file=None, strings=own)
     said = problem(tables.factors, tables.cross, listed=bool(tables.listed))
@@ -200,6 +227,14 @@ class _Format(msgspec.Struct):
                 f"format is {self.format}, and this vbraille knows format {FORMAT}; "
                 f"use a vbraille that knows it"
             )
+
+
+class _Looks(msgspec.Struct):
+    """The tables that may name a braille table, whatever they hold: it is not checked yet."""
+
+    display: object = None
+    conditions: object = None
+    factors: object = None
 
 
 class _Keyed(msgspec.Struct):

@@ -25,6 +25,7 @@ from vbraille.sessions.planning.asking import (
     read_step,
 )
 from vbraille.sessions.planning.conduct import LONGEST_LINE, check_line
+from vbraille.sessions.planning.writing import parse_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -54,12 +55,15 @@ class IdentifyQuestion(QuestionTable, frozen=True, kw_only=True, tag="identify")
         return RIGHT if answer == trial.presented else WRONG
 
     def was(self, trial: Trial, keys: Mapping[str, int], /) -> str:
-        """Words for the cells."""
-        return self.said(trial.presented, dict(keys))
+        """Words for the cells, or the text that they stand for."""
+        return trial.stimuli[0].text or self.said(trial.presented, dict(keys))
 
     def parse(self, text: str, trial: Trial, spelling: CellSpelling, /) -> str:
-        """Read cells; see `vbraille.braille.spelling.parse_answer`."""
+        """Read cells, or a text; see `vbraille.braille.spelling.parse_answer`, `parse_text`."""
         first, stop = trial.asked
+        (stimulus,) = trial.stimuli
+        if stimulus.text is not None and stimulus.table is not None:
+            return parse_text(text, stimulus.text, stimulus.masks, stimulus.table)
         return parse_answer(
             text, places=stop - first, keys=spelling.keys, shown_dots=spelling.shown_dots
         )

@@ -6,13 +6,13 @@ from collections import Counter
 from itertools import groupby, pairwise, permutations, product
 from typing import TYPE_CHECKING
 
-from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.chance import balanced_orders
 from vbraille.sessions.planning.design import Choice, Combinations, Item
 from vbraille.sessions.planning.knobs import KNOBS
 from vbraille.sessions.planning.orderrules import check_catch, check_running
+from vbraille.sessions.planning.practice import name_item
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -112,7 +112,7 @@ def _content(protocol: Protocol, trial: Trial) -> Item:
     """Item that a trial shows, in the form in which `_wanted` counts items."""
     if isinstance(protocol.design, Choice):
         return tuple(stimulus.value or 0.0 for stimulus in trial.stimuli)
-    return protocol.design.content(trial.stimuli[0].masks[slice(*trial.asked)])
+    return protocol.design.content(trial.item)
 
 
 def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item]) -> str:
@@ -140,6 +140,8 @@ def _problem_of_trial(protocol: Protocol, trial: Trial, shows: Collection[Item])
             return "has other distances than the protocol's"
         if stimulus.mapping != planned.mapping:
             return "has another mapping than the protocol's"
+        if stimulus.table != protocol.table_of(condition):
+            return "has another table than the protocol's"
     return ""
 
 
@@ -250,4 +252,4 @@ def _check_counts(protocol: Protocol, tested: Sequence[Trial], wanted: Counter[I
 def _name(protocol: Protocol, item: Item) -> str:
     if isinstance(protocol.design, Choice):
         return " and ".join(f"{v:g}{KNOBS[protocol.design.parameter].unit}" for v in item)
-    return to_braille(tuple(map(int, item)))
+    return name_item(item)

@@ -25,7 +25,23 @@ class Masks(tuple[int, ...]):
     __slots__ = ()
 
 
-def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
+class WrittenText(Masks):
+    """Code points of a text, whose cells are made by the braille table of each condition."""
+
+    __slots__ = ()
+
+    @classmethod
+    def of(cls, text: str) -> WrittenText:
+        """Make the text of a string of characters."""
+        return cls(map(ord, text))
+
+    def __str__(self) -> str:
+        return "".join(map(chr, self))
+
+
+def spelled(
+    keys: SpellingKeys, *, planned: bool, written: bool = False
+) -> Callable[[type, Any], Any]:
     """Make the function by which `msgspec.convert` fills the types of this module.
 
     Parameters
@@ -34,6 +50,8 @@ def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
         Dot masks of the characters beside a to z.
     planned
         Whether strings may have blanks and dot numbers, as version 0.1 allowed.
+    written
+        Whether strings are texts, whose cells braille tables make.
     """
 
     def read(kind: type, value: Any) -> Any:
@@ -41,6 +59,8 @@ def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
             return keys
         if not isinstance(value, str):
             raise TypeError("Expected `str`, got another")
+        if kind is Masks and written:
+            return read_written(value)
         if kind is Masks:
             return Masks(spell(value, keys) if planned else spell_string(value, keys))
         masks = spell(value, keys)
@@ -49,6 +69,19 @@ def spelled(keys: SpellingKeys, *, planned: bool) -> Callable[[type, Any], Any]:
         return Mask(masks[0])
 
     return read
+
+
+def read_written(text: str) -> WrittenText:
+    """Read a text whose cells braille tables make.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing in it but blanks.
+    """
+    if not text.strip():
+        raise ValueError("a text is empty; give one with characters, or leave it out")
+    return WrittenText.of(text.strip())
 
 
 def read_keys(_kind: type, table: Any) -> SpellingKeys:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from msgspec import Struct
 
 from vbraille.braille.spelling import to_braille
+from vbraille.sessions.planning.spellings import WrittenText
 
 if TYPE_CHECKING:
     from vbraille.braille.geometry import Geometry
@@ -60,6 +61,12 @@ class Stimulus:
         Value of the parameter that is compared, in mm if it is a length; None if none is compared.
     mapping
         Name of the mapping, where conditions differ in it; None for the display's.
+    text, table
+        Text that the cells stand for, and the braille table that made them of it; None where a
+        protocol gives the cells themselves. The text is empty where a catch trial shows nothing.
+    on
+        "brlapi" if it stands on the conventional display that BRLTTY drives; None if it is put
+        under the hand on the device.
 
     Raises
     ------
@@ -72,6 +79,9 @@ class Stimulus:
     geometry: Geometry
     value: float | None = None
     mapping: str | None = None
+    text: str | None = None
+    table: str | None = None
+    on: str | None = None
 
     def __post_init__(self) -> None:
         if not self.masks:
@@ -140,6 +150,14 @@ class Trial(Struct, frozen=True, forbid_unknown_fields=True):
     def practice(self) -> bool:
         """Whether the trial is practice."""
         return self.block == 0
+
+    @property
+    def item(self) -> tuple[int, ...]:
+        """What is shown, whatever the condition: dot masks of the cells asked for, or the text."""
+        stimulus = self.stimuli[0]
+        if stimulus.text is not None:
+            return WrittenText.of(stimulus.text)
+        return stimulus.masks[slice(*self.asked)]
 
     @property
     def presented(self) -> str:

@@ -16,7 +16,7 @@ import io
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from vbraille.sessions.record.export import COLUMNS
+from vbraille.sessions.record.export import COLUMNS, WRITTEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -88,7 +88,7 @@ def entry_of(name: str, asked: Mapping[str, str] | None = None) -> CodebookEntry
         question = (asked or {}).get(name.removeprefix(FIELD))
         meaning = question or "answer to a question of the protocol about the participant"
         return CodebookEntry(name, meaning)
-    meaning = COLUMNS.get(name) or _designed(name) or "as it was given"
+    meaning = COLUMNS.get(name) or WRITTEN.get(name) or _designed(name) or "as it was given"
     return CodebookEntry(name, meaning, unit_of(name), _VALUES.get(name, {}))
 
 

@@ -207,7 +207,8 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     line
-        Number of the showing, which the trace has as `line`; left out on paper.
+        Number of the showing, which the trace has as `line`; left out on paper, and on a
+        conventional display.
     tuning
         Contrast or texture that the experimenter has set instead of the stimulus's own.
     shown
@@ -217,6 +218,46 @@ class Presented(WithStimulus, frozen=True, kw_only=True):
     line: int = 0
     tuning: dict[str, float] = {}
     shown: dict[str, Any] = {}
+
+
+class DisplayBeside(JournalEvent, frozen=True, kw_only=True):
+    """A conventional display stands ready, or another one than before; from format 6 on.
+
+    Parameters
+    ----------
+    driver, model
+        Name of its driver, and what that calls its model.
+    columns, rows
+        Number of its cells in a row, and of its rows.
+    spec
+        Display that was asked for.
+    """
+
+    durable: ClassVar[bool] = True
+
+    driver: str
+    model: str
+    columns: int
+    rows: int
+    spec: str
+
+
+class Stood(WithStimulus, frozen=True, kw_only=True):
+    """Cells were put on the conventional display; from format 6 on.
+
+    Parameters
+    ----------
+    cells
+        What stands on it from its left, in Unicode braille; left out if nothing does any more.
+    reference
+        Whether that is what the stimuli are compared with, and not the stimulus itself.
+    time_ns
+        Time at which the display's driver had taken it, by the host's monotonic clock.
+    """
+
+    cells: str = ""
+    reference: bool = False
+    time_ns: int
 
 
 class Cue(InTrial, frozen=True):
@@ -237,12 +278,12 @@ class Contact(WithStimulus, frozen=True, kw_only=True):
 
 
 class Read(WithStimulus, frozen=True, kw_only=True):
-    """The stimulus was read: the hand went to its end and back, or on paper a key was pressed.
+    """The stimulus was read: the hand went to its end and back, or off the device Enter said so.
 
     Parameters
     ----------
     tick, time_ns
-        Number and time of the tick at which it was read, as in the trace; left out on paper.
+        Number and time of the tick at which it was read, as in the trace; left out off the device.
     """
 
     tick: int | None = None
@@ -255,7 +296,7 @@ class Ended(WithStimulus, frozen=True, kw_only=True):
     Parameters
     ----------
     by
-        Which key it was: "button:N" of the device, or "key:enter".
+        Which key it was: "button:N" of the device, or "key:NAME".
     time_ns
         Time of it by the host's monotonic clock, as in the trace; left out if it is not known.
     """
@@ -288,7 +329,7 @@ class Answer(InTrial, frozen=True, kw_only=True):
     confidence_s
         Seconds from the answer to its confidence, with which it was written. From format 5 on.
     ended_by
-        What ended reading: "button:N", "key:enter", or "answer" if the answer came before the
+        What ended reading: "button:N", "key:NAME", or "answer" if the answer came before the
         participant's key; left out if the protocol has no such key. From format 5 on.
     """
 
@@ -483,9 +524,9 @@ class Lost(JournalEvent, frozen=True):
 
 
 AnyEvent = (
-    Session | Run | Presented | Cue | Contact | Read | Ended | Warning | Answer | Undo | Repeat
-    | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go | BreakWanted | Break
-    | Begin | Tuning | Note | Stop | End | Closed
+    Session | Run | Presented | DisplayBeside | Stood | Cue | Contact | Read | Ended | Warning
+    | Answer | Undo | Repeat | Fault | Well | Device | HandTaken | HandGivenBack | Pause | Go
+    | BreakWanted | Break | Begin | Tuning | Note | Stop | End | Closed
 )  # fmt: skip
 _FROM_JSON = msgspec.json.Decoder(AnyEvent)
 _FIELD = re.compile(r"Object (missing required|contains unknown) field `(.+?)`")

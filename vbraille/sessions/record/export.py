@@ -15,6 +15,7 @@ from vbraille.braille.spelling import to_braille
 from vbraille.engine.record import Flag
 from vbraille.sessions.planning.appearance import TUNED
 from vbraille.sessions.planning.design import StringList
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record.folder import read_told_trace
 from vbraille.sessions.record.notes import read_notes, texts
 from vbraille.sessions.record.progress import Progress
@@ -52,6 +53,7 @@ COLUMNS = {
     "contrast": "share of the full swing, 0 to 1",
     "texture_cycles": "half-cycles of texture a radius, where the model has that",
     "model": "name of the display",
+    "shown_on": "where strings stood: device, conventional for a conventional display, or paper",
     "mapping": "how dot rows are shown by actuator rows, by name",
     "dot_width_mm": "width of a dot along the line; two values where they are compared",
     "dot_spacing_mm": "between the two dot columns of a cell; two values where they are compared",
@@ -79,13 +81,13 @@ COLUMNS = {
     "it is no data about people; empty on paper",
     "attempt": "how often the trial was begun",
     "duration_s": "from the array's first touch of the leftmost dot to its last way back over it "
-    "(Levesque 2009, 3.4); on paper, by key",
+    "(Levesque 2009, 3.4); on paper and on a conventional display, by key",
     "returned": "1 if the hand went back over the leftmost dot; 0 if the duration ends with the "
     "last tick at which an actuator was off its idle end",
     "contact_s": "from the start signal to the first touch",
     "response_s": "from the start signal to the participant's key, or to the answer where there "
     "was none, pauses left out",
-    "ended_by": "what ended reading: button:N, key:enter, or answer if the answer came before the "
+    "ended_by": "what ended reading: button:N, key:NAME, or answer if the answer came before the "
     "participant's key; empty if the protocol has no such key",
     "paused_s": "length of the pauses",
     "early": "1 if it was answered before it was read to its end: its duration does not count",
@@ -97,6 +99,12 @@ COLUMNS = {
     "cue_time": "wall clock at the start signal, UTC",
     "answer_time": "wall clock at the answer, UTC",
     "trace": "file of the trace of the last attempt",
+}
+
+# Columns of protocols whose strings are texts.
+WRITTEN = {
+    "table": "braille table that made the cells of the text",
+    "text": "text that the cells asked for stand for; empty for a blank catch trial",
 }
 
 
@@ -190,8 +198,8 @@ def walk(
         Row of the trial, as `rows` gives it.
     trajectory : Trajectory, str or None
         Trajectory that the row's duration is taken from, or the reason why there is none. None
-        for trials whose trace is not read: comparisons, trials on paper and trials without an
-        answer.
+        for trials whose trace is not read: comparisons, trials on paper or on a conventional
+        display, and trials without an answer.
     """
     progress = Progress(record.plan, record.told.events, record.procedure)
     traces = Traces(record) if traces is None else traces
@@ -201,7 +209,7 @@ def walk(
         trial = told.shown
         row, seen = _row(record, trial, told), None
         row |= _noted(notes, trial.number)
-        strings = record.protocol.medium == "device" and len(trial.stimuli) == 1
+        strings = shown_on(record.protocol, trial) == "device" and len(trial.stimuli) == 1
         if strings and told.answer is not None:
             seen = _trajectory(record, trial, told, traces)
         if isinstance(seen, Trajectory):
@@ -233,6 +241,7 @@ def _row(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
         "contrast": told.tuning.get("contrast", tuning.contrast),
         "texture_cycles": tuning.cycles if protocol.model.name == "stress2" else "",
         "model": protocol.model.name,
+        "shown_on": shown_on(protocol, trial),
         "mapping": protocol.mapping_of(trial.stimuli[0]).name,
         **{name: _each(geometries, name) for name in BOUNDS_MM},
         "answers_from": told.source,
@@ -276,9 +285,16 @@ def _asked(record: Record, trial: Trial, told: TrialRecord) -> dict[str, Any]:
     else:
         row["answered"] = told.answer or ""
         row["first_answer"] = told.first_answer or ""
-    if record.protocol.medium == "paper" and "read" in t_s and "cue" in t_s:
-        row["duration_s"] = round(t_s["read"] - t_s["cue"], 6)
+    if shown_on(record.protocol, trial) != "device" and "read" in t_s and "cue" in t_s:
+        row["duration_s"] = round(t_s["read"] - t_s["cue"] - told.unread_s, 6)
     return row
+
+
+def shown_on(protocol: Protocol, trial: Trial) -> str:
+    """Where a trial's string stood: "device", "conventional" for such a display, or "paper"."""
+    if is_conventional(trial.stimuli[0]):
+        return "conventional"
+    return protocol.medium
 
 
 def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
@@ -292,10 +308,12 @@ def designed(protocol: Protocol, trial: Trial) -> dict[str, str]:
     for name, level in protocol.levels(trial.condition).items():
         cells[f"factor_{name}"] = level
     if protocol.item_columns:
-        own = protocol.told(trial.stimuli[0].masks[slice(*trial.asked)])
+        own = protocol.told(trial.item)
         cells |= {f"item_{name}": value for name, value in own.items()}
     if protocol.design.catch is not None:
         cells["catch"] = trial.catch
+    if protocol.written:
+        cells |= {name: getattr(trial.stimuli[0], name) or "" for name in ("table", "text")}
     return cells
 
 
@@ -311,6 +329,8 @@ def describe_design(protocol: Protocol) -> dict[str, str]:
         told[f"item_{name}"] = f"column {name} of the protocol's file of items"
     if protocol.design.catch is not None:
         told["catch"] = "blank or repeat for a trial that only keeps watch; else empty"
+    if protocol.written:
+        told |= WRITTEN
     return told
 
 

@@ -10,6 +10,7 @@ from msgspec import structs
 from vbraille.errors import VbrailleError
 from vbraille.sessions.planning.planfile import stimulus_from_json
 from vbraille.sessions.planning.procedure import Answered, FixedOrder
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.planning.stimuli import Stimuli
 from vbraille.sessions.record import events
 
@@ -38,7 +39,7 @@ class Showing:
     line
         Number of the showing in the trace.
     trace
-        Name of the trace file; None on paper.
+        Name of the trace file; None on paper and on a conventional display.
     tuning
         Contrast or texture that the experimenter had set instead of the stimulus's own.
     shown
@@ -97,6 +98,9 @@ class TrialRecord:
         Times of the same events by the wall clock.
     paused_s
         Seconds that the trial was paused after its start signal.
+    unread_s
+        Seconds of these before it was read to its end by key on the conventional display; 0 on
+        paper, which no pause takes away.
     early
         Whether the answer came before the hand had been at the end of the string.
     source
@@ -122,6 +126,7 @@ class TrialRecord:
     t_s: dict[str, float] = field(default_factory=dict)
     wall: dict[str, str] = field(default_factory=dict)
     paused_s: float = 0.0
+    unread_s: float = 0.0
     early: bool = False
     source: str = ""
     moved_by: str = ""
@@ -374,6 +379,8 @@ class Progress:
                 record.confidence = None
             case events.Fault():
                 record.faults.append(event.what)
+            case events.Read() if record.showings and is_conventional(record.shown.stimuli[0]):
+                record.unread_s = record.paused_s
             case events.HandTaken():
                 self.pointed = True
                 record.moved_by = POINTED
@@ -395,10 +402,12 @@ class Progress:
             record.attempts = event.attempt
             record.t_s.clear()
             record.wall.clear()
-            record.paused_s = 0.0
-        trace = self.runs[-1].trace or None if self.runs else None
+            record.paused_s = record.unread_s = 0.0
+        # What stands on a conventional display is in no trace.
+        trace = self.runs[-1].trace or None if self.runs and event.line else None
         if record.moved_by != POINTED:
-            record.moved_by = POINTED if self.pointed else self._moved_by
+            moved_by = self._moved_by if event.line else ""  # no carriage is moved elsewhere
+            record.moved_by = POINTED if self.pointed and moved_by else moved_by
         record.showings.append(
             Showing(event.attempt, event.stimulus, event.line, trace, event.tuning, event.shown)
         )

@@ -151,6 +151,7 @@ class Pictures:
             showing.line: (told.trial, showing)
             for told in (*progress.practice.values(), *progress.trials.values())
             for showing in told.showings
+            if showing.line  # what stood on a conventional display is in no trace
         }
 
     def of(self, line: int) -> Program:

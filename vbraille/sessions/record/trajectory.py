@@ -69,13 +69,24 @@ class Trajectory:
 
 def edges_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> tuple[float, ...]:
     """Left edges of the dot columns that a display shows of a line of cells, left to right."""
-    shown = mapping.shown_dots()
     return tuple(
         cell * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
+        for cell, side in columns_of(masks, mapping)
+    )
+
+
+def columns_of(masks: Sequence[int], mapping: Mapping) -> list[tuple[int, int]]:
+    """Dot columns that a display shows of a line: their cells, and 0 for the left, 1 for the right.
+
+    They are in order, left to right.
+    """
+    shown = mapping.shown_dots()
+    return [
+        (cell, side)
         for cell, mask in enumerate(masks)
         for side, dots in enumerate(_COLUMNS)
         if mask & shown & dots
-    )
+    ]
 
 
 def first_edge_mm(masks: Sequence[int], mapping: Mapping, geometry: Geometry) -> float | None:

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 from vbraille.engine.suspending import Suspension
 from vbraille.sessions.planning.conduct import ENTER
 from vbraille.sessions.record import events
+from vbraille.sessions.running.answers import Typed
 from vbraille.sessions.running.course import POLL_S
 from vbraille.sessions.running.inquiry import Inquiry
+from vbraille.sessions.running.keypress import KeyPress
 from vbraille.sessions.running.orders import Order
 from vbraille.sessions.running.phases import Phase
 
@@ -62,22 +64,48 @@ class Console:
         self._wait_s = POLL_S if real else 0.0
         self._look = look
         self._inquiry = Inquiry(course, typed=answers.typed, say=say)
+        self._end = course.protocol.trial.end
+        self._keyed: Typed | None = None  # where a press of the participant's key comes from
 
     def run(self) -> None:
         """Run the session from where it has come to."""
         course = self._course
         if self._progress.correcting is not None:
             self._say(f"undo: {course.name(self._progress.correcting)}; type its answer")
+        self._watch_key()
         course.next()
-        with Suspension() as suspension:
-            self._go_through(suspension)
+        try:
+            with Suspension() as suspension:
+                self._go_through(suspension)
+        finally:
+            self._await_key(False)
         self._look()
+
+    def _watch_key(self) -> None:
+        """Look out for the participant's key, or say that Enter is pressed instead."""
+        key, name = self._course.protocol.trial.key, (self._end or "").removeprefix("key:")
+        if self._end == ENTER or key is None or self._course.display is None:
+            return
+        if isinstance(self._answers, Typed) and self._answers.watch(key):
+            self._keyed = self._answers
+            self._say(f"key: {name} ends reading, with no Enter after it")
+        elif self._answers.typed:
+            self._end = ENTER
+            self._say(
+                f"key: standard input is no terminal, so that {name} cannot be told; Enter ends "
+                f"reading"
+            )
+
+    def _await_key(self, awaited: bool) -> None:
+        if self._keyed is not None:
+            self._keyed.await_key(awaited)
 
     def _go_through(self, suspension: Suspension) -> None:
         course = self._course
         while course.phase is not Phase.OVER:
             if suspension.asked:
                 self._suspend(suspension)
+            self._await_key(course.reading)
             lines = self._answers.lines(self._wait_s)
             if lines is None:
                 self._leave()
@@ -85,7 +113,11 @@ class Console:
             if lines:
                 course.look()  # what was felt before these lines counts first
             for line in lines:
-                if course.phase is not Phase.OVER:
+                if course.phase is Phase.OVER:
+                    break
+                if isinstance(line, KeyPress):
+                    course.end_reading(self._end or "")
+                else:
                     self.take(line)
             course.poll()
             if not self._answers.typed:
@@ -97,6 +129,7 @@ class Console:
         paused = self._course.paused
         if not paused:
             self.pause()
+        self._await_key(False)  # the terminal is somebody else's for a while
         suspension.stop()
         if not paused and not self._answers.typed:
             self.go_on()
@@ -130,7 +163,7 @@ class Console:
     def _ask(self) -> None:
         """Ask a source that does not type for a line, where a person would be waited for."""
         course, correcting = self._course, self._progress.correcting
-        if course.display is None and not correcting and not course.read:
+        if course.by_key and not correcting and not course.read:
             course.press()  # answers that are not typed take no time to read paper
         last = course.phase is Phase.LAST
         if not (correcting or course.half or course.paused or course.read or last):
@@ -138,7 +171,9 @@ class Console:
         trial = correcting or course.trial or self._progress.last_answered
         if trial is None or course.phase is Phase.OVER:
             return
-        felt = course.display.explorations if course.display and self._answers.felt else []
+        felt = []
+        if course.display is not None and self._answers.felt and not course.by_key:
+            felt = course.display.explorations
         given = self._answers.next(trial, self._progress.told(trial).attempts, felt)
         if given is not None:
             self.take(*given)
@@ -200,8 +235,7 @@ class Console:
         if course.half is not None:
             self._say("pause: the array is at rest; the confidence is waited for")
             return
-        if course.display is not None:
-            course.display.rest()
+        course.rest()
         course.paused = True
         course.book.log(events.Pause, course.open_trial)
         self._say("pause: the array is at rest; Enter goes on")
@@ -214,17 +248,16 @@ class Console:
         if course.paused:
             course.paused = False
             course.book.log(events.Go, course.open_trial)
-            if course.display is not None and course.open_trial is not None:
-                course.display.go()
+            course.go()
             self._say("go: on")
         elif course.phase is Phase.BREAK:
             course.book.log(events.Go)
             course.next(gap=False)
         elif course.phase is Phase.LAST and self._progress.correcting is None:
             course.end("all trials are done")
-        elif course.display is None:
+        elif course.by_key:
             course.press()
-        elif course.protocol.trial.end == ENTER:
+        elif self._end == ENTER:
             course.end_reading(ENTER)
 
     def have_break(self, _: str = "") -> None:
@@ -281,7 +314,9 @@ class Console:
         question = self._course.protocol.asks
         if question.ask:
             self._say(f"question: {question.ask}")
-        if question.name != "identify":
+        if question.name == "identify" and self._course.protocol.written:
+            self._say("an answer: the text that was read; ? for a cell not read, or for nothing")
+        elif question.name != "identify":
             self._say(f"an answer: {question.typed}")
         else:
             keys = " ".join(self._course.protocol.keys)
@@ -292,6 +327,12 @@ class Console:
             )
         if question.confidence is not None:
             self._say(f"confidence: {question.confidence.typed}, after the answer or a semicolon")
+        if self._keyed is not None:
+            name = (self._end or "").removeprefix("key:")
+            self._say(
+                f"{name}: end reading; while a stimulus is read, type a blank before a line that "
+                f"begins with it"
+            )
         self._say("Enter: go on after a pause or a break")
         for order in ORDERS:
             self._say(f"{order.word}: {order.help}")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
 from vbraille.sessions.planning.planfile import stimulus_to_json
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
 from vbraille.sessions.record.folder import SHOWN_FROM, versions
 from vbraille.sessions.running.logbook import Logbook
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.journal import Journal
     from vbraille.sessions.record.progress import Progress
+    from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.halfanswer import HalfAnswer
     from vbraille.sessions.running.happened import Happened
     from vbraille.sessions.running.showing import OnDevice
@@ -59,6 +61,8 @@ class Course:
         Function that plays a tone for the participant.
     real
         Whether the session runs by the clock of the machine; else by that of the display.
+    beside
+        Conventional display of the session; None without one.
 
     Attributes
     ----------
@@ -90,11 +94,13 @@ class Course:
         say: Callable[[str], None],
         play: Callable[[Tone], None],
         real: bool = True,
+        beside: OnConventional | None = None,
     ) -> None:
         self.protocol = protocol
         self.plan = plan
         self.progress = progress
         self.display = display
+        self.beside = beside
         self.phase = Phase.READY
         self.paused = False
         self.read_said = False
@@ -112,6 +118,7 @@ class Course:
         self._ready_ns = 0
         self._cue_ns = 0
         self._deaths = 0
+        self._told_why = ""  # what the experimenter was told that the trial waits for
         self._watched: dict[str, Any] = {}  # fields that each run's event has again
 
     @property
@@ -125,17 +132,36 @@ class Course:
         return self.trial if self.phase is Phase.OPEN else None
 
     @property
+    def by_key(self) -> bool:
+        """Whether Enter times the trial that is open or comes next, since no device feels it.
+
+        It is read on paper, or on the conventional display.
+        """
+        return self.display is None or self._stands is not None
+
+    @property
+    def _stands(self) -> OnConventional | None:
+        """Conventional display, if the trial that is open or comes next stands on it."""
+        trial = self.trial
+        return self.beside if trial is not None and is_conventional(trial.stimuli[0]) else None
+
+    @property
+    def _referred(self) -> OnConventional | None:
+        """Conventional display, if what the next trial is compared with stands on it."""
+        return self.beside if self.protocol.conventional.reference and not self.by_key else None
+
+    @property
     def read(self) -> bool:
         """Whether the open trial has been read to its end."""
         trial = self.open_trial
         if trial is None or self._stimulus + 1 < len(trial.stimuli):
             return False
-        return self.read_said if self.display is None else self.display.read
+        return self.read_said if self.display is None or self.by_key else self.display.read
 
     @property
     def reached(self) -> bool:
         """Whether the hand has been at the end of the open trial; on paper, whether it is read."""
-        return self.read_said if self.display is None else self.display.reached
+        return self.read_said if self.display is None or self.by_key else self.display.reached
 
     @property
     def stimulus(self) -> int:
@@ -233,27 +259,66 @@ class Course:
 
     def withdraw(self) -> None:
         """Take the stimulus away, and make sure that the trace of it is on the disk."""
+        if self.beside is not None:
+            self.beside.withdraw()
         if self.display is not None:
             self.display.withdraw()
             self.display.sync()
 
+    def rest(self) -> None:
+        """Have nothing be felt for a while."""
+        if self.display is not None:
+            self.display.rest()
+        if self.beside is not None:
+            self.beside.clear()
+
+    def go(self) -> None:
+        """Let the open trial be felt again after a rest, unless its reading was ended."""
+        trial = self.open_trial
+        if trial is None:
+            return
+        if (stands := self._stands) is not None:
+            if not self.read_said:
+                stands.show(trial.stimuli[0])
+        elif self.display is not None:
+            self.display.go()
+
     def press(self) -> None:
         """Take a key on paper: the first says that reading begins, the second that it is over."""
-        trial = self.trial
+        trial, stands = self.trial, self._stands
         if trial is None:
             return
         if self.phase is Phase.READY:
+            if stands is not None and not stands.ready:
+                if self._told_why != stands.why:
+                    self._told_why = stands.why
+                    self._say(f"display: {stands.why}; the trial waits")
+                return
+            self._told_why = ""
             self.begin()
         elif self.phase is Phase.OPEN and not self.read_said:
+            if stands is not None and not stands.taken:
+                return  # it does not stand on the display yet
             self.read_said = True
             self.book.log(events.Read, trial, attempt=self._attempt, stimulus=0)
             told = self.progress.told(trial)
-            self._say(f"read: {told.t_s['read'] - told.t_s['cue']:.1f} s; type the answer")
+            seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
+            self._say(f"read: {seconds:.1f} s; type {self._prompt}")
+            if stands is not None:
+                stands.clear()
+
+    @property
+    def reading(self) -> bool:
+        """Whether a stimulus is read, so that the participant's key may end it."""
+        display = self.display
+        if self.open_trial is None or display is None or display.ended or self.by_key:
+            return False
+        return not (self.paused or self.half or self.ended_by)
 
     def end_reading(self, by: str, **when: int) -> None:
         """Take the participant's key, which ends reading of the stimulus that is shown."""
         trial, display = self.open_trial, self.display
-        if trial is None or display is None or self.paused or self.half or self.ended_by:
+        if trial is None or display is None or not self.reading:
             return
         self.book.log(
             events.Ended, trial, attempt=self._attempt, stimulus=self._stimulus, by=by, **when
@@ -278,6 +343,9 @@ class Course:
         if trial is None or self.display is None:
             self.book.log(events.Tuning, tuning=tuning)
             return
+        if self.by_key:
+            self.book.log(events.Tuning, trial, tuning=tuning)
+            return
         self.book.log(events.Tuning, trial, tuning=tuning, line=self.display.line + 1)
         self.display.retune(self._tuning(trial))
 
@@ -289,6 +357,9 @@ class Course:
         VbrailleError
             If the device, or the disk, fails for good.
         """
+        if self.beside is not None:
+            for each in self.beside.poll():
+                self._take(each)
         if self.display is None:
             return True
         try:
@@ -316,7 +387,9 @@ class Course:
         if self.phase is Phase.OPEN:
             self._watch(trial)
         elif self.phase is Phase.READY and display is not None and display.ready:
-            self._begin_when_due()
+            referred = self._referred
+            if not self.by_key and (referred is None or referred.ready):
+                self._begin_when_due()
 
     def _now_ns(self) -> int:
         if self._real or self.display is None:
@@ -330,7 +403,9 @@ class Course:
     def _ready(self, trial: Trial) -> None:
         self.phase = Phase.READY
         again = ", again" if self.progress.told(trial).attempts else ""
-        how = "; Enter when reading begins" if self.display is None and self._waits else ""
+        how = "; Enter when reading begins" if self.by_key and self._waits else ""
+        if self._stands is not None:
+            how = f", on the conventional display{how}"
         self._say(f"ready: {self.name(trial)}{again}{how}")
 
     def _wait_for_end(self) -> None:
@@ -358,7 +433,7 @@ class Course:
     def _show(self, trial: Trial, stimulus: int) -> None:
         self._stimulus = stimulus
         shown: dict[str, Any] = {"attempt": self._attempt, "stimulus": stimulus}
-        if self.display is not None:
+        if self.display is not None and not self.by_key:
             # The showing gets this number next: the journal has it before the stimulus is felt.
             shown["line"] = self.display.line + 1
         if self.progress.tuning:
@@ -366,7 +441,11 @@ class Course:
         if self.book.format >= SHOWN_FROM:
             shown["shown"] = stimulus_to_json(trial.stimuli[stimulus])
         self.book.log(events.Presented, trial, **shown)
-        if self.display is not None:
+        if (stands := self._stands) is not None:
+            stands.show(trial.stimuli[stimulus])
+        elif self.display is not None:
+            if (referred := self._referred) is not None and not stimulus:
+                referred.show_reference()
             self.display.show(trial.stimuli[stimulus], self._tuning(trial), first=not stimulus)
         self._cue_ns = self._now_ns()
         self._play(self.protocol.sound.cue)
@@ -379,10 +458,13 @@ class Course:
     def _take(self, happened: Happened) -> None:
         kind, fields, said = happened
         trial = self.open_trial
+        if kind is events.Fault and self.half is not None:
+            return  # an answer whose confidence is waited for needs no display
         if kind is events.Ended:
             self.end_reading(**fields)
         elif said:
-            self.book.log(kind, None if kind is events.Device else trial, **fields)
+            between = issubclass(kind, events.Device | events.DisplayBeside)
+            self.book.log(kind, None if between else trial, **fields)
             self._say(said)
         elif trial is not None:
             self.book.log(kind, trial, attempt=self._attempt, stimulus=self._stimulus, **fields)
@@ -401,7 +483,7 @@ class Course:
             self.book.log(events.Warning, trial)
             self._say(f"warning: {self.name(trial)}, {warning_s:g} s")
         display = self.display
-        if display is None or not display.read:
+        if display is None or self.by_key or not display.read:
             return
         if self.second_to_come:
             if display.ready:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
+from vbraille.sessions.planning.knobs import said_value
 from vbraille.sessions.record import events
 from vbraille.sessions.running.halfanswer import HalfAnswer
 from vbraille.sessions.running.phases import Phase
@@ -126,13 +127,14 @@ class Inquiry:
 
     def _tell(self, trial: Trial, answer: str) -> None:
         """Say what a practice trial has shown."""
-        question = self._course.protocol.asks
+        question, parameter = self._course.protocol.asks, self._course.protocol.parameter
         was = question.was(trial, self._course.protocol.keys)
         values = [stimulus.value for stimulus in trial.stimuli if stimulus.value is not None]
         if was:
             self._say(f"practice: {verdict(self._course.protocol, trial, answer)}, it was {was}")
         elif len(values) == 2:
-            self._say(f"practice: they were {values[0]:g} mm and {values[1]:g} mm")
+            first, second = (said_value(value, parameter) for value in values)
+            self._say(f"practice: they were {first} and {second}")
 
     def _asks_whether(self, trial: Trial, answer: str) -> bool:
         """Ask once about an answer that was typed before the trial was read; True if it asks."""
@@ -141,7 +143,7 @@ class Inquiry:
         if not self._typed or early == self._early:
             return False
         self._early = early
-        if self._course.display is None:
+        if self._course.by_key:
             why = "Enter has not said yet that it was read"
         elif "contact" in told.t_s:
             why = "it was not read to its end yet"

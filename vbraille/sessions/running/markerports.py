@@ -16,6 +16,8 @@ CODES = {
     "run": 1, "presented": 2, "cue": 3, "contact": 4, "read": 5, "warning": 6, "answer": 7,
     "undo": 8, "repeat": 9, "fault": 10, "well": 11, "pause": 12, "go": 13, "break": 14,
     "begin": 15, "note": 16, "tuning": 17, "device": 18, "stop": 19, "end": 20, "closed": 21,
+    "ended": 22, "hand_taken": 23, "hand_given_back": 24, "break_wanted": 25, "stood": 26,
+    "display_beside": 27,
 }  # fmt: skip
 OTHER = 255
 STREAM = "vbraille"
@@ -96,7 +98,8 @@ class MarkerSpec:
     baud: int = BAUD
 
     def __str__(self) -> str:
-        return f"{self.kind}:{self.name}"
+        baud = f":{self.baud}" if self.kind == "serial" and self.baud != BAUD else ""
+        return f"{self.kind}:{self.name}{baud}"
 
     def open(self) -> MarkerPort:
         """Open it.

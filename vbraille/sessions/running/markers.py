@@ -6,6 +6,7 @@ a queue of bounded length, and those that cannot be sent are counted as lost.
 
 from __future__ import annotations
 
+import csv
 import time
 from contextlib import suppress
 from queue import Empty, Full, Queue
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.events import JournalEvent
     from vbraille.sessions.running.markerports import MarkerPort, MarkerSpec
 
-HEAD = "n,event,trial,practice,byte,late_ms\n"
+HEAD = "n,event,trial,practice,byte,late_ms,recorder\n"
 _ROOM = 1000  # markers that may wait
 _AGAIN_S = 1.0  # a recorder that is gone is looked for so often
 _LEAVE_S = 2.0  # how long the end of a session waits for markers that are still on their way
@@ -129,6 +130,7 @@ class Markers:
         """Send what stands in the queue until there is a None in it."""
         while (marker := self._queue.get()) is not None:
             if not self._sent(marker):
+                self._keep(marker, None)
                 continue
             late_ms = (self._now_ns() - marker.happened_ns) / 1e6
             self._late_ms.append(late_ms)
@@ -149,13 +151,16 @@ class Markers:
             return False
         return True
 
-    def _keep(self, marker: Marker, late_ms: float) -> None:
+    def _keep(self, marker: Marker, late_ms: float | None) -> None:
+        """List a marker with its lateness, or without one if it could not be sent."""
         if self._list is None:
             return
-        trial = marker.trial or ""
-        row = f"{marker.n},{marker.kind},{trial},{int(marker.practice)},{marker.code},{late_ms:.3f}"
+        trial, late = marker.trial or "", "" if late_ms is None else f"{late_ms:.3f}"
+        row = (
+            marker.n, marker.kind, trial, int(marker.practice), marker.code, late, str(self._spec)
+        )  # fmt: skip
         try:
-            self._list.write(f"{row}\n")
+            csv.writer(self._list, lineterminator="\n").writerow(row)
             self._list.flush()
         except (OSError, ValueError):
             self._list = None

@@ -193,6 +193,11 @@ class OnDevice:
         return self._read
 
     @property
+    def ended(self) -> bool:
+        """Whether the participant's key has ended the reading of this stimulus."""
+        return self._ended
+
+    @property
     def reached(self) -> bool:
         """Whether the hand has been at the end of the stimulus."""
         return self._read or self._end.reached

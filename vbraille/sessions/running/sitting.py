@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from vbraille.caching import compiling_note
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM
 from vbraille.errors import InputError
+from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.record import events
 from vbraille.sessions.record.clocks import Moment, boot, gap, say_moved
 from vbraille.sessions.record.folder import check_end
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.record.folder import Record
     from vbraille.sessions.running.answers import Answers
+    from vbraille.sessions.running.conventional import OnConventional
     from vbraille.sessions.running.markers import Markers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
@@ -62,6 +64,8 @@ class Sitting:
         Live view of the session; None without one.
     markers
         Sender of markers to another recorder; None without one.
+    beside
+        Conventional display of the session; None without one.
     """
 
     def __init__(
@@ -77,6 +81,7 @@ class Sitting:
         before_rest: Callable[[], None],
         onlookers: Onlookers | None = None,
         markers: Markers | None = None,
+        beside: OnConventional | None = None,
     ) -> None:
         self._engine = engine
         self._answers = answers
@@ -88,17 +93,24 @@ class Sitting:
         self._before_rest = before_rest
         self._watching = onlookers
         self._markers = markers
+        self._beside = beside
         self._opened = False
 
     def open(self, protocol: Protocol, plan: Plan) -> None:
-        """Start the engine and wait until it runs, unless it runs already."""
-        if self._engine is None or self._opened:
+        """Start the engine, and wait until it and the displays are there, unless they are."""
+        if self._opened:
             return
+        self._opened = True
+        if self._engine is not None:
+            self._start(self._engine, protocol, plan)
+        if self._beside is not None:
+            self._beside.begin()
+
+    def _start(self, engine: RunEngine, protocol: Protocol, plan: Plan) -> None:
         if (note := compiling_note()) is not None:
             self._warn(note)
-        self._engine.start()
-        self._opened = True
-        check_room(self._engine.display, protocol, plan)
+        engine.start()
+        check_room(engine.display, protocol, plan)
 
     def run(self, record: Record, *, why: str, spec: str, hand: str) -> Progress:
         """Conduct the session until it ends or is stopped, and return how far it has come.
@@ -128,6 +140,7 @@ class Sitting:
                 say=self._say,
                 play=sound.play,
                 real=self._real,
+                beside=self._beside,
             )
             if self._markers is not None:
                 self._markers.begin(record.folder)
@@ -217,8 +230,12 @@ def make_sound(wanted: str, answers: Answers, say: Callable[[str], None]) -> Sou
 def check_room(info: Display, protocol: Protocol, plan: Plan) -> None:
     """Raise InputError if the device's carriage is too short for a stimulus of the plan."""
     extent_mm = max(
-        stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
-        for stimulus in plan.stimuli()
+        (
+            stimulus.geometry.extent_mm(len(protocol.line(stimulus.masks)))
+            for stimulus in plan.stimuli()
+            if not is_conventional(stimulus)
+        ),
+        default=0.0,
     )
     needed_mm = extent_mm + info.span_mm
     if needed_mm > info.travel_mm + TRAVEL_TOLERANCE_MM:

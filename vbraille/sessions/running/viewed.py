@@ -8,7 +8,7 @@ has the list.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from msgspec import structs
@@ -20,6 +20,7 @@ from vbraille.engine.record import Flag
 from vbraille.live.messages import LineShown, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.render.braille.knobs import say_mapping
+from vbraille.sessions.planning.knobs import said_value
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ _SAFE: Final = frozenset(
         "break",
         "cue",
         "device",
+        "display",
         "end",
         "fault",
         "go",
@@ -142,7 +144,7 @@ def _unhidden(state: ViewState, course: Course) -> ViewState:
     if trial is None:
         return structs.replace(state, facts=facts)
     facts.append(("condition", trial.condition))
-    if course.phase is not Phase.OPEN:
+    if course.phase is not Phase.OPEN or course.by_key:
         return structs.replace(state, facts=facts)
     stimulus = trial.stimuli[course.stimulus]
     tuning = asdict(stimulus.tuning) | course.progress.tuning
@@ -152,7 +154,16 @@ def _unhidden(state: ViewState, course: Course) -> ViewState:
         ("asked for", _asked(course.protocol, trial, stimulus)),
     ]
     geometry = geometry_shown(stimulus.geometry)
-    return structs.replace(state, facts=facts, geometry=geometry, lines=[_line(course, stimulus)])
+    style = replace(course.protocol.style, mapping=course.protocol.mapping_of(stimulus))
+    assert course.display is not None, "paper cannot be watched"
+    return structs.replace(
+        state,
+        facts=facts,
+        geometry=geometry,
+        mapping=say_mapping(style.mapping),
+        rows_shown=rows_shown(style, course.display.engine.display),
+        lines=[_line(course, stimulus)],
+    )
 
 
 def _line(course: Course, stimulus: Stimulus) -> LineShown:
@@ -161,7 +172,7 @@ def _line(course: Course, stimulus: Stimulus) -> LineShown:
     cells = list(course.protocol.line(stimulus.masks))
     return LineShown(
         number=course.display.line,
-        text="",
+        text=stimulus.text or "",
         start_mm=0.0,
         top_mm=0.0,
         cells=cells,
@@ -173,7 +184,7 @@ def _line(course: Course, stimulus: Stimulus) -> LineShown:
 def _asked(protocol: Protocol, trial: Trial, stimulus: Stimulus) -> str:
     """Words for what the participant is to say about a stimulus."""
     if stimulus.value is not None:
-        return f"{stimulus.value:g} mm"
+        return said_value(stimulus.value, protocol.parameter)
     return say_cells(to_braille(stimulus.masks[slice(*trial.asked)]), protocol.keys)
 
 
@@ -181,8 +192,8 @@ def _answer(protocol: Protocol, trial: Trial, answer: str) -> str:
     """Words for an answer, and whether it is right."""
     question = protocol.asks
     if question.name == "which":
-        values = [stimulus.value for stimulus in trial.stimuli]
-        return f"{values[int(answer) - 1]:g} mm of {values[0]:g} mm and {values[1]:g} mm"
+        values = [said_value(s.value or 0.0, protocol.parameter) for s in trial.stimuli]
+        return f"{values[int(answer) - 1]} of {values[0]} and {values[1]}"
     said, was = question.said(answer, protocol.keys), question.was(trial, protocol.keys)
     if not was:
         return said

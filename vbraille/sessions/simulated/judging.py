@@ -1,7 +1,9 @@
 """How the simulated reader answers questions other than which cells these are.
 
 It goes by one number of a stimulus: a length in mm, or how strong its strongest dot is felt, in
-units of E₀ (`vbraille.sessions.simulated.observer`). Noise is normal. It says yes, or different,
+units of E₀ (`vbraille.sessions.simulated.observer`); `vbraille.sessions.simulated.comparing` says
+which. Where it is asked which of two it likes, it takes the one nearer to the length that it was
+told, or the stronger one. Noise is normal. It says yes, or different,
 beyond one standard deviation of its noise, so that it gives a false alarm in 16 % of trials with
 nothing. On a scale it puts strengths of 0 to 1 evenly from end to end, and as a magnitude it gives
 the strength times the modulus. How sure it is it cannot tell: its confidence is the middle of the
@@ -63,6 +65,21 @@ def larger(
     drawn = noise * unit * random.standard_normal(2)
     one, two = (-math.inf if math.isnan(felt) else felt for felt in (first, second))
     return 2 if two + drawn[1] > one + drawn[0] else 1
+
+
+def nearer(
+    first: float, second: float, nominal: float, noise: float, random: np.random.Generator
+) -> int:
+    """Which of two lengths the reader takes for the one nearer to a length: 1 or 2; 1 if equal.
+
+    Noise is in units of that length, and so is what counts as equal without noise.
+    """
+    drawn = noise * nominal * random.standard_normal(2)
+    off = [
+        math.inf if math.isnan(felt) else abs(felt + more - nominal)
+        for felt, more in zip((first, second), drawn, strict=True)
+    ]
+    return 2 if off[1] < off[0] - (0.0 if noise else TIE * nominal) else 1
 
 
 def rate(felt: float, least: int, most: int, noise: float, random: np.random.Generator) -> int:

@@ -262,11 +262,17 @@ class Observer:
         """Dot masks of the first cells of a line; see `felt` and `answer`."""
         return self.answer(self.felt(exploration, places), random)
 
-    def lengths_mm(self, exploration: Exploration) -> tuple[float, float]:
-        """Width of the first dot of a line, and gap to the next dot; NaN where one is missing."""
+    def dots_mm(self, exploration: Exploration) -> NDArray[np.float64]:
+        """Where each dot column of a line begins and ends, as far as dots were felt.
+
+        Returns
+        -------
+        float64[n, 2]
+            Places on the line, in the order of the columns.
+        """
         near = self._near(exploration, self.geometry.travel_mm)
         if not near.x_mm.size:
-            return math.nan, math.nan
+            return np.empty((0, 2))
         swing = self._felt(near, self._swings)
         swing -= swing.min(axis=1, keepdims=True)
         left_mm = near.x_mm - self._half_mm
@@ -274,16 +280,23 @@ class Observer:
         strength = wave.felt.max(axis=1)
         at = np.flatnonzero(strength > LEAST_SWING * strength.max())
         if not at.size:
-            return math.nan, math.nan
+            return np.empty((0, 2))
         # An edge is halfway between the last place without a swing and the first with one.
         u_mm = np.pad(wave.u_mm, 1, mode="edge")
         starts_mm = (u_mm[at] + u_mm[at + 1]) / 2
         ends_mm = (u_mm[at + 1] + u_mm[at + 2]) / 2
         gaps_mm = starts_mm[1:] - ends_mm[:-1]
         apart = np.flatnonzero(gaps_mm > APART * self.geometry.dot_width_mm)
-        last = apart[0] if apart.size else -1
-        gap_mm = float(gaps_mm[last]) if apart.size else math.nan
-        return float(ends_mm[last] - starts_mm[0]), gap_mm
+        firsts, lasts = np.r_[0, apart + 1], np.r_[apart, at.size - 1]
+        return np.column_stack((starts_mm[firsts], ends_mm[lasts]))
+
+    def lengths_mm(self, exploration: Exploration) -> tuple[float, float]:
+        """Width of the first dot of a line, and gap to the next dot; NaN where one is missing."""
+        dots_mm = self.dots_mm(exploration)
+        if not len(dots_mm):
+            return math.nan, math.nan
+        width_mm = float(dots_mm[0, 1] - dots_mm[0, 0])
+        return width_mm, float(dots_mm[1, 0] - dots_mm[0, 1]) if len(dots_mm) > 1 else math.nan
 
     def compare(
         self,

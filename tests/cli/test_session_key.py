@@ -1,0 +1,63 @@
+"""A session at a terminal in which the participant ends reading by a key."""
+
+from pathlib import Path
+
+from tests.cli import program
+from tests.cli.program import Terminal
+from vbraille.sessions.record.export import rows
+from vbraille.sessions.record.folder import load
+
+MINE = """
+format = 1
+name = "mine"
+title = "Two"
+source = "ours"
+model = "vbd"
+[design]
+kind = "combinations"
+characters = ["a", "c"]
+length = 1
+[trial]
+end = "key:space"
+"""
+
+
+def arguments(folder: Path):
+    (folder / "mine.toml").write_text(MINE)
+    session = folder / "s"
+    named = ["--participant", "P01", "--seed", "1", "--hand", "sweep:60", "--sound", "none"]
+    return ["session", "run", folder / "mine.toml", "--out", session, *named]
+
+
+def test_one_press_ends_reading_and_orders_are_typed_as_ever(tmp_path):
+    with Terminal(*arguments(tmp_path)) as terminal:
+        terminal.until("key: space ends reading, with no Enter after it")
+        terminal.until("cue: trial 1 of 2")
+        terminal.type_apart([b"no", b"te ", b"a b", b"\n"])
+        terminal.until("note: is in")
+        terminal.type(" ")
+        terminal.until("ended: .* s, by key space; type the answer")
+        terminal.type("c\n")
+        terminal.until("answer: trial 1 of 2, c")
+        terminal.until("cue: trial 2 of 2")
+        terminal.type("pause\n")
+        terminal.until("pause: the array is at rest")
+        terminal.type(" \n")  # in a pause the key is a blank, and Enter goes on
+        terminal.until("go: on")
+        terminal.type(" ")
+        terminal.until("ended: .* s, by key space")
+        terminal.type("a\n")
+        terminal.until("last: all trials are done")
+        terminal.type("\n")
+        assert terminal.end() == 0
+        assert terminal.settings() == terminal.before
+    table = rows(load(tmp_path / "s"))
+    assert [row["ended_by"] for row in table] == ["key:space"] * 2
+    assert [row["notes"] for row in table] == ["a b", ""]
+    assert "\x1b" not in terminal.printed
+
+
+def test_at_a_pipe_enter_is_pressed_instead(tmp_path):
+    done = program.run(*arguments(tmp_path), stdin=None, input="stop\n")
+    assert done.returncode == 0, done.stderr
+    assert "key: standard input is no terminal, so that space cannot be told; Enter" in done.stdout

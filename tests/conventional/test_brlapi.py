@@ -1,0 +1,165 @@
+"""Displays that BRLTTY drives: a real BRLTTY with a display of Handy Tech at a pseudo-terminal."""
+
+import signal
+import socket
+
+import pytest
+
+from tests.conventional.handytech import (
+    FWINLT,
+    FWINRT,
+    HOME,
+    ROUTE_0,
+    Brltty,
+    needs_brltty,
+    until,
+)
+from tests.tiers import heavy
+from vbraille.conventional.brlapi import BrlapiDisplay, typed
+from vbraille.conventional.display import ConventionalDisplay
+from vbraille.conventional.driver import DisplayGoneError
+from vbraille.conventional.messages import (
+    CellsTaken,
+    DisplayAway,
+    DisplayStands,
+    KeyPressed,
+)
+
+SHOWN = bytes((0x11, 0xFF, 0x00, 0x80))
+
+
+@pytest.fixture
+def brltty(tmp_path):
+    with Brltty(tmp_path) as brltty:
+        yield brltty
+
+
+@pytest.fixture
+def display(brltty):
+    with ConventionalDisplay(f"brlapi:{brltty.host}") as display:
+        yield display
+
+
+def heard(display, kind):
+    """Poll until the display tells something of a kind, and give it."""
+    return until(lambda: next((m for m in display.poll() if isinstance(m, kind)), None))
+
+
+@needs_brltty
+def test_cells_come_to_the_display_and_keys_from_it(brltty, display):
+    assert heard(display, DisplayStands) == DisplayStands("HandyTech", "mdlr", 40, 1)
+    number = display.show(SHOWN)
+    came_ns = brltty.display.wait(SHOWN)
+    taken = until(lambda: [m for m in display.poll() if m == CellsTaken(number, m.at_ns)])[0]
+    assert abs(came_ns - taken.at_ns) < 1e9
+    for key, name, argument in (
+        (ROUTE_0 + 15, "ROUTE", 15),
+        (FWINRT, "FWINRT", 0),
+        (FWINLT, "FWINLT", 0),
+        (HOME, "HOME", 0),
+    ):
+        brltty.display.press(key)
+        assert heard(display, KeyPressed) == KeyPressed(name, argument)
+    # More than there is room for is cut, and less is followed by blank cells.
+    display.show(bytes((1,)) * 50)
+    brltty.display.wait(bytes((1,)) * 40)
+    display.show(b"\2")
+    brltty.display.wait(b"\2")
+    display.rest()
+    brltty.display.wait(b"")
+    display.show(b"\3")
+    brltty.display.wait(b"\3")
+
+
+@needs_brltty
+def test_it_is_there_again_after_brltty_the_display_and_its_own_process_were_gone(brltty, display):
+    heard(display, DisplayStands)
+    display.show(SHOWN)
+    brltty.display.wait(SHOWN)
+
+    brltty.stop()
+    assert heard(display, DisplayAway).why == (
+        f"no BRLTTY answers at {brltty.host}; start it, or give its address"
+    )
+    display.show(b"\1")
+    brltty.start()
+    heard(display, DisplayStands)
+    brltty.display.wait(b"\1")
+
+    # Of a display on a serial line BRLTTY knows that it is gone when something goes there.
+    brltty.display.unplug()
+    display.show(b"\2")
+    assert heard(display, DisplayAway).why.endswith("drives no display; plug one in")
+    brltty.display.plug(80)
+    assert heard(display, DisplayStands).columns == 80
+    brltty.display.wait(b"\2")
+
+
+@heavy  # it waits for three seconds of silence, twice
+@needs_brltty
+def test_what_does_not_answer_is_said_and_found_again(brltty, display):
+    heard(display, DisplayStands)
+    display.show(SHOWN)
+    brltty.display.wait(SHOWN)
+    brltty.process.send_signal(signal.SIGSTOP)
+    assert heard(display, DisplayAway).why.startswith("what drives the display does not answer")
+    brltty.process.send_signal(signal.SIGCONT)
+    heard(display, DisplayStands)
+    display._process.kill()
+    heard(display, DisplayAway)
+    heard(display, DisplayStands)
+
+
+@needs_brltty
+def test_who_may_not_is_told_so(tmp_path):
+    key = tmp_path / "key"
+    key.write_text("secret\n")
+    with Brltty(tmp_path, auth=f"keyfile:{key}") as brltty:
+
+        def refused():
+            try:
+                BrlapiDisplay(brltty.host).close()
+            except DisplayGoneError as error:
+                return "" if "no BRLTTY answers" in str(error) else str(error)
+            return ""
+
+        assert until(refused) == (
+            f"BRLTTY at {brltty.host} does not let you in; join the group that may read "
+            f"/etc/brlapi.key"
+        )
+
+
+@needs_brltty
+def test_a_brltty_without_a_display_is_none(tmp_path):
+    with Brltty(tmp_path, driver="no") as brltty:
+
+        def refused():
+            try:
+                BrlapiDisplay(brltty.host).close()
+            except DisplayGoneError as error:
+                return "" if "no BRLTTY answers" in str(error) else str(error)
+            return ""
+
+        assert until(refused) == f"BRLTTY at {brltty.host} drives no display; plug one in"
+
+
+@needs_brltty
+def test_another_service_at_the_port_is_no_brltty():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        number = port - 4101
+        if number < 0:
+            pytest.skip("the port is below those of BRLTTY")
+        with ConventionalDisplay(f"brlapi:127.0.0.1:{number}") as display:
+            taken, _ = server.accept()
+            taken.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" * 20)
+            taken.close()
+            assert "BRLTTY" in heard(display, DisplayAway).why
+
+
+@pytest.mark.parametrize(
+    ("symbol", "key"),
+    [(0x41, "A"), (0xE9, "é"), (0xFF51, "left"), (0xFFBE, "f1"), (0x100263A, "☺"), (0xFE03, "")],
+)
+def test_what_its_keyboard_types(symbol, key):
+    assert typed(symbol) == key

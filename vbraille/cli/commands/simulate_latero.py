@@ -1,0 +1,77 @@
+"""``vbraille simulate latero``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
+from vbraille.devices.latero.datagrams import BUTTONS, PORT
+from vbraille.devices.latero.laterodevice import DISPLAY
+from vbraille.engine.realtime import come_first
+from vbraille.errors import InputError
+from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator
+from vbraille.simulation.pressing import parse_presses
+from vbraille.simulation.specs import parse_hand
+from vbraille.simulation.tray import Tray
+
+if TYPE_CHECKING:
+    import argparse
+
+_PITCH_MM: Final = 10.0
+_MOST_LINES: Final = 21  # as many as the tray has room for
+_MOST_PORT: Final = 0xFFFF
+
+
+def run(arguments: argparse.Namespace, priority: int) -> int:
+    """Be a Latero until a signal says to stop, with this real-time priority if it may."""
+    hand = parse_hand(arguments.hand, arguments.seed)
+    presses = parse_presses(arguments.press)
+    for press in presses:
+        if press.button > len(BUTTONS):
+            raise InputError(f"button is {press.button}; a Latero has 1 and 2, left and right")
+    port = PORT if arguments.port is None else arguments.port
+    if not 0 <= port <= _MOST_PORT:
+        raise InputError(f"port is {port}; it must be 0 to {_MOST_PORT}")
+    lines = 1 if arguments.lines is None else arguments.lines
+    if not 1 <= lines <= _MOST_LINES:
+        raise InputError(f"lines are {lines}; a Latero has room for 1 to {_MOST_LINES}")
+    try:
+        faults = LateroFaults(
+            drop=arguments.drop,
+            late=arguments.late or 0.0,
+            double=arguments.double or 0.0,
+            foreign=arguments.foreign or 0.0,
+            seed=arguments.seed,
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    with EAR.deferred():
+        simulator = LateroSimulator(
+            Tray(hand, DISPLAY.span_mm, lines, _PITCH_MM),
+            say=say_line,
+            port=port,
+            faults=faults,
+            presses=presses,
+            wait_s=WAIT_S if arguments.wait is None else arguments.wait,
+        )
+        try:
+            say_line(f"device: {simulator.spec}")
+            come_first(priority)
+            simulator.run(stopped=lambda: EAR.heard)
+        finally:
+            simulator.close()
+    say_line(_summary(simulator))
+    return 0
+
+
+def _summary(simulator: LateroSimulator) -> str:
+    board, tally = simulator.board, simulator.network.tally
+    return (
+        f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {board.fulls}, "
+        f"registers {board.raws}, no requests {board.foreign}, beyond rest {board.beyond}, "
+        f"requests lost {tally.requests_lost}, answers lost {tally.answers_lost}, "
+        f"late {tally.answers_late}, doubled {tally.requests_doubled + tally.answers_doubled}, "
+        f"foreign {tally.foreign}, blades {'at rest' if board.at_rest else 'not at rest'}, "
+        f"motor power {'on' if board.powered else 'off'}"
+    )

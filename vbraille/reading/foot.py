@@ -1,0 +1,42 @@
+"""Going on below a page: a finger that stays under the last line asks for the next one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+# Ours: longer than a finger that strays off the last line takes to come back, shorter than one
+# that waits for something to happen.
+STAY_S: Final = 0.5
+_STAY_NS: Final = round(STAY_S * 1e9)
+
+
+class Foot:
+    """Watches for a finger that has been on a page and stays below its last line.
+
+    Parameters
+    ----------
+    rows
+        Number of rows of the page.
+    """
+
+    def __init__(self, rows: int) -> None:
+        self._rows = rows
+        self._begun = False  # whether the finger was on the page since that came
+        self._since_ns: int | None = None
+
+    def stays(self, ticks: NDArray[np.void]) -> bool:
+        """Look at ticks, which are all since the last call: whether it has stayed long enough."""
+        on = np.flatnonzero(ticks["part"] < self._rows)
+        if on.size:
+            self._begun, self._since_ns = True, None
+            ticks = ticks[on[-1] + 1 :]
+        if not ticks.size or not self._begun:
+            return False
+        if self._since_ns is None:
+            self._since_ns = int(ticks["time_ns"][0])
+        return int(ticks["time_ns"][-1]) - self._since_ns >= _STAY_NS

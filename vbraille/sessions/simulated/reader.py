@@ -1,0 +1,213 @@
+"""The simulated reader as a source of answers: to each kind of question but words."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from hashlib import sha256
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.braille.spelling import to_answer
+from vbraille.errors import InputError
+from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
+from vbraille.sessions.planning.design import Choice
+from vbraille.sessions.planning.questions import (
+    DIFFERENT,
+    NO,
+    SAME,
+    YES,
+    FreeQuestion,
+    IdentifyQuestion,
+    MagnitudeQuestion,
+    RatingQuestion,
+    SameQuestion,
+    WhichQuestion,
+)
+from vbraille.sessions.simulated import comparing, judging
+from vbraille.sessions.simulated.observer import SKINS, Observer
+
+if TYPE_CHECKING:
+    from vbraille.render.braille.models import Model
+    from vbraille.sessions.planning.appearance import Condition
+    from vbraille.sessions.planning.plan import Plan
+    from vbraille.sessions.planning.protocol import Protocol
+    from vbraille.sessions.planning.stimuli import Trial
+    from vbraille.sessions.simulated.comparing import Stretch
+    from vbraille.sessions.simulated.observer import Parameter, Skin
+    from vbraille.sessions.simulated.skin import Exploration
+
+MOST_NOISE = 100.0
+# Names of the parameters that the observer itself compares: the protocol's name, and its own.
+_COMPARED: dict[str, Parameter] = {"dot_width_mm": "dot width", "dot_gap_mm": "gap"}
+_INSTEAD = "type the answers, or give a file of them"
+
+
+class Simulated:
+    """A simulated reader, which is given the frames sent to the device, and nothing of the plan.
+
+    Like a person, it has been told the task: where a string begins, how many characters it has,
+    which of them are asked for, and by which length two stimuli are compared.
+
+    Parameters
+    ----------
+    protocol
+        Protocol of the session, which has the task and the display's nominal distances.
+    plan
+        Plan of the session. The noise is drawn by its protocol, participant and seed, and by the
+        number and the attempt of the trial.
+    noise
+        Noise of the reader, described at `vbraille.sessions.simulated.observer`.
+    skin
+        Model of the skin, one of `vbraille.sessions.simulated.observer.SKINS`.
+
+    Raises
+    ------
+    InputError
+        If the protocol is for paper, the noise is out of range, or there is no such skin.
+    """
+
+    typed = False
+    felt = True
+
+    def __init__(
+        self, protocol: Protocol, plan: Plan, noise: float = 0.0, skin: str = SKINS[0]
+    ) -> None:
+        chosen: Skin | None = next((one for one in SKINS if one == skin), None)
+        if chosen is None:
+            raise InputError(
+                f"there is no skin {skin!r}; give {' or '.join(SKINS)}, as in "
+                f"simulated:0.2:{SKINS[-1]}"
+            )
+        if protocol.medium == "paper":
+            raise InputError(
+                f"{protocol.name} is read on paper, which the simulated reader cannot feel; "
+                f"type the answers, or give a file of them"
+            )
+        if any(protocol.place_of(c) == CONVENTIONAL for c in protocol.conditions):
+            raise InputError(
+                f"{protocol.name} is read on a conventional display too, which the simulated "
+                f"reader cannot feel; {_INSTEAD}"
+            )
+        if not 0 <= noise <= MOST_NOISE:
+            raise InputError(f"noise is {noise:g}; it must be 0 to {MOST_NOISE:g}")
+        self.name = f"simulated:{noise:g}" + (f":{skin}" if skin != SKINS[0] else "")
+        model: Model = protocol.model
+
+        def told(condition: Condition, skin: Skin) -> Observer:
+            style = protocol.style_of(condition)
+            style = replace(model.style, mapping=style.mapping, geometry=style.geometry)
+            return Observer(model.display, style, noise=noise, skin=skin)
+
+        self._noise = noise
+        self._observers = {c.name: told(c, chosen) for c in protocol.conditions}
+        self._lead_cells = protocol.lead_cells
+        self._parameter = protocol.parameter or ""
+        self._question = protocol.asks
+        self._stretches = {c.name: _stretch(protocol, c) for c in protocol.conditions}
+        pairs = protocol.task == "choice"
+        if isinstance(self._question, FreeQuestion) or (pairs and not self._compares):
+            raise InputError(
+                f"{protocol.name} asks a question of the kind {self._question.name!r}, which the "
+                f"simulated reader cannot answer; type the answers, or give a file of them"
+            )
+        self._check_feels(protocol)
+        self._drawn = f"{plan.protocol} {plan.participant} {plan.seed}"
+
+    def lines(self, wait_s: float) -> list[str]:
+        """Wait, and return no lines: the reader answers when it has read a trial."""
+        time.sleep(wait_s)
+        return []
+
+    def next(self, trial: Trial, attempt: int, felt: list[Exploration], /) -> tuple[str, int]:
+        """Answer to a trial, by what was felt of it."""
+        drawn = f"{self._drawn} {trial.practice} {trial.number} {attempt}"
+        random = np.random.default_rng(seed_of(drawn))
+        scale = self._question.confidence
+        sure = "" if scale is None else f"; {(scale.least + scale.most) // 2}"
+        return self._answer(trial, felt, random) + sure, 0
+
+    def _check_feels(self, protocol: Protocol) -> None:
+        """Raise InputError if the model cannot tell what the question is about."""
+        question, parameter = self._question, self._parameter
+        if not isinstance(question, WhichQuestion):
+            return
+        if parameter == "texture_cycles":
+            raise InputError(
+                f"{protocol.name} compares {parameter}, and the simulated reader does not feel "
+                f"which texture is finer; {_INSTEAD}"
+            )
+        if question.right == "nearest" and parameter not in comparing.LENGTHS:
+            raise InputError(
+                f"{protocol.name} asks which of two is nearest to a {parameter} of "
+                f"{question.reference:g}, and the simulated reader feels how strong a dot is, not "
+                f"its {parameter}; {_INSTEAD}"
+            )
+
+    @property
+    def _compares(self) -> bool:
+        return isinstance(self._question, WhichQuestion | SameQuestion)
+
+    def _answer(self, trial: Trial, felt: list[Exploration], random: np.random.Generator) -> str:
+        question, noise = self._question, self._noise
+        observer = self._observers[trial.condition]
+        likes = isinstance(question, WhichQuestion) and question.right is None
+        if likes and self._parameter in _COMPARED:
+            first, second = felt
+            return str(observer.compare(first, second, _COMPARED[self._parameter], random))
+        if self._compares:
+            one, two, unit = self._felt_of_two(trial, felt)
+            if likes and self._parameter in comparing.LENGTHS:
+                return str(judging.nearer(one, two, unit, noise, random))
+            if likes:
+                return str(judging.larger(one, two, unit, noise, random))
+            if isinstance(question, SameQuestion):
+                return DIFFERENT if judging.differ(one, two, unit, noise, random) else SAME
+            assert isinstance(question, WhichQuestion), "these are the two that compare"
+            one, two = question.worth(one), question.worth(two)
+            return str(judging.larger(one, two, unit, noise, random))
+        if not isinstance(question, IdentifyQuestion):
+            strength = self._strength(trial, 0, felt[0])
+            match question:
+                case RatingQuestion():
+                    return str(judging.rate(strength, question.least, question.most, noise, random))
+                case MagnitudeQuestion():
+                    given = judging.magnitude(strength, question.modulus or 1.0, noise, random)
+                    return f"{given:.3g}"
+            return YES if judging.detects(strength, noise, random) else NO
+        places = self._lead_cells + len(trial.stimuli[0].masks)
+        masks = observer.read(felt[0], places, random)
+        asked = slice(*(self._lead_cells + place for place in trial.asked))
+        return to_answer(masks[asked])
+
+    def _felt_of_two(self, trial: Trial, felt: list[Exploration]) -> tuple[float, float, float]:
+        """What is felt of two stimuli, and its unit: lengths in mm, or how strong they are."""
+        if self._parameter not in comparing.LENGTHS:
+            one, two = (self._strength(trial, place, felt[place]) for place in (0, 1))
+            return one, two, 1.0
+        observer, stretch = self._observers[trial.condition], self._stretches[trial.condition]
+        one, two = (
+            comparing.felt_mm(observer, self._parameter, each, stretch) for each in felt[:2]
+        )
+        return one, two, comparing.nominal_mm(self._parameter, observer.geometry)
+
+    def _strength(self, trial: Trial, place: int, felt: Exploration) -> float:
+        places = self._lead_cells + len(trial.stimuli[place].masks)
+        first, stop = (self._lead_cells + cell for cell in trial.asked)
+        return judging.strength(self._observers[trial.condition].felt(felt, places), first, stop)
+
+
+def _stretch(protocol: Protocol, condition: Condition) -> Stretch | None:
+    """Dots by which a distance is told in a condition; None if none is compared or can be told."""
+    design = protocol.design
+    if not isinstance(design, Choice) or protocol.parameter not in comparing.LENGTHS:
+        return None
+    style = protocol.style_of(condition)
+    line = protocol.line(design.string)
+    return comparing.stretch_of(protocol.parameter, line, style.mapping, style.geometry)
+
+
+def seed_of(text: str) -> int:
+    """Seed, 0 … 2⁶⁴ - 1, made from a text by its SHA-256."""
+    return int.from_bytes(sha256(text.encode()).digest()[:8], "big")

@@ -1,0 +1,148 @@
+"""The inside of a simulated Latero: what it answers to a datagram, without I/O and without time.
+
+It is as the real one to the author's own client, which numbers nothing: it answers whoever asks,
+shows what it is told last, and has no watchdog.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from vbraille.devices.latero.datagrams import (
+    BLADES,
+    BUTTONS,
+    CONTROLLER,
+    DIO_OUT,
+    FULL,
+    FULLR0,
+    INTERFACE,
+    NO_BUTTON,
+    NO_IO,
+    PAGE,
+    POWERED_OFF,
+    POWERED_ON,
+    RAW,
+    READ,
+    REST,
+    WRITE,
+    Answer,
+    LateroRequest,
+    RawAnswer,
+    pack_answer,
+    pack_raw_answer,
+    parse_request,
+)
+
+# Version 1, revision 0, of both.
+_VERSION: Final = 0x0100
+# Registers of the controller, and of its I/O interface. The first is ours: which one switches the
+# real Latero's motor power is not published.
+STATUS: Final = 0x00
+DIO, DIO_DIRECTION, DIO_DIRECTION_TOO = 0x10, 0x11, 0x18
+_HALF: Final = 0x8000
+
+
+class LateroBoard:
+    """The boards of a Latero.
+
+    Attributes
+    ----------
+    levels : uint8[64]
+        Levels of the blades, by the last FULL.
+    powered : bool
+        Whether motor power is on.
+    encoders : tuple of four int
+        Counts of the encoders.
+    buttons : int
+        Bits of the buttons that are held, bit 0 for the left one.
+    interface : bool
+        Whether the I/O interface is plugged in.
+    encoder_errors : int
+        Bits of the encoders that have lost steps.
+    register : int or None
+        Register of the controller that switches motor power; None if none does.
+    fulls, raws, foreign, beyond : int
+        How many requests of either kind were taken, how many datagrams were no requests, and how
+        many blades were told a level above `REST`.
+    """
+
+    def __init__(self, register: int | None = STATUS) -> None:
+        self.levels = np.full(BLADES, REST, np.uint8)
+        self.powered = True
+        self.encoders: tuple[int, int, int, int] = (0, 0, 0, 0)
+        self.buttons = 0
+        self.interface = True
+        self.encoder_errors = 0
+        self.register = register
+        self.fulls = self.raws = self.foreign = self.beyond = 0
+        self._page = 0
+        self._dio_out = DIO_OUT
+        self._registers: dict[tuple[int, int], int] = {}
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether all blades are at rest."""
+        return bool((self.levels >= REST).all())
+
+    @property
+    def status(self) -> int:
+        """Status word of the controller."""
+        return _VERSION | (POWERED_ON if self.powered else POWERED_OFF) | self._page * PAGE
+
+    def receive(self, datagram: bytes) -> bytes | None:
+        """Take a datagram; give the answer, or None if it is no request."""
+        request = parse_request(datagram)
+        if request is None:
+            self.foreign += 1
+            return None
+        if request.kind == RAW:
+            self.raws += 1
+            return pack_raw_answer(self._do(request))
+        self._dio_out = request.dio_out
+        if request.kind == FULL:
+            self.fulls += 1
+            self._page ^= 1
+            self.levels[:] = np.frombuffer(request.blades, np.uint8)
+            self.beyond += int((self.levels > REST).sum())
+        return pack_answer(self._answer(request.sequence), FULLR0 + self._page)
+
+    def _answer(self, sequence: int) -> Answer:
+        interface = _VERSION | self.encoder_errors if self.interface else NO_IO
+        return Answer(
+            sequence=sequence,
+            dio_in=self._dio_in,
+            controller=self.status,
+            interface=interface,
+            encoders=self.encoders,
+            adc=(_HALF, _HALF, _HALF, _HALF),
+        )
+
+    @property
+    def _dio_in(self) -> int:
+        if not self.interface:
+            return 0
+        pressed = sum(mask for n, mask in enumerate(BUTTONS) if self.buttons >> n & 1)
+        return NO_BUTTON & ~pressed
+
+    def _do(self, request: LateroRequest) -> RawAnswer:
+        """Read or write a register; one that is not there holds what was written to it."""
+        board = request.command & (CONTROLLER | INTERFACE)
+        at = board, request.address
+        if request.command & WRITE:
+            self._registers[at] = request.data
+            if at == (CONTROLLER, self.register):
+                if request.data & POWERED_OFF:
+                    self.powered = False
+                elif request.data & POWERED_ON:
+                    self.powered = True
+            elif at == (INTERFACE, DIO):
+                self._dio_out = request.data
+        content = self._registers.get(at, 0)
+        if request.command & READ:
+            if at == (CONTROLLER, self.register):
+                content = self.status
+            elif at == (INTERFACE, DIO):
+                content = self._dio_in
+        return RawAnswer(request.sequence, request.command, request.address, content)
