@@ -29,8 +29,8 @@ def calibrating(spec):
 
         def press(keys, *said):
             terminal.type(keys)
-            for sentence in said:
-                terminal.until(rf"(^|\n){re.escape(sentence)}\r\n")
+            lines = r"\r\n(?:[\s\S]*\n)?".join(map(re.escape, said))
+            terminal.until(rf"(^|\n){lines}\r\n")
 
         yield terminal, press
 
@@ -67,8 +67,7 @@ def test_a_round_is_led_left_taken_up_and_kept(spec, tmp_path, call):
         {"row": 1, "column": 2, "state": "weak", "inverted": True, "gain": 0.9},
     ]
     with calibrating(spec) as (terminal, press):
-        terminal.until("going on: tried 2 of 3\r\n")
-        terminal.until("actuator 3 of 3: row 1, column 3\r\n")
+        terminal.until(r"going on: tried 2 of 3\r\n\S*actuator 3 of 3: row 1, column 3\r\n")
         press("d", "dead: row 1, column 3", "kept: 3 tried")
         assert terminal.end() == 0
     shown = call("device", "calibrate", spec, "--show")
