@@ -14,6 +14,7 @@ PARTS = (
     "engine",
     "tick",
     "faults",
+    "latero",
     "jumps",
     "sessions",
     "adaptive",

@@ -81,6 +81,8 @@ class Device(ABC):
         None if it does not tell.
     particulars : Particulars or None
         What else the device says of itself.
+    ahead_ns : int
+        How long before each tick `ask` is called; 0 if it never is.
     """
 
     rested = 0
@@ -90,6 +92,7 @@ class Device(ABC):
     acknowledged_ns: int | None = None
     watchdog_trips: int | None = None
     particulars: Particulars | None = None
+    ahead_ns = 0
     _closed = False
 
     @property
@@ -121,6 +124,9 @@ class Device(ABC):
     def take_events(self) -> Sequence[Event]:
         """Events since the last call, of the kinds of `vbraille.devices.events`."""
         return ()
+
+    def ask(self) -> None:
+        """Ask the device where it is, for the next tick to read; this never waits."""
 
     def lend(self) -> Lent | None:
         """What the engine needs to do steady ticks by itself; None if it must call the device.

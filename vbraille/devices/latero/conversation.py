@@ -63,6 +63,11 @@ class LateroConversation(LateroHearing):
             self.blades.ramp(now_ns)
         self._full_due = True
 
+    def ask(self, now_ns: int) -> None:
+        """Ask where the array is, by the frame that is shown, for the next one to be made."""
+        self._now_ns = now_ns
+        self._full_due = self.stage is LateroStage.LIVE
+
     def rest(self, now_ns: int) -> None:
         """Take the blades to rest along the ramp; frames after that fade in."""
         self._now_ns = now_ns

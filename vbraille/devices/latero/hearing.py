@@ -181,7 +181,10 @@ class LateroHearing:
             self.foreign += 1
             self.other_version += answer is Foreign.VERSION
             return
-        if self.numbering.judge(answer.sequence, now_ns, self._late_ns) is not Fate.NEW:
+        # Where no frame is made of it, an old answer says what is to be known as well as a new one.
+        matters = self.stage is LateroStage.LIVE and isinstance(answer, Answer)
+        late_ns = self._late_ns if matters else SILENCE_NS
+        if self.numbering.judge(answer.sequence, now_ns, late_ns) is not Fate.NEW:
             return
         self._heard_ns = now_ns
         if isinstance(answer, RawAnswer):
