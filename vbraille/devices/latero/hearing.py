@@ -159,7 +159,7 @@ class LateroHearing:
         self._notices = Notices()
         self._buttons = tuple(Debounced() for _ in BUTTONS)
         self._pose: Pose | None = None
-        self._now_ns = self._heard_ns = self._begun_ns = now_ns
+        self._now_ns = self._heard_ns = self._begun_ns = self._tended_ns = now_ns
         self._asked_ns = self._shown_ns = self._raw_ns = now_ns - SILENCE_NS
         self._frame = -1  # number of the request that had the last frame
         self._resting: int | None = None  # number of the first that had all blades at rest
