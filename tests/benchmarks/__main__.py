@@ -15,6 +15,7 @@ PARTS = (
     "tick",
     "protocols",
     "faults",
+    "latero",
     "jumps",
     "sessions",
     "adaptive",

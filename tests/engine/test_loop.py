@@ -99,6 +99,25 @@ def test_ticks_stand_on_absolute_deadlines(clock, device):
     assert (loop.tally.ticks, loop.tally.late) == (500, 0)
 
 
+def test_a_device_that_wants_it_is_asked_ahead_of_each_tick(clock):
+    asked = []
+
+    class Asked(Recording):
+        ahead_ns = 300_000
+
+        def ask(self):
+            asked.append(clock.now_ns())
+
+    device = Asked(clock)
+    loop = Loop(device, clock)
+    begun_ns = clock.now_ns()
+    for _ in range(5):
+        loop.tick()
+    assert asked[1:] == [begun_ns + n * MS - 300_000 for n in range(1, 5)]
+    assert len(device.sent) == 5
+    assert loop.late == 0
+
+
 def test_a_late_tick_is_counted_and_never_chased(clock, device):
     loop = Loop(device, clock)
     run(loop, 0.01)

@@ -94,6 +94,8 @@ class Device(ABC):
         Number of this very device, which tells it from others of its name; empty if none is known.
     calibration : Calibration or None
         What `correct` was told last, and makes up for.
+    ahead_ns : int
+        How long before each tick `ask` is called; 0 if it never is.
     """
 
     rested = 0
@@ -105,6 +107,7 @@ class Device(ABC):
     particulars: Particulars | None = None
     serial_number = ""
     calibration: Calibration | None = None
+    ahead_ns = 0
     _closed = False
     _correction: Correction | None = None
 
@@ -137,6 +140,9 @@ class Device(ABC):
     def take_events(self) -> Sequence[Event]:
         """Events since the last call, of the kinds of `vbraille.devices.events`."""
         return ()
+
+    def ask(self) -> None:
+        """Ask the device where it is, for the next tick to read; this never waits."""
 
     def lend(self) -> Lent | None:
         """What the engine needs to do steady ticks by itself; None if it must call the device.

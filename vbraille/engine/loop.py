@@ -180,6 +180,9 @@ class Loop:
         DeviceError
             If the device is gone, or says that its carriage is where none can be.
         """
+        if self.device.ahead_ns:
+            self.clock.sleep_until_ns(self._deadline_ns - self.device.ahead_ns)
+            self.device.ask()
         self.clock.sleep_until_ns(self._deadline_ns)
         now_ns = self.clock.now_ns()
         self._tick(now_ns, now_ns - self._deadline_ns, None)

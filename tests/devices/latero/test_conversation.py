@@ -228,6 +228,25 @@ def test_a_client_without_frames_asks_where_the_array_is():
     assert (np.array(talk.levels) == 150).all()
 
 
+def test_a_client_that_did_not_ask_takes_nobody_for_silent():
+    talk = Talk()
+    talk.frame = None
+    talk.run(50)
+    talk.now_ns += 400 * MS
+    talk.run(50)
+    assert talk.events == []
+    assert talk.conversation.stage is LateroStage.LIVE
+
+
+def test_a_client_asks_ahead_by_the_frame_that_is_shown():
+    talk = Talk().run(50)
+    fulls = talk.board.fulls
+    talk.conversation.ask(talk.now_ns + MS // 2)
+    talk.exchange()
+    assert talk.board.fulls == fulls + 1
+    assert (talk.board.levels == SHOWN).all()
+
+
 def test_the_buttons():
     talk = Talk().run(50)
     talk.board.buttons = 0b10

@@ -59,7 +59,7 @@ def test_blades_go_along_the_ramp_and_power_off():
     took_ms = guarded.act()
     assert guarded.latero.at_rest
     assert not guarded.latero.powered
-    assert 20 <= took_ms <= 26
+    assert 19 <= took_ms <= 26
     levels = np.array([list(one.blades) for one in guarded.sent if one.kind == FULL])
     steps = np.diff(levels.astype(int), axis=0)
     assert steps.min() >= 0

@@ -159,6 +159,11 @@ def of_another_version(request):
     return answer[:1] + b"\x21" + answer[2:]
 
 
+def without_numbers(request):
+    answer = LateroBoard().receive(request)
+    return answer[:3] + b"\x80\x00" + answer[5:]
+
+
 @pytest.mark.parametrize(
     ("make", "why"),
     [
@@ -166,9 +171,10 @@ def of_another_version(request):
         (lambda request: request, "is no Latero"),
         (lambda _: b"SSH-2.0-OpenSSH_9.2", "is no Latero"),
         (of_another_version, "another version of its protocol than 1.1"),
+        (without_numbers, "does not repeat the numbers"),
         (without_interface, "I/O interface .* is unplugged or has no power"),
     ],
-    ids=["nobody", "an echo", "another service", "another version", "without its interface"],
+    ids=["nobody", "an echo", "another service", "another version", "no numbers", "no interface"],
 )
 def test_who_else_may_answer_is_said_in_a_sentence(make, why):
     peer = Peer(make)

@@ -38,7 +38,7 @@ HANDS = (
     "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
     "wander:SPEED goes about without reading, and still moves only in the live view of --monitor"
 )
-SPEC = "Name the device, such as serial:/dev/ttyACM0, or sim for a simulated one"
+SPEC = "Name the device, such as serial:/dev/ttyACM0, latero:HOST, or sim for a simulated one"
 
 
 def text(parser: ArgumentParser, *, optional: bool = False, file: bool = True) -> None:

@@ -36,6 +36,7 @@ from vbraille.devices.latero.hearing import (
     RAMP_ASK_NS,
     RAW_NS,
     SILENCE_NS,
+    STALL_NS,
     LateroHearing,
     LateroStage,
     unpowered,
@@ -62,6 +63,11 @@ class LateroConversation(LateroHearing):
         else:
             self.blades.ramp(now_ns)
         self._full_due = True
+
+    def ask(self, now_ns: int) -> None:
+        """Ask where the array is, by the frame that is shown, for the next one to be made."""
+        self._now_ns = now_ns
+        self._full_due = self.stage is LateroStage.LIVE
 
     def rest(self, now_ns: int) -> None:
         """Take the blades to rest along the ramp; frames after that fade in."""
@@ -116,6 +122,9 @@ class LateroConversation(LateroHearing):
     def tend(self, now_ns: int) -> None:
         """Mind what time brings: silence, the ramp, and what must be asked again."""
         self._now_ns = now_ns
+        if now_ns - self._tended_ns >= STALL_NS:
+            self._heard_ns = now_ns  # nobody has asked meanwhile
+        self._tended_ns = now_ns
         stage = self.stage
         if stage is LateroStage.PROBING and now_ns - self._begun_ns > PROBE_NS:
             self._do_without_power()

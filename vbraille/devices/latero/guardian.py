@@ -125,7 +125,8 @@ class Guardian:
             return None
         if now_ns < self._due_ns:
             return self._due_ns
-        levels = bytes(ramped(level, passed_ns) for level in self._from)
+        # The first step is one: what was to be done after 50 ms is not put off by another.
+        levels = bytes(ramped(level, passed_ns + STEP_NS) for level in self._from)
         self._request[LEVELS_AT : LEVELS_AT + BLADES] = levels
         self._number(self._request)
         self._board.levels[:] = levels

@@ -159,7 +159,7 @@ class LateroHearing:
         self._notices = Notices()
         self._buttons = tuple(Debounced() for _ in BUTTONS)
         self._pose: Pose | None = None
-        self._now_ns = self._heard_ns = self._begun_ns = now_ns
+        self._now_ns = self._heard_ns = self._begun_ns = self._tended_ns = now_ns
         self._asked_ns = self._shown_ns = self._raw_ns = now_ns - SILENCE_NS
         self._frame = -1  # number of the request that had the last frame
         self._resting: int | None = None  # number of the first that had all blades at rest
@@ -181,7 +181,10 @@ class LateroHearing:
             self.foreign += 1
             self.other_version += answer is Foreign.VERSION
             return
-        if self.numbering.judge(answer.sequence, now_ns, self._late_ns) is not Fate.NEW:
+        # Where no frame is made of it, an old answer says what is to be known as well as a new one.
+        matters = self.stage is LateroStage.LIVE and isinstance(answer, Answer)
+        late_ns = self._late_ns if matters else SILENCE_NS
+        if self.numbering.judge(answer.sequence, now_ns, late_ns) is not Fate.NEW:
             return
         self._heard_ns = now_ns
         if isinstance(answer, RawAnswer):

@@ -41,6 +41,8 @@ DISPLAY: Final = Display(
     turns=True,
     contactor_mm=(0.5, 1.4),
 )
+# A Latero answers in less; where it does not, the answer to the last frame is there.
+AHEAD_NS: Final = 300_000
 _ROOM_BYTES: Final = 256
 # Answers that are taken at a time: those of a stopped client wait in the socket.
 _MOST_ANSWERS: Final = 256
@@ -59,7 +61,7 @@ class LateroDevice(Device):
     conversation
         The talk with it, in which it has answered.
     guarding
-        Its guardian, which watches already.
+        The guardian of it, which watches already.
     kept
         Socket that keeps other programs away; it is closed at the end.
     now_ns, pause
@@ -67,6 +69,7 @@ class LateroDevice(Device):
     """
 
     acknowledges = True
+    ahead_ns = AHEAD_NS
 
     def __init__(
         self,
@@ -139,6 +142,13 @@ class LateroDevice(Device):
         self._send_due(now_ns)
         self._copy()
         return self.conversation.take_pose()
+
+    def ask(self) -> None:
+        """Ask where the array is: the answer to the last frame would be a whole tick old."""
+        now_ns = self._now_ns()
+        self._mind_stall(now_ns)
+        self.conversation.ask(now_ns)
+        self._send_due(now_ns)
 
     def rest(self) -> None:
         """Bring the blades to rest, which takes 20 ms: a frame of rest would be a jump."""

@@ -188,7 +188,12 @@ def _no_answer(conversation: LateroConversation, place: LateroAddress) -> Device
             f"the Latero at {place.text} speaks another version of its protocol than 1.1, which is "
             f"the only one that vbraille knows; it cannot be read on"
         )
-    if conversation.foreign or conversation.numbering.unasked:
+    if conversation.numbering.unasked and not conversation.foreign:
+        return DeviceError(
+            f"the Latero at {place.text} does not repeat the numbers of requests, so that a late "
+            f"answer cannot be told from a new one; it cannot be read on"
+        )
+    if conversation.foreign:
         return DeviceError(
             f"what answers at {place.text} is no Latero; choose another host or port"
         )
