@@ -53,7 +53,7 @@ def main() -> None:
     gc.disable()
     read_ns = [0] * (2 * steps)
     taken_ms: list[float] = []
-    tick = 0
+    tick, shown = 0, board.levels.astype(int)
     while True:
         readable = select.select((line_in, _STDIN), (), ())[0]
         if _STDIN in readable:
@@ -68,8 +68,9 @@ def main() -> None:
             line_in.sendto(answer, host)
         if request[2] != FULL:
             continue
-        if not board.at_rest:
-            shown = board.levels.astype(int)
+        shown, before = board.levels.astype(int), shown
+        # A question between two ticks bears the frame that is shown already.
+        if not board.at_rest and (shown != before).any():
             backs = range(1, min(_MOST_TICKS, tick) + 1)
             off = [int(np.abs(levels[(tick - back) % (2 * steps)] - shown).max()) for back in backs]
             best = int(np.argmin(off))
