@@ -122,7 +122,7 @@ def factor(
     levels = sorted(set(names), key=key)
     place = {name: number for number, name in enumerate(levels)}
     own = np.array([place[name] for name in names], np.int64)
-    return pd.Categorical.from_codes(own[at], levels, ordered=True)
+    return pd.Categorical.from_codes(own[at], pd.Index(levels, dtype=object), ordered=True)
 
 
 def codes(levels: pd.Series) -> NDArray[np.int64]:
