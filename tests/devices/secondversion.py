@@ -2,7 +2,7 @@
 
 It shares nothing with vbraille, and so tells whether the page is complete: nothing but Python's
 own library is imported. It has two axes, an angle, buttons and knobs; it keeps what it took, each
-FRAME beside the STATE that it had sent last, so that a test can say what lay under the finger.
+FRAME beside the pose that it had told last, so that a test can say what lay under the finger.
 """
 
 from __future__ import annotations
@@ -14,15 +14,18 @@ import threading
 import time
 import tty
 import zlib
-from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import pi
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 CRC_OF_ALL = 0x2144DF1C  # what CRC-32 gives over a body and its own CRC
 WATCHDOG_US = 50_000
 RAMP_US = 20_000
-U16, U32 = 0xFFFF, 0xFFFFFFFF
 
 HELLO, FRAME, REST = 0x01, 0x02, 0x03
 INFO, WATCHDOG, STATE2 = 0x81, 0x83, 0x85
@@ -82,8 +85,7 @@ def text(words: str) -> bytes:
     return bytes([len(spelt)]) + spelt
 
 
-@dataclass(frozen=True, slots=True)
-class Pose:
+class Pose(NamedTuple):
     """Where the array's centre is, in mm, how far it is turned against the clock, in radians."""
 
     x_mm: float
@@ -92,24 +94,16 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
-class Controls:
-    """Which buttons are pressed (bit 0 the first), and where each knob stands (0 to 255)."""
-
-    buttons: int = 0
-    knobs: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
 class Make:
     """What a device of two axes with absolute encoders is, as INFO2 tells it."""
 
-    rows: int
-    columns: int
-    column_pitch_nm: int
-    row_pitch_nm: int
+    rows: int = 6
+    columns: int = 10
+    column_pitch_nm: int = 1_200_000
+    row_pitch_nm: int = 1_800_000
     rest_side: int = 1
     top_level: int = 1023
-    rate_hz: int = 500
+    rate_hz: int = 1000
     slew_per_s: int = 0
     travel_um: int = 300_000
     counts_per_m: int = 200_000
@@ -146,6 +140,12 @@ class Make:
     def packed_bytes(self) -> int:
         """How many bytes the levels of a FRAME take."""
         return (self.actuators * self.level_bits + 7) // 8
+
+    @property
+    def room(self) -> int:
+        """The most bytes of a FRAME or a HELLO on the line, without the zero."""
+        whole = 3 + self.packed_bytes + 4
+        return max(whole + whole // 254 + 1, 7)
 
     @property
     def rest(self) -> tuple[int, ...]:
@@ -212,209 +212,160 @@ class Make:
         return tuple(stream >> shift & mask for shift in shifts)
 
 
-@dataclass(frozen=True, slots=True)
-class Taken:
-    """A FRAME that was taken, and the pose that the STATE sent last had told by then."""
+class Taken(NamedTuple):
+    """A FRAME that was taken, and the pose that the STATE before it told."""
 
     time_us: int
-    sequence: int
-    pose: Pose | None
+    pose: Pose
     levels: tuple[int, ...]
 
 
-@dataclass(slots=True)
-class Controller:
-    """The page's minimal firmware: bytes and times go in, and bytes come out."""
+class SecondVersion:
+    """The page's minimal firmware: bytes and times go in, and bytes come out.
 
-    make: Make
-    hand: Callable[[int], tuple[Pose, Controls]]
-    send: Callable[[bytes], bool]
-    buffer: bytearray = field(default_factory=bytearray)
-    levels: tuple[int, ...] = ()
-    ramp_from: tuple[int, ...] = ()
-    ramp_began: int = 0
-    ramping: bool = False
-    resting: bool = True
-    greeted: bool = False
-    armed: bool = False
-    tripped: bool = False
-    report: bool = False
-    trips: int = 0
-    dropped: int = 0
-    state_sequence: int = 0
-    frame_sequence: int = 0
-    last_frame: int = 0
-    next_state: int = 0
-    told: Pose | None = None
-    taken: list[Taken] = field(default_factory=list)
+    Parameters
+    ----------
+    _info
+        What another bench's controller is made of; this one is made as it is.
+    make
+        What the device is.
+    """
 
-    def __post_init__(self) -> None:
-        self.levels = self.ramp_from = self.make.rest
+    def __init__(self, _info: object = None, make: Make | None = None) -> None:
+        self.make = make or Make()
+        self.info = SimpleNamespace(version=2)
+        self.buttons, self.knobs = 0, bytes(4)
+        self.trips = self.dropped = 0
+        self.taken: list[Taken] = []
+        self.levels = self._from = self.make.rest
+        self._greeted = self._armed = self._tripped = False
+        self._resting, self._ramp_us = True, None
+        self._held = b""
+        self._sequence = self._frame = self._last_us = 0
+        self._told = Pose(0.0, 0.0)
 
-    @property
-    def period_us(self) -> int:
-        """How long it is from a STATE to the next, in µs."""
-        return 1_000_000 // self.make.rate_hz
+    def receive(self, chunk: bytes, now_us: int) -> bytes:
+        """Take bytes as they come, and answer what whole frames of them say."""
+        *lines, self._held = (self._held + chunk).split(b"\0")
+        self._held = self._held[: self.make.room + 1]
+        return b"".join(self._obey(line, now_us) for line in lines if line)
 
-    @property
-    def room(self) -> int:
-        """How many bytes of a FRAME or HELLO come before the zero, at most."""
-        whole = 3 + self.make.packed_bytes + 4
-        return max(whole + whole // 254 + 1, 7)
-
-    def timer(self, now: int) -> None:
-        """Guard, ramp and tell: what the timer's interrupt does at a time in µs."""
-        if self.armed and now - self.last_frame & U32 >= WATCHDOG_US:
-            self.tripped = self.report = True
+    def tick(self, now_us: int, way_mm: float, y_mm: float = 0.0, theta: float = 0.0) -> bytes:
+        """Guard, ramp and tell, once in a period; the way is from the left stop."""
+        said = b""
+        if self._armed and now_us - self._last_us >= WATCHDOG_US:
             self.trips += 1
-            self.go_to_rest(now)
-        if self.ramping:
-            gone = now - self.ramp_began & U32
-            self.ramping = gone < RAMP_US
-            self.levels = tuple(
-                round(start + (rest - start) * min(gone, RAMP_US) / RAMP_US)
-                for start, rest in zip(self.ramp_from, self.make.rest, strict=True)
-            )
-        if self.report:
-            self.report = False
-            if self.greeted:
-                self.tell_watchdog()
-        late = now - self.next_state & U32
-        if late < U32 // 2:
-            periods = 1 + late // self.period_us
-            self.next_state = self.next_state + periods * self.period_us & U32
-            self.state_sequence = self.state_sequence + periods & U16
-            if self.greeted:
-                self.tell_state(now)
+            self._rest(now_us)
+            self._tripped = True
+            said = self._watchdog()
+        if self._ramp_us is not None:
+            gone = min((now_us - self._ramp_us) / RAMP_US, 1)
+            ends = zip(self._from, self.make.rest, strict=True)
+            self.levels = tuple(round(start + (rest - start) * gone) for start, rest in ends)
+            if gone == 1:
+                self._ramp_us = None
+        self._sequence = (self._sequence + 1) % 2**16
+        counts = self.make.counts(Pose(way_mm - self.make.before_mm, y_mm, theta))
+        self._told = self.make.pose(*counts)
+        flags = PLACED | RESTING * self._resting | TRIPPED * self._tripped
+        head = self._sequence, now_us % 2**32, counts[0], self._frame, flags, self.buttons
+        state = struct.pack("<BHIIHBBh2I4s", STATE2, *head, NO_FORCE, *counts[1:], self.knobs)
+        return said + line_of(state) if self._greeted else b""
 
-    def tell_state(self, now: int) -> None:
-        """Send STATE2 of this moment."""
-        pose, controls = self.hand(now)
-        counts = self.make.counts(pose)
-        flags = PLACED | RESTING * self.resting | TRIPPED * self.tripped
-        body = struct.pack(
-            "<BHIIHBBhII4s", STATE2, self.state_sequence, now & U32, counts[0],
-            self.frame_sequence, flags, controls.buttons, NO_FORCE, *counts[1:],
-            bytes(controls.knobs).ljust(4, b"\0"),
-        )  # fmt: skip
-        if self.send(line_of(body)):
-            self.told = self.make.pose(*counts)
+    def _obey(self, line: bytes, now_us: int) -> bytes:
+        body = body_of(line) if len(line) <= self.make.room else None
+        if body is None:
+            self.dropped += 1
+        elif body[0] == HELLO and body[1:2] > b"\0":
+            self._rest(now_us)
+            self._greeted = body[1] == 2
+            return line_of(self.make.info()) + self._watchdog()
+        elif body[0] == REST:
+            self._rest(now_us)
+        elif body[0] != FRAME:
+            self.dropped += 1
+        elif self._greeted:
+            return self._show(body, now_us)
+        return b""
 
-    def tell_watchdog(self) -> None:
-        """Send WATCHDOG."""
-        self.send(line_of(struct.pack("<BII", WATCHDOG, self.trips & U32, self.dropped & U32)))
+    def _show(self, body: bytes, now_us: int) -> bytes:
+        fits = len(body) == 3 + self.make.packed_bytes
+        wanted = self.make.levels(body[3:]) if fits else ()
+        if not wanted or max(wanted) > self.make.top_level:
+            self.dropped += 1
+            return b""
+        furthest = max(abs(a - b) for a, b in zip(wanted, self.make.rest, strict=True))
+        if self._ramp_us is not None or (self._resting and 20 * furthest > self.make.top_level):
+            return b""
+        sequence = int.from_bytes(body[1:3], "little")
+        if not self._resting and not 1 <= (sequence - self._frame) % 2**16 <= 32767:
+            self.dropped += 1
+            return b""
+        told, self._tripped = self._tripped, False
+        self.levels, self._frame, self._last_us = wanted, sequence, now_us
+        self._resting, self._armed = False, True
+        self.taken.append(Taken(now_us, self._told, wanted))
+        return self._watchdog() if told else b""
 
-    def go_to_rest(self, now: int) -> None:
-        """Begin the ramp, unless it has begun or all is at rest."""
-        self.armed = False
-        self.resting = True
-        if not self.ramping and self.levels != self.make.rest:
-            self.ramping = True
-            self.ramp_began = now
-            self.ramp_from = self.levels
+    def _rest(self, now_us: int) -> None:
+        self._armed = self._tripped = False
+        self._resting = True
+        if self._ramp_us is None and self.levels != self.make.rest:
+            self._ramp_us, self._from = now_us, self.levels
 
-    def receive(self, line: Iterable[int], now: int) -> None:
-        """Take bytes as they come, and do what whole frames of them say."""
-        for byte in line:
-            if byte:
-                if len(self.buffer) <= self.room:
-                    self.buffer.append(byte)
-                continue
-            if self.buffer:
-                body = body_of(bytes(self.buffer)) if len(self.buffer) <= self.room else None
-                if body is None or not self.obey(body, now):
-                    self.dropped += 1
-            self.buffer.clear()
-
-    def obey(self, body: bytes, now: int) -> bool:
-        """Do what a message says; False if it is to be counted as dropped."""
-        if body[0] == HELLO and len(body) >= 2 and body[1] >= 1:
-            self.tripped = False
-            self.go_to_rest(now)
-            self.greeted = body[1] == 2
-            self.send(line_of(self.make.info()))
-            self.tell_watchdog()
-            return True
-        if body[0] == REST:
-            self.tripped = False
-            self.go_to_rest(now)
-            return True
-        return body[0] == FRAME and (not self.greeted or self.take(body, now))
-
-    def take(self, body: bytes, now: int) -> bool:
-        """Show a FRAME if it may be shown; False if it is to be counted as dropped."""
-        if len(body) != 3 + self.make.packed_bytes:
-            return False
-        wanted = self.make.levels(body[3:])
-        if max(wanted) > self.make.top_level:
-            return False
-        sequence = body[1] | body[2] << 8
-        if self.ramping:
-            return True
-        if self.resting:
-            away = max(abs(a - b) for a, b in zip(wanted, self.make.rest, strict=True))
-            if 20 * away > self.make.top_level:
-                return True
-        elif not 1 <= (sequence - self.frame_sequence & U16) <= 32767:
-            return False
-        told = self.tripped
-        self.levels = wanted
-        self.frame_sequence = sequence
-        self.last_frame = now
-        self.armed = True
-        self.resting = self.tripped = False
-        self.taken.append(Taken(now, sequence, self.told, wanted))
-        if told:
-            self.tell_watchdog()
-        return True
-
-
-def microseconds() -> int:
-    """Return the device's clock."""
-    return time.monotonic_ns() // 1000 & U32
+    def _watchdog(self) -> bytes:
+        return line_of(struct.pack("<B2I", WATCHDOG, self.trips, self.dropped))
 
 
 class Cable:
-    """A pseudo-terminal with the device at its end, which serves it in a thread of its own."""
+    """A pseudo-terminal with a device at its end, which lives in a thread of its own.
 
-    def __init__(self, make: Make, hand: Callable[[int], tuple[Pose, Controls]]) -> None:
-        self.master, self.slave = os.openpty()
-        tty.setraw(self.slave)
-        os.set_blocking(self.master, False)
-        self.path = os.ttyname(self.slave)
-        self.waiting = bytearray()
-        self.controller = Controller(make, hand, self.send)
-        self.unplugged = threading.Event()
-        self.thread = threading.Thread(target=self.serve, daemon=True)
+    Parameters
+    ----------
+    device
+        What is at its end.
+    hand
+        Where the array is at a time in s since the cable was plugged in: the way from the left
+        stop and y, in mm, and the angle in radians.
+    """
 
-    def send(self, line: bytes) -> bool:
-        """Queue a frame if there is room for all of it; one alone always has room."""
-        if len(self.waiting) > 256:
-            return False
-        self.waiting += line
-        return True
+    def __init__(
+        self, device: SecondVersion, hand: Callable[[float], tuple[float, float, float]]
+    ) -> None:
+        self.device, self.hand = device, hand
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self.path = os.ttyname(self._slave)
+        self._waiting = b""
+        self._pulled = threading.Event()
+        self._thread = threading.Thread(target=self._serve, daemon=True)
 
-    def serve(self) -> None:
-        """Read, guard and write until the cable is pulled."""
-        controller = self.controller
-        controller.next_state = microseconds()
-        while not self.unplugged.is_set():
-            due = controller.next_state - microseconds() & U32
-            wait_s = due / 1e6 if due < controller.period_us else 0.0
-            select.select([self.master], [self.master] if self.waiting else [], [], wait_s)
-            controller.timer(microseconds())
-            with suppress(BlockingIOError):
-                controller.receive(os.read(self.master, 4096), microseconds())
-            with suppress(BlockingIOError):
-                if self.waiting:
-                    del self.waiting[: os.write(self.master, self.waiting)]
+    def _serve(self) -> None:
+        begun_s = due_s = time.monotonic()
+        while not self._pulled.is_set():
+            writable = [self._master] if self._waiting else []
+            wait_s = max(due_s - time.monotonic(), 0.0)
+            heard = select.select([self._master], writable, [], wait_s)[0]
+            now_s = time.monotonic()
+            said = b""
+            if now_s >= due_s:  # before what came is read, as an interrupt would
+                due_s = max(due_s + 1 / self.device.make.rate_hz, now_s)
+                said = self.device.tick(int(now_s * 1e6), *self.hand(now_s - begun_s))
+            if heard:
+                said += self.device.receive(os.read(self._master, 4096), int(now_s * 1e6))
+            if len(self._waiting) < 500:  # what there is no room for is dropped whole
+                self._waiting += said
+            if self._waiting:
+                with suppress(BlockingIOError):
+                    self._waiting = self._waiting[os.write(self._master, self._waiting) :]
 
-    def __enter__(self) -> Cable:
-        self.thread.start()
+    def __enter__(self) -> Self:
+        self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.unplugged.set()
-        self.thread.join()
-        os.close(self.slave)
-        os.close(self.master)
+        self._pulled.set()
+        self._thread.join()
+        os.close(self._slave)
+        os.close(self._master)
