@@ -17,6 +17,7 @@ from vbraille.wording import spelled
         ("brlapi:a b:1", "after brlapi: there must be a host and a number"),
         ("brlapi:host:x", "after brlapi: there must be a host and a number"),
         ("dotpad", "after dotpad: there must be the path of a serial port, as in dotpad:/dev/tty"),
+        ("hid:", "after hid: there must be a path, as in hid:/dev/hidraw0, or give hid for"),
         ("dotpad:/dev/ttyUSB0?baud=9", "after dotpad: there must be the path of a serial port"),
     ],
 )

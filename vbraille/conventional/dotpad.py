@@ -71,7 +71,7 @@ class DotPadDisplay:
         self._down: dict[int, frozenset[int]] = {}  # keys that are down, by their command
         self._pressed: list[KeyPressed] = []
         self._lines = DotPadLines(0.0)
-        self._lines_of: Callable[[bytes], Mapping[int, bytes]] = dict
+        self._lines_of: Callable[[bytes], Mapping[int, bytes]] = lambda _: {}
         try:
             # An inter-byte timeout of 0 has a read tell a line that was hung up from a quiet one.
             self._port = Serial(

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 BRLAPI: Final = "brlapi"
 DOT_PAD: Final = "dotpad"
+HID: Final = "hid"
 _ADDRESS: Final = re.compile(r"[^\s:]*:[0-9]{1,5}|/\S+|")
 _PINS: Final = "?pins"
 
@@ -31,11 +32,11 @@ def opener_of(spec: str) -> Callable[[], CellDriver]:
         If the text is no spec, or what the display needs is not installed.
     """
     kind, _, address = spec.partition(":")
-    openers = {BRLAPI: _brlapi, DOT_PAD: _dot_pad}
+    openers = {BRLAPI: _brlapi, DOT_PAD: _dot_pad, HID: _hid}
     if kind not in openers:
         raise InputError(
             f"{setting('also')} is {spec!r}; give brlapi, brlapi:HOST:N for BRLTTY on another "
-            f"machine, or dotpad:PORT for a Dot Pad"
+            f"machine, dotpad:PORT for a Dot Pad, or hid for a display with USB's own protocol"
         )
     return openers[kind](spec, address)
 
@@ -65,3 +66,14 @@ def _dot_pad(spec: str, address: str) -> Callable[[], CellDriver]:
     from vbraille.conventional.dotpad import DotPadDisplay
 
     return partial(DotPadDisplay, port, pins=port != address)
+
+
+def _hid(spec: str, address: str) -> Callable[[], CellDriver]:
+    if spec != HID and not address.startswith("/"):
+        raise InputError(
+            f"{setting('also')} is {spec!r}; after hid: there must be a path, as in "
+            f"hid:/dev/hidraw0, or give hid for the first display that there is"
+        )
+    from vbraille.conventional.hid import open_hid
+
+    return partial(open_hid, address)
