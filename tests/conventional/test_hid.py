@@ -2,6 +2,7 @@
 
 import os
 import socket
+from pathlib import Path
 
 import pytest
 
@@ -70,7 +71,7 @@ def test_what_is_not_there_or_another_thing(tmp_path):
 
 
 def test_the_kernel_is_asked_with_room_for_any_descriptor():
-    with open(os.devnull, "rb") as file:
+    with Path(os.devnull).open("rb") as file:
         for question, size in ((SIZE, 4), (DESCRIPTOR, 4100), (NAME, 256)):
             with pytest.raises(OSError, match="Inappropriate ioctl"):
                 asked(file.fileno(), question, bytes(size))
