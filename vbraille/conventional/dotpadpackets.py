@@ -115,7 +115,7 @@ class DotPadBoard:
     Parameters
     ----------
     text, graphic
-        Its line of text and its area of pins; None where it has none.
+        The area of text and that of pins; None where it has none.
     cell_height
         Rows of pins in a line: 3 or 4.
     """
