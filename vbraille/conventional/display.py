@@ -164,9 +164,8 @@ class ConventionalDisplay:
         if self._left is None:
             return
         try:
-            os.write(
-                self._orders.fileno(), self._left
-            )  # a pipe takes so little whole or not at all
+            # A pipe takes so little whole, or not at all.
+            os.write(self._orders.fileno(), self._left)
         except BlockingIOError:
             return
         except (OSError, ValueError):
