@@ -126,7 +126,9 @@ def pilot(
         If the work ended early.
     """
     if not 1 <= participants <= MOST_PILOTS:
-        raise InputError(f"{setting('participants')} is {participants}; it must be 1 to 500")
+        raise InputError(
+            f"{setting('participants')} is {participants}; it must be 1 to {MOST_PILOTS}"
+        )
     answers = f"simulated:{noise:g}" + ("" if skin == SKINS[0] else f":{skin}")
     tasks = [
         PilotTask(
