@@ -154,9 +154,7 @@ def pilot(
     from vbraille.analysis.report.written import write_report
 
     results = marked(analyse([task.folder for task in tasks], seed=seed))
-    for path in write_report(results, folder / REPORT):
-        if path.suffix == ".csv":
-            write_file(path, mark_rows(path.read_text("utf-8")).encode(), replace=True)
+    write_report(results, folder / REPORT, mark=mark_rows)
     return folder / REPORT
 
 
