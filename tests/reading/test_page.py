@@ -169,6 +169,40 @@ def test_below_the_last_line_a_finger_that_stays_turns_the_page_and_one_that_com
     assert bench.line == 6
 
 
+def put_aside(bench):
+    bench.opened.paused = True
+
+
+def take_away(bench):
+    bench.device.taking = False
+
+
+def unplug(bench):
+    bench.device.place = lambda _: None
+
+
+def turn(bench):
+    bench.theta = 2 * MOST_TILT_RAD
+
+
+@pytest.mark.parametrize("lose", [put_aside, take_away, unplug, turn])
+def test_time_in_which_nothing_is_felt_is_no_staying_below_the_page(lose):
+    bench = Bench()
+    bench.to_row(3)
+    bench.y_mm = (ROWS + 0.4) * PITCH_MM
+    bench.run(0.2)
+    was = bench.device.place
+    lose(bench)
+    bench.run(3 * STAY_S)
+    assert bench.page == [1, 2, 3, 4]
+    bench.device.place, bench.device.taking = was, True
+    bench.opened.paused, bench.theta = False, 0.0
+    bench.run(STAY_S - 0.1)
+    assert bench.page == [1, 2, 3, 4]
+    bench.run(0.3)
+    assert bench.page == [5, 6, 7, 8]
+
+
 def test_a_page_comes_by_a_fade():
     bench = Bench()
     bench.felt()
