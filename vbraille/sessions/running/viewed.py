@@ -261,4 +261,6 @@ def _device(newest: np.void | None) -> str:
     placing = placing_of(newest)
     if placing is not Placing.DONE:
         return _PLACES[placing]
-    return "device: at rest by itself" if flags & int(Flag.HELD) else "device: in use"
+    if flags & int(Flag.HELD):
+        return "device: at rest by itself"
+    return "device: turned too far" if flags & int(Flag.TURNED) else "device: in use"
