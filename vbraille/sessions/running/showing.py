@@ -8,6 +8,7 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button
+from vbraille.devices.saying import placing_sentence
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
@@ -35,11 +36,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
-_PLACES = {
-    Placing.DONE: "place: known",
-    Placing.MARK: "place: move the carriage over its mark",
-    Placing.STOP: "place: move left to the stop, then press Enter",
-}
 # This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
 _PAUSED = int(Flag.PAUSED)
@@ -292,7 +288,9 @@ class OnDevice:
         placing = placing_of(self._newest)
         if placing is not self._placing:
             self._placing = placing
-            happened.append(reported(_PLACES[placing]))
+            display = self.engine.display
+            said = placing_sentence(placing, display, press="press Enter")
+            happened.append(reported(said))
         happened += map(reported, self._upright.watch(self._newest))
         if self._stimulus is not None:
             happened += sorted(

@@ -62,7 +62,7 @@ _MOST_SAID: Final = 20
 _SECONDS_PER_MINUTE: Final = 60
 _PLACES: Final = {
     Placing.MARK: "place: the carriage has to pass its mark",
-    Placing.STOP: "place: the left stop has to be shown",
+    Placing.STOP: "place: the carriage has to be shown its place",
 }
 
 
