@@ -10,6 +10,7 @@ import pytest
 from tests.engine.planar import Planar
 from vbraille.devices.events import Button
 from vbraille.engine.clock import ManualClock
+from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
 from vbraille.reading.beside import Beside
@@ -132,6 +133,24 @@ def test_a_finger_that_only_crosses_lines_is_on_none_of_them():
     bench.to_row(0)
     assert bench.line == 1
     assert bench.said.count == said
+
+
+@pytest.mark.parametrize("stray", [0.55, -0.55])
+@pytest.mark.parametrize("rests", ["still", "paused", "turned"])
+def test_a_finger_that_has_strayed_is_on_its_line_after_a_rest(stray, rests):
+    bench = Bench()
+    bench.to_row(2)
+    bench.to_row(2 + stray)
+    bench.opened.paused = rests == "paused"
+    bench.theta = 2 * MOST_TILT_RAD * (rests == "turned")
+    bench.run(1.5 * IDLE_S)
+    assert not bench.opened.frame.any()
+    assert bench.line == 3
+    bench.opened.paused, bench.theta = False, 0.0
+    bench.x_mm += 1.0
+    bench.run(0.3)
+    assert bench.opened.frame.any()
+    assert bench.line == 3
 
 
 @pytest.mark.parametrize("stray", [0.55, -0.55])
