@@ -49,6 +49,9 @@ class Display:
         Whether the carriage measures which way the array is turned.
     contactor_mm
         Width and height of what touches the skin, in mm; None if that is not known.
+    shown_near
+        Whether a carriage of two axes that must be shown its place is shown the left corner near
+        the reader, and not the far one.
 
     Raises
     ------
@@ -69,6 +72,7 @@ class Display:
     height_mm: float = 0.0
     turns: bool = False
     contactor_mm: tuple[float, float] | None = None
+    shown_near: bool = False
 
     def __post_init__(self) -> None:
         if not (1 <= self.rows <= MOST_ROWS and 1 <= self.columns <= MOST_COLUMNS):

@@ -300,6 +300,32 @@ def test_device_list_and_a_simulated_device_without_a_model(call):
     assert "--model" in done.err
 
 
+def test_a_page_is_turned_by_keys_and_says_where_the_finger_is(tmp_path):
+    book = tmp_path / "book.txt"
+    book.write_text("".join(f"line {n}\n" for n in range(1, 13)))
+    options = ("--model", "stress2-8x8", "--axes", "xyθ", "--height", "60")
+    how = ("--keep-lines", "--advance", "key")
+    with (
+        simulated(tmp_path, *options) as (spec, _),
+        Terminal("read", book, "--device", spec, *how) as terminal,
+    ):
+        terminal.until("h says the keys\r\n")
+
+        def line():
+            terminal.type("i")
+            return int(re.search(r"line: (\d+)", terminal.until(r"line: \d+\r"))[1])
+
+        assert 1 <= line() <= 5
+        for key, first, last in (("]", 6, 10), ("]", 11, 12), ("[", 6, 10)):
+            terminal.type(key)
+            terminal.until(f"page: lines {first} to {last}\r\n")
+            assert first <= line() <= last
+        terminal.type("[[")
+        terminal.until("page: lines 1 to 5\r\nfirst page\r\n")
+        terminal.type("q")
+        assert terminal.end() == 0
+
+
 @heavy  # the same of one axis is tested in every run
 def test_a_device_of_two_axes_is_shown_its_corner(tmp_path, text):
     options = ("--encoder", "incremental", "--axes", "xyθ", "--height", "60")

@@ -132,7 +132,7 @@ def test_what_is_otherwise_with_a_device_that_came_back_is_said_and_minded(chang
         assert notes[1:] == ["device: back"]
     # What hung on it is as the device is now.
     if "encoder" in changes:
-        assert "its left stop must be shown again" in notes[0]
+        assert "its place must be shown again" in notes[0]
         assert device.placing is Placing.STOP
         made.way_mm = 0.0
         made.run(device, 3)

@@ -1,6 +1,7 @@
 """Events: through JSON and back the same, and a sentence for each."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -27,7 +28,9 @@ from vbraille.devices.events import (
     shortened,
     to_json,
 )
-from vbraille.devices.saying import say, told
+from vbraille.devices.latero.laterodevice import DISPLAY as LATERO
+from vbraille.devices.saying import placing_sentence, say, told
+from vbraille.display import Display
 
 SAID = [
     (Unplugged(), "device: unplugged; plug it in again and reading goes on"),
@@ -69,7 +72,7 @@ SAID = [
     (Knob(1, 0.25), "device: knob 1 at 25%"),
     (HandHeld(held=True), "hand: moved in the live view"),
     (HandHeld(held=False), "hand: simulated again"),
-    (Placed(Placing.STOP), "device: it waits to be shown the left stop"),
+    (Placed(Placing.STOP), "device: it waits to be shown its place"),
     (
         NotInTime(("priority", "memory")),
         "timing: no real-time priority and no locked memory, so that ticks may come late; to "
@@ -118,3 +121,23 @@ def test_a_driver_s_own_kind_is_not_known():
     assert not is_known("a sentence")
     with pytest.raises(TypeError, match="no words for"):
         say(Own())
+
+
+SLIDER = Display("slider", rows=6, columns=10, column_pitch_mm=1.2, row_pitch_mm=1.6)
+
+
+@pytest.mark.parametrize(
+    ("display", "where"),
+    [
+        (SLIDER, "left to the stop"),
+        (
+            replace(SLIDER, height_mm=100.0),
+            "to the far left corner, with the array straight",
+        ),
+        (LATERO, "to the near left corner, with the array straight"),
+    ],
+)
+def test_a_reader_is_told_where_a_carriage_is_shown_its_place(display, where):
+    said = placing_sentence(Placing.STOP, display, press="press Enter")
+    assert said == f"place: move {where}, then press Enter"
+    assert placing_sentence(Placing.DONE, display) == "place: known"

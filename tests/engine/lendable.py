@@ -190,13 +190,14 @@ class Rig:
 
     def put(self, chunk):
         """Put bytes on the line to the host, and see that they have arrived."""
-        there = self._waiting() + len(chunk)
+        there = self.waiting() + len(chunk)
         while chunk:
             chunk = chunk[os.write(self.theirs, chunk) :]
-        while self._waiting() < there:  # a terminal carries them over in its own time
+        while self.waiting() < there:  # a terminal carries them over in its own time
             os.sched_yield()
 
-    def _waiting(self):
+    def waiting(self):
+        """Number of bytes on the line to the host."""
         there = array.array("i", [0])
         fcntl.ioctl(self.ours, termios.FIONREAD, there)
         return there[0]

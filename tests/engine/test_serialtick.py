@@ -164,6 +164,32 @@ def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s():
     rig.close()
 
 
+def test_a_pose_that_came_before_what_python_is_left_with_keeps_y_and_the_angle():
+    rig = Rig(None, 50.0, 50.0, height_mm=200.0, turns=True)
+    rig.loop.show(PICTURES[0], 0)
+    rig.y_mm, rig.theta_rad = 30.0, 0.1
+    rig.settle()
+    rig.y_mm, rig.theta_rad = 31.0, 0.11
+    rig.put(rig.say())
+
+    def follow_it():
+        while rig.waiting():  # until that has been taken, long before the tick is due
+            os.sched_yield()
+        rig.put(b"\x02 damaged\0")
+
+    line = threading.Thread(target=follow_it)
+    line.start()
+    rig.asked.clear()
+    rig.loop.run()
+    line.join()
+    record = rig.drain()[-1]
+    assert not record["flags"] & Flag.CHANGED
+    assert record["y_mm"] == pytest.approx(31.0)
+    assert record["theta_rad"] == pytest.approx(0.11, abs=1e-4)
+    assert not rig.compiled
+    rig.close()
+
+
 def knobs_of(rig):
     return [event for event in rig.device.take_events() if isinstance(event, Knob)]
 

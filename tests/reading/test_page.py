@@ -10,6 +10,7 @@ import pytest
 from tests.engine.planar import Planar
 from vbraille.devices.events import Button
 from vbraille.engine.clock import ManualClock
+from vbraille.engine.constants import IDLE_S
 from vbraille.engine.record import Flag
 from vbraille.layout.pages import Layout
 from vbraille.reading.beside import Beside
@@ -135,6 +136,24 @@ def test_a_finger_that_only_crosses_lines_is_on_none_of_them():
 
 
 @pytest.mark.parametrize("stray", [0.55, -0.55])
+@pytest.mark.parametrize("rests", ["still", "paused", "turned"])
+def test_a_finger_that_has_strayed_is_on_its_line_after_a_rest(stray, rests):
+    bench = Bench()
+    bench.to_row(2)
+    bench.to_row(2 + stray)
+    bench.opened.paused = rests == "paused"
+    bench.theta = 2 * MOST_TILT_RAD * (rests == "turned")
+    bench.run(1.5 * IDLE_S)
+    assert not bench.opened.frame.any()
+    assert bench.line == 3
+    bench.opened.paused, bench.theta = False, 0.0
+    bench.x_mm += 1.0
+    bench.run(0.3)
+    assert bench.opened.frame.any()
+    assert bench.line == 3
+
+
+@pytest.mark.parametrize("stray", [0.55, -0.55])
 def test_a_finger_that_strays_within_the_band_stays_on_its_line(stray):
     bench = Bench()
     bench.to_row(2)
@@ -167,6 +186,40 @@ def test_below_the_last_line_a_finger_that_stays_turns_the_page_and_one_that_com
     assert bench.page == [5, 6, 7, 8]
     bench.to_row(1)
     assert bench.line == 6
+
+
+def put_aside(bench):
+    bench.opened.paused = True
+
+
+def take_away(bench):
+    bench.device.taking = False
+
+
+def unplug(bench):
+    bench.device.place = lambda _: None
+
+
+def turn(bench):
+    bench.theta = 2 * MOST_TILT_RAD
+
+
+@pytest.mark.parametrize("lose", [put_aside, take_away, unplug, turn])
+def test_time_in_which_nothing_is_felt_is_no_staying_below_the_page(lose):
+    bench = Bench()
+    bench.to_row(3)
+    bench.y_mm = (ROWS + 0.4) * PITCH_MM
+    bench.run(0.2)
+    was = bench.device.place
+    lose(bench)
+    bench.run(3 * STAY_S)
+    assert bench.page == [1, 2, 3, 4]
+    bench.device.place, bench.device.taking = was, True
+    bench.opened.paused, bench.theta = False, 0.0
+    bench.run(STAY_S - 0.1)
+    assert bench.page == [1, 2, 3, 4]
+    bench.run(0.3)
+    assert bench.page == [5, 6, 7, 8]
 
 
 def test_a_page_comes_by_a_fade():

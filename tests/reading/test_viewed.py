@@ -112,7 +112,7 @@ def test_nothing_is_translated_or_laid_out_for_a_page():
         (
             lambda watch: setattr(watch.device, "placing", Placing.STOP),
             "device",
-            "place: the carriage has to be shown its left stop",
+            "place: the carriage has to be shown its place",
         ),
         (lambda watch: setattr(watch.viewed, "standing", "fault: gone"), "device", "fault: gone"),
         (

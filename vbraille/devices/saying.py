@@ -28,6 +28,8 @@ from vbraille.devices.events import (
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from vbraille.display import Display
+
 # Names and units of the fields of a display.
 _FIELDS: Final = {
     "rows": ("rows of actuators", ""),
@@ -44,7 +46,7 @@ _FIELDS: Final = {
 _TO_DO: Final = {
     Placing.DONE: "",
     Placing.MARK: "; if asked to, move the carriage over its mark",
-    Placing.STOP: "; its left stop must be shown again",
+    Placing.STOP: "; its place must be shown again",
 }
 # Which way counts grow, in words.
 _PLAIN: Final[dict[object, str]] = {
@@ -72,6 +74,28 @@ def say(event: Event) -> str:
     """Sentence for an event, with the number of times if it stands for several."""
     more = f" ({event.times} times in the last second)" if event.times > 1 else ""
     return _say(event) + more
+
+
+def placing_sentence(placing: Placing, display: Display, *, press: str = "press a key") -> str:
+    """What the reader is to do so that the place of a carriage is known, or that it is.
+
+    Parameters
+    ----------
+    placing
+        What is waited for.
+    display
+        Display of the device, which says where its carriage is to be shown its place.
+    press
+        How the reader says that the carriage is there.
+    """
+    if placing is Placing.DONE:
+        return "place: known"
+    if placing is Placing.MARK:
+        return "place: move the carriage over its mark"
+    if not display.height_mm:
+        return f"place: move left to the stop, then {press}"
+    corner = "near" if display.shown_near else "far"
+    return f"place: move to the {corner} left corner, with the array straight, then {press}"
 
 
 @singledispatch
@@ -210,7 +234,7 @@ def _(event: Placed) -> str:
     return {
         Placing.DONE: "device: its place is known",
         Placing.MARK: "device: it waits for the carriage to pass its mark",
-        Placing.STOP: "device: it waits to be shown the left stop",
+        Placing.STOP: "device: it waits to be shown its place",
     }[event.placing]
 
 

@@ -269,7 +269,7 @@ class Loop:
             pose = self._poses[0]
             taken = None
             if pose[POSED]:
-                taken = Pose(int(self._times_ns[0, 1]), float(pose[POSE_X]))
+                taken = Pose(int(self._times_ns[0, 1]), *pose[POSE_X:].tolist())
             self._tick(woken_ns, lateness_ns, taken)
         elif not done:
             self.tick()

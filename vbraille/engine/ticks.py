@@ -122,6 +122,7 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
         y = 0.0  # a slider has no y: it stands at the picture's own
     if now["placed"] == 0:
         now["placed"] = 1
+        now["part"] = work.NO_PART
         now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
         now["moved_ns"] = now_ns
     else:
@@ -184,8 +185,9 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
     wanted = _wanted(state, now_ns, taking, numbers)
-    # A finger at the edge of its line stays on it when the page comes in another style, too.
-    part = part_of(numbers, y_mm, now["part"] if now["shown"] != 0 else work.NO_PART)
+    # A finger at the edge of its line stays on it over a rest, and when the page comes in another
+    # style, too.
+    part = part_of(numbers, y_mm, now["part"])
     if wanted != now["shown"]:
         if wanted != now["begun"] and wanted != 0:
             now["begun"] = wanted

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from vbraille.engine.upright import Upright
 from vbraille.reading.beside import Beside
 from vbraille.reading.cues import Cue
 from vbraille.reading.echo import Echo
 from vbraille.reading.ranged import LineRange
 from vbraille.reading.surface import Surface, around, turned
 from vbraille.reading.underhand import UnderHand
-from vbraille.reading.upright import Upright
 from vbraille.reading.whereabouts import (
     LINES_PER_PAGE,
     first_character,

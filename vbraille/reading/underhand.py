@@ -245,6 +245,7 @@ class UnderHand:
         ticks = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
         if not ticks.size:
             self._waiting.rest()
+            self._foot.rest()
         return ticks
 
     def follow(self, ticks: NDArray[np.void]) -> bool:

@@ -33,7 +33,7 @@ _NUMBER: Final = 0xFFFF_FFFF  # as much of a line's number as a frame has room f
 _PLACES: Final = {
     Placing.DONE: "reading",
     Placing.MARK: "place: the carriage has to pass its mark",
-    Placing.STOP: "place: the carriage has to be shown its left stop",
+    Placing.STOP: "place: the carriage has to be shown its place",
 }
 _GONE: Final = (Unplugged, Silent, Stranger)
 _BACK: Final = (Back, Changed)

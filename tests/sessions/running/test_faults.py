@@ -17,6 +17,7 @@ CAUSES = {
     Flag.STOP: "the device does not know where its carriage is",
     Flag.RESTED: "the array went to rest by itself",
     Flag.HELD: "the array went to rest by itself",
+    Flag.TURNED: "the array was turned too far",
 }
 
 
@@ -49,6 +50,15 @@ def test_one_tick_within_a_poll_marks_its_trial(tmp_path, flag, what, repeats):
     assert any(line.startswith(f"fault: {what}; trial 1 of 4 ") for line in sat.said)
     wells = of(sat.events, "well")
     assert [well["tick"] for well in wells] == ([] if repeats else [851])
+
+
+def test_it_is_said_what_a_trial_waits_for_while_the_array_is_turned_too_far(tmp_path):
+    sat = Session(tmp_path / "s").sit(engine=flagged(Flag.TURNED, (0, 500)))
+    assert sat.progress.ended
+    said = [event["what"] for event in of(sat.events, "device")]
+    assert [each.partition(":")[0] for each in said] == ["turned", "upright"]
+    assert not of(sat.events, "fault")
+    assert min(event["tick"] for event in of(sat.events, "contact")) >= 500
 
 
 @pytest.mark.parametrize("poll_ticks", [7, 100])

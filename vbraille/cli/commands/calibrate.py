@@ -12,7 +12,7 @@ from vbraille.devices import opened_device
 from vbraille.devices.base import Placing
 from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
-from vbraille.devices.saying import told
+from vbraille.devices.saying import placing_sentence, told
 from vbraille.engine.clock import RealClock
 from vbraille.engine.suspending import Suspension
 from vbraille.engine.swinging import Swinging
@@ -44,10 +44,6 @@ _KEYS: Final = {
     "q": "leave; the same command goes on from here",
 }
 _FINDINGS: Final[dict[str, State]] = {"y": "ok", "\n": "ok", "\r": "ok", "w": "weak", "d": "dead"}
-_PLACES: Final = {
-    Placing.MARK: "place: move the carriage over its mark",
-    Placing.STOP: "place: move left to the stop, then press a key",
-}
 
 
 def calibrate(arguments: argparse.Namespace, wanted: Display | None) -> int:
@@ -165,7 +161,7 @@ class _Guided:
             say_line(sentence)
         if self._device.placing is not self._placing:
             self._placing = self._device.placing
-            say_line(_PLACES.get(self._placing, "place: known"))
+            say_line(placing_sentence(self._placing, self._device.display))
 
     def _suspend(self, suspension: Suspension) -> None:
         """Stop, with the array at rest, until the shell says to go on."""

@@ -16,6 +16,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_height, check_travel
+from vbraille.devices.saying import placing_sentence
 from vbraille.display import check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
@@ -48,11 +49,6 @@ if TYPE_CHECKING:
     from vbraille.render import Model
 
 _POLL_S = 0.02
-_PLACES = {
-    Placing.MARK: "place: move the carriage over its mark",
-    Placing.STOP: "place: move left to the stop, then press a key",
-}
-_CORNER = "place: move to the far left corner, with the array straight, then press a key"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -241,12 +237,11 @@ class _Reading:
 
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keyboard.attached:
-            raise InputError("the device must be told where its left stop is; read at a terminal")
-        said = _PLACES.get(self._device.placing, "place: known")
-        across = self._device.reader.engine.display.height_mm > 0
-        if across and self._device.placing is Placing.STOP:
-            said = _CORNER
-        self._hearing.say(said)
+            raise InputError(
+                "the device must be shown its place, such as its left stop; read at a terminal"
+            )
+        display = self._device.reader.engine.display
+        self._hearing.say(placing_sentence(self._device.placing, display))
 
     def _pressed(self) -> list[str]:
         """Keys typed; before that, the process stops for a while if it is told to."""

@@ -11,6 +11,7 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
+from vbraille.devices.saying import placing_sentence
 from vbraille.display import check_rate
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
@@ -152,7 +153,7 @@ class _Guided:
             device.poll(0.0)
             if device.placing is not placing:
                 placing = device.placing
-                say_line(_PLACES.get(placing, "place: known"))
+                say_line(placing_sentence(placing, device.display))
         if self.course.done:
             self._save()
 
@@ -214,12 +215,6 @@ class _Guided:
         model = replace(self._model, style=self.course.style)
         say_line(save_profile(self._settings.path, self._profile, model))
         self._path.unlink(missing_ok=True)
-
-
-_PLACES = {
-    Placing.MARK: "place: move the carriage over its mark",
-    Placing.STOP: "place: move left to the stop, then press a key",
-}
 
 
 def _suspend(device: OpenDevice, keyboard: Keyboard, suspension: Suspension) -> None:

@@ -59,7 +59,9 @@ RAMP_ASK_NS: Final = 2_000_000
 POWER, PLACE, ENCODERS, VERSION = 1, 2, 3, 4
 
 
-WHERE: Final = "the left stop of a Latero is its lower left corner, with the third arm straight up"
+WHERE: Final = (
+    "the near left corner of a Latero is the lower left one, with its third arm straight up"
+)
 NO_SWITCH: Final = (
     "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
 )
@@ -224,7 +226,7 @@ class LateroHearing:
             self._told_version = False
             self._stop()
         if before is not None and answer.interface & ~before.interface & ENCODER_ERRORS:
-            self._tell(Notice(ENCODERS, "an encoder has lost steps; show where the left stop is"))
+            self._tell(Notice(ENCODERS, "an encoder has lost steps; show its near left corner"))
         self._mind_power(answer)
         self._mind_buttons(answer.dio_in)
         self._mind_rest(answer)

@@ -40,6 +40,7 @@ DISPLAY: Final = Display(
     height_mm=LATERO.height_mm,
     turns=True,
     contactor_mm=(0.5, 1.4),
+    shown_near=True,
 )
 # A Latero answers in less; where it does not, the answer to the last frame is there.
 AHEAD_NS: Final = 300_000

@@ -100,6 +100,7 @@ class Course(CourseState):
     def start(self, **started: Any) -> None:
         """Begin a run, once the engine is started; `started` are fields for the event `Run`."""
         display = self.display
+        happened: list[Happened] = []  # before the event of the run, which comes first
         self._watched = {"monitor": started["monitor"]} if "monitor" in started else {}
         if display is not None:
             trace = display.open(len(self.progress.runs) + 1, self.progress.line)
@@ -109,10 +110,12 @@ class Course(CourseState):
                 "calibration": display.engine.calibration,
             }
             while not display.now_ns:  # the session runs by the device's clock, which has to start
-                display.poll()
+                happened += display.poll()
                 self.sleep()
         self.book.begin()
         self.book.log(events.Run, **started, versions=versions())
+        for each in happened:
+            self._take(each)
 
     def sleep(self) -> None:
         """Wait a little for the device, if the session runs in real time."""

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # Flags of a device that cannot let a stimulus be felt, and of one that has just gone to rest.
-_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
-_UNFELT = _AWAY | int(Flag.RESTED)
+AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+_UNFELT = AWAY | int(Flag.RESTED)
 # These are plain numbers because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
 _PAUSED, _RESTING, _HELD = int(Flag.PAUSED), int(Flag.RESTING), int(Flag.HELD)
@@ -59,9 +59,9 @@ class FaultWatch:
         Notes
         -----
         A tick of the trial, pauses left out, is faulty if the device was silent, did not know its
-        place, had gone to rest by itself or took no frames, or if ticks before it were lost. It is
-        no fault that the array rests while the hand stands still, nor that the device then takes
-        a moment to wake.
+        place, had gone to rest by itself or took no frames, if its array was turned too far, or if
+        ticks before it were lost. It is no fault that the array rests while the hand stands still,
+        nor that the device then takes a moment to wake.
         """
         shown = (ticks["line"] >= self._line) & (ticks["flags"] & _PAUSED == 0)
         ticks, lost = ticks[shown], lost[shown]
@@ -104,7 +104,9 @@ def _why(tick: np.void) -> str:
         return "the device is silent"
     if flags & (Flag.MARK | Flag.STOP):
         return "the device does not know where its carriage is"
-    return "the array went to rest by itself" if flags & _UNFELT else "ticks of it were lost"
+    if flags & (Flag.HELD | Flag.RESTED):
+        return "the array went to rest by itself"
+    return "the array was turned too far" if flags & Flag.TURNED else "ticks of it were lost"
 
 
 def when(tick: np.void) -> dict[str, Any]:

@@ -8,14 +8,16 @@ import numpy as np
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button
+from vbraille.devices.saying import placing_sentence
 from vbraille.engine.advance import HOME_MM, EndOfLine
 from vbraille.engine.engine import Engine, placing_of
 from vbraille.engine.record import Flag
+from vbraille.engine.upright import Upright
 from vbraille.sessions.planning.programs import render
 from vbraille.sessions.record import events
 from vbraille.sessions.record.traces import TraceWriter
 from vbraille.sessions.record.trajectory import first_edge_mm
-from vbraille.sessions.running.faultwatch import FaultWatch, when
+from vbraille.sessions.running.faultwatch import AWAY, FaultWatch, when
 from vbraille.sessions.running.happened import Happened, of_device, reported
 from vbraille.sessions.simulated.skin import Exploration
 from vbraille.simulation.steering import ReadLine
@@ -34,12 +36,6 @@ if TYPE_CHECKING:
     from vbraille.sessions.record.journal import Tie
     from vbraille.simulation.steering import Steering
 
-_PLACES = {
-    Placing.DONE: "place: known",
-    Placing.MARK: "place: move the carriage over its mark",
-    Placing.STOP: "place: move left to the stop, then press Enter",
-}
-_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD)
 # This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
 # a signal raises.
 _PAUSED = int(Flag.PAUSED)
@@ -141,6 +137,7 @@ class OnDevice:
         self._touched = self._read = self._ready = False
         self._shown_line = 0  # first line of the stimulus
         self._faults = FaultWatch()
+        self._upright = Upright()
         self._felt: list[list[NDArray[np.void]]] = []
 
     def open(self, run: int, line: int) -> str:
@@ -284,14 +281,17 @@ class OnDevice:
         self._newest = ticks[-1]
         # A carriage that a machine moves may be at the left for a few ticks only.
         at_left = ticks["x_mm"] <= HOME_MM - self._span_mm / 2
-        well = ticks["flags"] & _AWAY == 0
+        well = ticks["flags"] & AWAY == 0
         self._ready = bool(well[-1] and (at_left & well).any())
         if self._trace is not None:
             self._trace.add(ticks)
         placing = placing_of(self._newest)
         if placing is not self._placing:
             self._placing = placing
-            happened.append(reported(_PLACES[placing]))
+            display = self.engine.display
+            said = placing_sentence(placing, display, press="press Enter")
+            happened.append(reported(said))
+        happened += map(reported, self._upright.watch(self._newest))
         if self._stimulus is not None:
             happened += sorted(
                 self._faults.look(ticks, lost) + self._follow(ticks),

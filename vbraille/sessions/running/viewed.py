@@ -62,7 +62,7 @@ _MOST_SAID: Final = 20
 _SECONDS_PER_MINUTE: Final = 60
 _PLACES: Final = {
     Placing.MARK: "place: the carriage has to pass its mark",
-    Placing.STOP: "place: the left stop has to be shown",
+    Placing.STOP: "place: the carriage has to be shown its place",
 }
 
 
@@ -261,4 +261,6 @@ def _device(newest: np.void | None) -> str:
     placing = placing_of(newest)
     if placing is not Placing.DONE:
         return _PLACES[placing]
-    return "device: at rest by itself" if flags & int(Flag.HELD) else "device: in use"
+    if flags & int(Flag.HELD):
+        return "device: at rest by itself"
+    return "device: turned too far" if flags & int(Flag.TURNED) else "device: in use"

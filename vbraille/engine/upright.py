@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-_TURNED = int(Flag.TURNED)  # a plain number, as in `vbraille.reading.underhand`
+# This is a plain number because numpy, when it reads an enumeration, can swallow an exception that
+# a signal raises.
+_TURNED = int(Flag.TURNED)
 
 
 class Upright:
