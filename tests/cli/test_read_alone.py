@@ -27,7 +27,8 @@ DOTS |= {chr(ord(letter) + 10): int(f"{dots}3") for letter, dots in DOTS.items()
 MASKS = {letter: sum(1 << int(dot) - 1 for dot in str(dots)) for letter, dots in DOTS.items()}
 
 MAKE = Make(rate_hz=500)
-SPEED_MM_S, PAUSE_S, BACK_S, STRAYS, TURNS = 30.0, 0.4, 0.8, 0.15, 0.1
+SPEED_MM_S, PAUSE_S, BACK_S, STRAYS, TURNS = 30.0, 0.4, 0.8, 0.15, 0.25
+SLOW_MM = 1.5 * SPEED_MM_S / MAKE.rate_hz  # in a tick
 ALONG_S = (GEOMETRY.extent_mm(CELLS) + 2 * MAKE.before_mm) / SPEED_MM_S
 LINE_S = PAUSE_S + ALONG_S + BACK_S
 SETTINGS = '[buttons]\n1 = "LEARN"\n"knob 1" = "CONTRAST"\n'
@@ -98,13 +99,17 @@ def log_of(device):
 
 
 def read_off(log):
-    """The page's dots, by what most actuators that were over each of them did."""
+    """The page's dots, by what most actuators that were over each of them did.
+
+    A FRAME was made for a pose some STATEs ago, which matters where the hand goes back fast.
+    """
+    log = log[np.hypot(np.gradient(log["x_mm"]), np.gradient(log["y_mm"])) < SLOW_MM]
     masks = np.zeros((len(WORDS), CELLS), int)
     for line, bit, cell, felt in over_dots(log, STRESS2, masks.shape):
         crossed = np.bincount(cell, minlength=CELLS)
         raised = np.bincount(cell[felt > 0.5], minlength=CELLS)
         assert crossed.min() > 20
-        assert ((raised > 0.8 * crossed) | (raised < 0.2 * crossed)).all()
+        assert ((raised > 0.7 * crossed) | (raised < 0.3 * crossed)).all()
         masks[line] |= (raised > 0.5 * crossed) << bit
     return masks.tolist()
 

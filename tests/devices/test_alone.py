@@ -22,6 +22,8 @@ from tests.devices.secondversion import (
 )
 from vbraille.devices.events import Button, Knob
 from vbraille.devices.saying import told
+from vbraille.devices.wire.codec import Decoder
+from vbraille.simulation.firmware import Controller
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
 EXAMPLE = Make(
@@ -109,6 +111,34 @@ def test_places_are_those_of_the_page():
         pose = EXAMPLE.pose(*map(int, counts))
         assert pose == pytest.approx((x_mm, y_mm, math.radians(degrees)), abs=1e-5)
         assert EXAMPLE.counts(pose) == tuple(counts)
+
+
+@pytest.mark.parametrize(
+    "made_as",
+    [
+        lambda info: Controller(Decoder().feed(info)[0]),
+        lambda _info: SecondVersion(make=EXAMPLE),
+    ],
+    ids=["simulated", "alone"],
+)
+def test_the_conversation_of_the_page_is_had_byte_for_byte(made_as):
+    """Both controllers know the page; they were written by different hands."""
+    section = PAGE.split("\n## A conversation to test with\n")[1]
+    rows = re.findall(r"^\| (\d+) \| ([←→]) \| .+? \| `(.+?)` \|$", section, re.MULTILINE)
+    assert [way for _, way, _ in rows].count("←") == 9
+    info = line_on_the_page("Info2")
+    device = made_as(info)
+    now_ms = 0
+    for (ms, way, line), (next_ms, next_way, _) in zip(rows, [*rows[1:], rows[0]], strict=True):
+        while now_ms < int(ms):
+            now_ms += 1
+            heard = device.tick(1000 * now_ms, 0.0)
+        if way == "→":
+            heard = device.receive(bytes.fromhex(line), 1000 * now_ms)
+            # What is shown of a device is all that it says to what it has heard.
+            assert (next_ms, next_way) == (ms, "←") or heard == b""
+        else:
+            assert heard == bytes.fromhex(line.replace("…", info.hex()))
 
 
 def test_vbraille_has_its_place_its_buttons_and_its_knob():
