@@ -219,7 +219,11 @@ def without_its_journal(room):
 @pytest.mark.parametrize(
     ("made", "code", "pattern"),
     [
-        (of_a_newer_format, 2, r"is a session of format 6, and this vbraille knows format 5; use"),
+        (
+            of_a_newer_format,
+            2,
+            f"is a session of format {FORMAT + 1}, and this vbraille knows format {FORMAT}; use",
+        ),
         (of_something_else, 2, r"journal\.jsonl is not the journal of a session"),
         (of_no_event, 1, r"is damaged in its first line; there is nothing to go by"),
         (without_its_journal, 1, r"has lost its journal\.jsonl; there is nothing to go by"),

@@ -1,5 +1,6 @@
 """``vbraille simulate latero``, a real process at a real port, and what is read on it."""
 
+import argparse
 import re
 import signal
 import subprocess
@@ -8,6 +9,8 @@ import pytest
 
 from tests.cli import program
 from tests.tiers import heavy
+from vbraille.cli.commands.simulate import LATERO_ONLY, SERIAL_ONLY
+from vbraille.cli.options.reading import simulate
 
 
 class Simulated:
@@ -66,6 +69,7 @@ def test_a_text_is_read_on_it_to_its_end(tmp_path):
     [
         ("latero --link ./vb0", "--link is not for a simulated latero"),
         ("latero --defect no-watchdog", "--defect is not for a simulated latero"),
+        ("latero --rate 500", "--rate is not for a simulated latero"),
         ("latero --unplug-every 5s", "--unplug-every is not for a simulated latero"),
         ("serial --late 0.1", "--late is not for a simulated serial"),
         ("--port 8900", "--port is not for a simulated serial"),
@@ -80,3 +84,24 @@ def test_what_it_cannot_be_is_said_in_a_sentence(call, options, why):
     assert said.code == 2
     assert why in said.err
     assert said.out == ""
+
+
+def test_each_option_is_of_one_kind_of_device_or_of_both():
+    parser = argparse.ArgumentParser()
+    simulate(parser)
+    options = vars(parser.parse_args([]))
+    of_both = {"what", "hand", "seed", "script", "press", "drop"}
+    assert set(options) == LATERO_ONLY.keys() | SERIAL_ONLY.keys() | of_both
+    assert {**LATERO_ONLY, **SERIAL_ONLY}.items() <= options.items()
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [("1s knob 1 0.5", "turns a knob, and a Latero has none"), ("1s press 3", "button is 3")],
+)
+def test_a_script_that_moves_what_a_latero_has_not_is_refused(call, tmp_path, line, why):
+    script = tmp_path / "script.txt"
+    script.write_text(line)
+    said = call("simulate", "latero", "--script", str(script))
+    assert said.code == 2
+    assert why in said.err

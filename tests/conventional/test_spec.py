@@ -11,11 +11,14 @@ from vbraille.wording import spelled
 @pytest.mark.parametrize(
     ("spec", "why"),
     [
-        ("", "--also is ''; give brlapi, or brlapi:HOST:N for BRLTTY on another machine"),
+        ("", "--also is ''; give brlapi, brlapi:HOST:N for BRLTTY on another machine, "),
         ("brltty", "--also is 'brltty'; give brlapi"),
         ("brlapi:localhost", "after brlapi: there must be a host and a number, as in brlapi:127"),
         ("brlapi:a b:1", "after brlapi: there must be a host and a number"),
         ("brlapi:host:x", "after brlapi: there must be a host and a number"),
+        ("dotpad", "after dotpad: there must be the path of a serial port, as in dotpad:/dev/tty"),
+        ("hid:", "after hid: there must be a path, as in hid:/dev/hidraw0, or give hid for"),
+        ("dotpad:/dev/ttyUSB0?baud=9", "after dotpad: there must be the path of a serial port"),
     ],
 )
 def test_what_is_none_is_one_sentence(spec, why):

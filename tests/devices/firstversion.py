@@ -1,42 +1,16 @@
 """A controller of version 1 as a stranger built it, from the page of that version alone.
 
-Nothing of vbraille is used: a change there must not change what is out there.
+Nothing of vbraille is used: a change there must not change what is out there. What is the same in
+both versions, the frames on the line, it has from its younger sister.
 """
 
 import struct
 from types import SimpleNamespace
-from zlib import crc32
+
+from tests.devices.secondversion import body_of, line_of
 
 WATCHDOG_US, RAMP_US = 50_000, 20_000
 PLACED, RESTING, TRIPPED = 1, 2, 8
-
-
-def stuffed(body):
-    """COBS of body and CRC, and the zero."""
-    text = body + struct.pack("<I", crc32(body)) + b"\0"
-    out = b""
-    while text:
-        run, _, text = text.partition(b"\0")
-        while len(run) > 254:
-            out, run = out + b"\xff" + run[:254], run[254:]
-        out += bytes([len(run) + 1]) + run
-    return out + b"\0"
-
-
-def unstuffed(line):
-    """Body of a line, or None if it is damaged."""
-    out, at = b"", 0
-    while at < len(line):
-        length = line[at]
-        if length == 0 or at + length > len(line):
-            return None
-        out += line[at + 1 : at + length]
-        at += length
-        if length < 255 and at < len(line):
-            out += b"\0"
-    if len(out) < 5 or crc32(out[:-4]) != struct.unpack("<I", out[-4:])[0]:
-        return None
-    return out[:-4]
 
 
 class FirstVersion:
@@ -84,10 +58,10 @@ class FirstVersion:
             self.buttons,
             -0x8000,
         )
-        return said + stuffed(state) if self._greeted else b""
+        return said + line_of(state) if self._greeted else b""
 
     def _take(self, line, now_us):
-        body = unstuffed(line)
+        body = body_of(line)
         if body is None:
             self.dropped += 1
         elif body[0] == 1 and body[1:2] > b"\0":
@@ -126,11 +100,11 @@ class FirstVersion:
             self._ramp_us, self._began = now_us, self.levels
 
     def _watchdog(self):
-        return stuffed(struct.pack("<BII", 0x83, self.trips, self.dropped))
+        return line_of(struct.pack("<BII", 0x83, self.trips, self.dropped))
 
     def _info(self):
         name, firmware = b"Old", b"1.7"
-        return stuffed(
+        return line_of(
             struct.pack(
                 "<BBBBIIBHHHIBIbBI",
                 *(0x81, 1, 6, 10, 1_200_000, 1_800_000, 1, self.TOP, 1000, 0),

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from cobs import cobs
 
+from vbraille.devices.serial.openserial import LOWEST_RATE_HZ
 from vbraille.devices.serial.place import Place
 from vbraille.devices.serial.transitions import TRANSITIONS, Stage
 from vbraille.devices.wire import messages
@@ -53,6 +54,7 @@ from vbraille.devices.wire.messages import (
     State2,
     Watchdog,
 )
+from vbraille.engine.checking import _PLACE_SLACK_MM
 
 PAGE = (Path(__file__).parents[2] / "docs/wire-protocol.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))
@@ -196,12 +198,43 @@ def test_the_place_of_the_example():
             equation = equation.replace(sign, python)
         names[name] = eval(equation, {}, names)
     assert place.y_mm == pytest.approx(names["y_mm"]) == pytest.approx(130)
-    assert place.y_mm <= info.height_um / 1000  # where the carriage can be
     assert place.theta_rad == pytest.approx(names["θ"]) == pytest.approx(math.radians(-16.875))
     said = SECTIONS["STATE2"]
-    assert "130 mm from the far stop" in said
+    said = " ".join(said.split())
+    assert "22.12 mm right of where lines begin and 130 mm below the far stop" in said
     assert "turned by 16.9° with the clock" in said
+    assert place.x_mm == pytest.approx(22.12)
     assert state.knobs == 128 | 255 << 8
+    # What it says is what such a device can say.
+    assert state.flags == PLACED
+    assert state.buttons.bit_length() <= info.buttons
+    assert state.knobs.bit_length() <= 8 * info.knobs
+    assert 0 <= place.y_mm <= info.height_um / 1000
+    assert 0 <= state.theta_count < info.counts_per_turn
+
+
+def test_places():
+    """Those of the table, by the host and by the page's equations."""
+    info, state = example_of(Info2)[0], example_of(State2)[0]
+    rows = [row for row in rows_of("Place") if row[0].isdecimal()]
+    assert len(rows) == 5
+    right, down = info.column_pitch_nm * (info.columns - 1), info.row_pitch_nm * (info.rows - 1)
+    u, v = -right / 2e6, -down / 2e6
+    for row in rows:
+        counts = dict(zip(("count", "y_count", "theta_count"), map(int, row[:3]), strict=True))
+        place = Place(info).take(replace(state, **counts))
+        sin, cos = math.sin(place.theta_rad), math.cos(place.theta_rad)
+        found = [place.x_mm, place.y_mm, math.degrees(place.theta_rad)]
+        found += [place.x_mm + u * cos + v * sin, place.y_mm - u * sin + v * cos]
+        assert found == pytest.approx(list(map(float, row[3:])), abs=5.1e-4)
+    for equation in ("x_mm + u · cos θ + v · sin θ", "y_mm − u · sin θ + v · cos θ"):
+        assert equation in SECTIONS["Place"]
+    assert f"up to {_PLACE_SLACK_MM:g} mm beyond it" in SECTIONS["Place"]
+
+
+def test_the_lowest_rate():
+    text = " ".join(SECTIONS["FRAME"].split())
+    assert f"never fewer than {LOWEST_RATE_HZ}." in text
 
 
 def test_crc_and_cobs():

@@ -30,15 +30,18 @@ def places(ticks, display):
     return ticks["x_mm"][:, None, None] + right * np.cos(theta) + down[:, None] * np.sin(theta)
 
 
-def decoded(ticks, model, size):
-    """Dot masks of the page, uint8[lines, cells], from poses and frames."""
+def over_dots(ticks, model, size):
+    """Yield what was felt at the place of each dot of a page.
+
+    For each line and dot of a cell: line, dot from 0, the cells that an actuator of its row was
+    over, int[n], and what that actuator did then, float[n].
+    """
     lines, cells = size
     geometry, mapping = model.style.geometry, model.style.mapping
     first = model.style.rows_on(model.display).start
     at = ticks["y_mm"] / geometry.line_pitch_mm
-    masks = np.zeros(size, np.uint8)
     for line in range(lines):
-        on = ticks[(np.abs(at - line - 0.5) < 0.3) & (ticks["share"] == 1)]
+        on = ticks[np.abs(at - line - 0.5) < 0.3]
         x_mm = places(on, model.display)
         for bit, (side, dot_row) in _PLACES.items():
             row = first + (mapping.right if side else mapping.left).index(dot_row)
@@ -47,12 +50,18 @@ def decoded(ticks, model, size):
             cell = np.rint(pitches).astype(int)
             off_mm = np.abs(pitches - cell) * geometry.cell_pitch_mm
             over = (off_mm < geometry.dot_width_mm / 8) & (cell >= 0) & (cell < cells)
-            felt = on["frame"][:, row][over]
-            assert ((felt > 0.5) | (felt == 0)).all()
-            raised = np.bincount(cell[over][felt > 0.5], minlength=cells)
-            flat = np.bincount(cell[over][felt == 0], minlength=cells)
-            assert ((raised > 0) != (flat > 0)).all(), f"missed a cell of line {line}, or felt two"
-            masks[line] |= ((raised > 0) << bit).astype(np.uint8)
+            yield line, bit, cell[over], on["frame"][:, row][over]
+
+
+def decoded(ticks, model, size):
+    """Dot masks of the page, uint8[lines, cells], from poses and frames."""
+    masks = np.zeros(size, np.uint8)
+    for line, bit, cell, felt in over_dots(ticks[ticks["share"] == 1], model, size):
+        assert ((felt > 0.5) | (felt == 0)).all()
+        raised = np.bincount(cell[felt > 0.5], minlength=size[1])
+        flat = np.bincount(cell[felt == 0], minlength=size[1])
+        assert ((raised > 0) != (flat > 0)).all(), f"missed a cell of line {line}, or felt two"
+        masks[line] |= ((raised > 0) << bit).astype(np.uint8)
     return masks
 
 

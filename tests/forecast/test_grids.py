@@ -1,9 +1,11 @@
 """Predictions over a grid: each point once, the same on any workers, with a map."""
 
+import time
+
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.forecast.grids import predict, read_grid, to_json
+from vbraille.forecast.grids import GridTask, predict, predict_point, read_grid, to_json
 from vbraille.forecast.maps import map_of
 from vbraille.forecast.workers import Workers
 from vbraille.pictures.figurefiles import to_bytes
@@ -72,6 +74,7 @@ def test_a_map_has_every_share_in_its_place(path):
         ('["c"]', "[]", "has no string"),
         ("answers = 5", "answers = 0", "answers is 0"),
         ("format = 1", "format = 2", "format"),
+        ("contrast = [0.05, 1.0]", "travel_mm = [300.0, 2.0]", "too short for one cell"),
     ],
 )
 def test_a_grid_that_cannot_be_used_is_refused(old, new, sentence):
@@ -79,3 +82,26 @@ def test_a_grid_that_cannot_be_used_is_refused(old, new, sentence):
         read_grid(GRID.replace(old, new), "grid.toml")
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_grid_far_too_large_is_refused_before_its_points_are_made():
+    lengths = ", ".join(f"{0.1 + n / 100:.2f}" for n in range(100))
+    many = "\n".join(f"{name} = [{lengths}]" for name in ("contrast", "texture", "dot_spacing_mm"))
+    many += f"\ncell_gap_mm = [{lengths}]\nrow_spacing_mm = [{lengths}]"
+    started = time.process_time()
+    with pytest.raises(InputError, match="more than 100000 points; make it smaller"):
+        read_grid(GRID.replace("contrast = [0.05, 1.0]", many), "grid.toml")
+    assert time.process_time() - started < 1
+
+
+def test_a_point_costs_no_reading_of_the_whole_grid():
+    widths = ", ".join(f"{1 + n / 1000:.3f}" for n in range(2000))
+    text = GRID.replace("contrast = [0.05, 1.0]", f"dot_width_mm = [{widths}]")
+    started = time.process_time()
+    read_grid(text, "grid.toml")
+    reading_s = time.process_time() - started
+    predict_point(GridTask(text, "grid.toml", 0))
+    started = time.process_time()
+    for number in range(1, 21):
+        predict_point(GridTask(text, "grid.toml", number))
+    assert time.process_time() - started < 10 * reading_s

@@ -10,7 +10,8 @@ from tests.tiers import by_tier, heavy
 from vbraille.errors import InputError
 from vbraille.forecast.power import PowerQuestion, power, t_power
 from vbraille.forecast.workers import Workers
-from vbraille.sessions.planning.protocolfiles import load_protocol
+from vbraille.sessions.planning.making import make_plan
+from vbraille.sessions.planning.protocolfiles import load_protocol, parse_protocol
 
 ONE = Workers()
 LETTERS = load_protocol("letters")
@@ -51,6 +52,15 @@ def test_a_preference_is_found():
     assert many.second == "one half"
     assert few.power < many.power
     assert few.power == pytest.approx(few.closed_form, abs=0.12)
+
+
+def test_catch_trials_belong_to_no_condition():
+    text = load_protocol("letters").text
+    watched = text.replace("[design]\n", "[design]\ncatch = { every = 4 }\n", 1)
+    assert watched != text
+    protocol = parse_protocol(watched, "letters.toml")
+    assert any(trial.catch for trial in make_plan(protocol, "P1", 1).trials)
+    assert replace(QUESTION, protocol=protocol).plan().trials == QUESTION.plan().trials
 
 
 def test_rows_are_of_each_size_and_pair_with_what_is_enough():

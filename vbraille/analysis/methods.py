@@ -13,7 +13,6 @@ from vbraille.analysis import taskwords
 from vbraille.analysis.input.trials import natural
 from vbraille.braille.spelling import to_braille
 from vbraille.render.braille.models import MODELS
-from vbraille.sessions.planning.conventionaltable import CONVENTIONAL
 from vbraille.sessions.planning.factors import within
 from vbraille.sessions.planning.knobs import GAP, KNOBS
 from vbraille.version import __version__
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 _DISTANCES = {
     "dot_width_mm": "dots {} mm wide",
     "dot_spacing_mm": "dot columns {} mm apart",
-    "cell_gap_mm": "{} mm from cell to cell",
+    "cell_gap_mm": "{} mm from a cell's last dot column to the next cell's first",
 }
 # Looks that follow from another one that two stimuli are compared by.
 _BY = {"dot_spacing_mm": (GAP,)}
@@ -162,23 +161,10 @@ def _display(sittings: Sequence[SessionTrials], rows: Sequence[dict]) -> str:
         size = f"{array['rows']} × {array['columns']} actuators"
         told.append(f"the {model} ({size}, {where}) {how}")
     shown = f"They were shown on {'; or on '.join(dict.fromkeys(told))}"
-    return f"{shown}{_beside(sittings[0].protocol)}"
-
-
-def _beside(protocol: Protocol) -> str:
-    """What stood on a conventional display instead, or beside."""
-    there = [c.name for c in protocol.conditions if protocol.place_of(c) == CONVENTIONAL]
-    if there:
-        return (
-            f"; those in {' and '.join(there)} on a conventional braille display, where reading "
-            f"was timed by key"
-        )
     reference = protocol.conventional.reference
-    return (
-        f"; {to_braille(reference)} stood on a conventional braille display, for comparison"
-        if reference
-        else ""
-    )
+    if reference and any(sitting.counts["stood"] for sitting in sittings):
+        shown += f"; {to_braille(reference)} stood on a conventional display, for comparison"
+    return shown
 
 
 def _elsewhere(rows: Sequence[dict]) -> Iterable[str]:

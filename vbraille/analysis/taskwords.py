@@ -173,7 +173,7 @@ def procedure(protocol: Protocol) -> Iterable[str]:
     elif isinstance(table, StaircaseProcedure):
         yield (
             f"The {knob.words} of each trial was chosen by the answers before it, by "
-            f"{_staircases(table, knob.unit)}, between {ends}"
+            f"{_staircases(table, knob.unit)}, within {ends}"
         )
         good, bad = ("“yes”", "“no”") if protocol.asks.name == "detect" else ("right", "wrong")
         yield (

@@ -1,4 +1,4 @@
-"""Carriers by name: how far each goes, how finely it measures, and a display that stands on it."""
+"""Carriers: how far each goes, how finely it measures, and a display that stands on it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class Carrier:
 
     Parameters
     ----------
-    name, title
-        Name in options, and in sentences.
+    name
+        Name in sentences.
     travel_mm, height_mm
         How far the array's centre goes along x and along y.
     turns
@@ -28,7 +28,6 @@ class Carrier:
     """
 
     name: str
-    title: str
     travel_mm: float
     height_mm: float
     turns: bool
@@ -38,7 +37,7 @@ class Carrier:
         """Make the display that an array is when it stands on this carrier."""
         return replace(
             display,
-            name=f"{display.name} on the {self.title}",
+            name=f"{display.name} on the {self.name}",
             travel_mm=self.travel_mm,
             height_mm=self.height_mm,
             turns=self.turns,
@@ -48,7 +47,6 @@ class Carrier:
 
 # Lévesque 2009, ch. 7: at worst 45.2 µm.
 TACTOGRAPH: Final = Carrier(
-    "tactograph",
     "Tactograph",
     tactograph.WIDTH_MM,
     tactograph.HEIGHT_MM,
@@ -58,7 +56,6 @@ TACTOGRAPH: Final = Carrier(
 # Lévesque 2009, 5.2 and 6.2: a canvas of 11.3 × 6.0 cm, measured to "better than 13 µm"; the reader
 # keeps the array upright, and nothing measures it: θ = 0. Its five arms are not in the source.
 PANTOGRAPH: Final = Carrier(
-    "pantograph",
     "Pantograph",
     113.0,
     60.0,
@@ -67,11 +64,9 @@ PANTOGRAPH: Final = Carrier(
 )
 # A count too many or too few in each of its three joints moves the array by 76.5 µm at worst.
 LATERO: Final = Carrier(
-    "latero",
     "Latero",
     latero.WIDTH_MM,
     latero.HEIGHT_MM,
     turns=True,
     counts_per_mm=1 / 0.0766,
 )
-CARRIERS: Final = {carrier.name: carrier for carrier in (TACTOGRAPH, PANTOGRAPH, LATERO)}

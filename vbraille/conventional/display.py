@@ -29,7 +29,7 @@ _PIPE_BYTES: Final = 1 << 16
 # what drives the display has stopped answering.
 SILENT_S: Final = 3.0
 _END_S: Final = 2.0
-_STILL: Final = "what drives the display does not answer; start BRLTTY again, or give its address"
+_STILL: Final = "what drives the display does not answer; start it again, or give its address"
 
 
 class ConventionalDisplay:
@@ -41,7 +41,8 @@ class ConventionalDisplay:
     Parameters
     ----------
     spec
-        Which display: "brlapi", or "brlapi:HOST:N" for BRLTTY on another machine.
+        Which display: "brlapi", "brlapi:HOST:N" for BRLTTY on another machine, "dotpad:PORT",
+        "dotpad:PORT?pins", "hid" or "hid:PATH".
     now_s
         Clock in seconds that does not go back.
 
@@ -163,9 +164,8 @@ class ConventionalDisplay:
         if self._left is None:
             return
         try:
-            os.write(
-                self._orders.fileno(), self._left
-            )  # a pipe takes so little whole or not at all
+            # A pipe takes so little whole, or not at all.
+            os.write(self._orders.fileno(), self._left)
         except BlockingIOError:
             return
         except (OSError, ValueError):

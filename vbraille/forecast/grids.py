@@ -6,8 +6,9 @@ Each point of the grid is read in one even pass, at 1,000 frames a second, strin
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 from itertools import product
-from math import inf
+from math import inf, prod
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
@@ -96,10 +97,13 @@ class GridFile(Table, frozen=True, kw_only=True):
         check_range("noise", self.noise, 0, 100)
         check_range("answers", self.answers, 1, MOST_ANSWERS)
         check_range("seed", self.seed, 0, 2**63 - 1)
-        if len(self.points()) > MOST_POINTS:
+        sizes = (*map(len, self.style.values()), len(self.texts), len(self.speeds_mm_s))
+        if prod(sizes) > MOST_POINTS:
             raise ValueError(f"the grid has more than {MOST_POINTS} points; make it smaller")
-        for point in self.points():
-            self.style_at(point)
+        span_mm = MODELS[self.model_name].display.span_mm
+        for values in product(*self.style.values()):
+            style = self.style_at(dict(zip(self.style, values, strict=True)))
+            style.geometry.cells_per_line(span_mm)
 
     @property
     def varied(self) -> list[str]:
@@ -112,7 +116,7 @@ class GridFile(Table, frozen=True, kw_only=True):
         return [dict(zip(self.varied, point, strict=True)) for point in product(*values)]
 
     def style_at(self, point: dict[str, Any]) -> BrailleStyle:
-        """How strings are shown at a point.
+        """How strings are shown at a point, of which the values of the style count.
 
         Raises
         ------
@@ -186,10 +190,17 @@ def read_grid(text: str, where: str) -> GridFile:
     return TomlFile(text, where).read(GridFile, spelled(SpellingKeys(), planned=False))
 
 
+@lru_cache(maxsize=1)
+def _read_once(text: str, where: str) -> tuple[GridFile, list[dict[str, Any]]]:
+    """Grid and its points, which a worker needs again for each of its tasks."""
+    grid = read_grid(text, where)
+    return grid, grid.points()
+
+
 def predict_point(task: GridTask) -> list[int]:
     """Characters, those right, strings, and those right, at a point of a grid."""
-    grid = read_grid(task.text, task.where)
-    point = grid.points()[task.number]
+    grid, points = _read_once(task.text, task.where)
+    point = points[task.number]
     model, style = MODELS[grid.model_name], grid.style_at(point)
     observer = Observer(model.display, style, noise=grid.noise, skin=grid.skin)
     sequence = np.random.SeedSequence(grid.seed, spawn_key=(task.number,))

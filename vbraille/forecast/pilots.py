@@ -126,7 +126,9 @@ def pilot(
         If the work ended early.
     """
     if not 1 <= participants <= MOST_PILOTS:
-        raise InputError(f"{setting('participants')} is {participants}; it must be 1 to 500")
+        raise InputError(
+            f"{setting('participants')} is {participants}; it must be 1 to {MOST_PILOTS}"
+        )
     answers = f"simulated:{noise:g}" + ("" if skin == SKINS[0] else f":{skin}")
     tasks = [
         PilotTask(
@@ -152,9 +154,7 @@ def pilot(
     from vbraille.analysis.report.written import write_report
 
     results = marked(analyse([task.folder for task in tasks], seed=seed))
-    for path in write_report(results, folder / REPORT):
-        if path.suffix == ".csv":
-            write_file(path, mark_rows(path.read_text("utf-8")).encode(), replace=True)
+    write_report(results, folder / REPORT, mark=mark_rows)
     return folder / REPORT
 
 

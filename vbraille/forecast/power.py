@@ -208,15 +208,22 @@ class PowerQuestion:
         )
 
     def _trials(self, names: list[str]) -> tuple[tuple[int, ...], ...]:
-        """Trials of each participant in each condition, by the participant's own plan."""
+        """Trials of each participant in each condition, by the participant's own plan.
+
+        Catch trials are left out, as the analysis does, except where blank ones are detected.
+        """
+        detects = self.protocol.asks.name == "detect"
         counted = []
         for number in range(1, max(self.sizes) + 1):
             plan = make_plan(self.protocol, f"P{number}", self.seed)
             shown = [
                 names[0] if trial.stimuli[0].value is not None else trial.condition
                 for trial in plan.trials
-                if len(trial.stimuli) == 1
-                or names[0] in {f"{stimulus.value:g}" for stimulus in trial.stimuli}
+                if (detects or not trial.catch)
+                and (
+                    len(trial.stimuli) == 1
+                    or names[0] in {f"{stimulus.value:g}" for stimulus in trial.stimuli}
+                )
             ]
             counted.append(tuple(shown.count(name) for name in names))
         if self.test == "paired" and not all(map(all, counted)):

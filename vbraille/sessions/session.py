@@ -24,34 +24,27 @@ from vbraille.sessions.planning.choosing import procedure_of
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.folder import WATCHED_FROM, create, load
 from vbraille.sessions.record.progress import Progress
-from vbraille.sessions.running.answers import (
-    Answers,
-    ScriptedAnswers,
-    Typed,
-    parse_answers,
-)
-from vbraille.sessions.running.given import GivenAnswers, check_script
 from vbraille.sessions.running.markerports import parse_markers
 from vbraille.sessions.running.reader import seed_of
+from vbraille.sessions.running.sources import answers_from
 from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.specs import device_spec, has_hand, refuse_hand, steering_of
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from vbraille.display import Display
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
-    from vbraille.sessions.planning.stimuli import Trial
     from vbraille.sessions.record.folder import Record
+    from vbraille.sessions.running.answers import Answers
     from vbraille.sessions.running.onlookers import Onlookers
     from vbraille.sessions.running.showing import RunEngine
+    from vbraille.sessions.running.sources import Source
     from vbraille.sounds import Sound
 
     Say = Callable[[str], None]
-    # What answers may be taken from; see `Session.run`.
-    Source = str | Answers | Iterable[str] | Callable[[Trial], str | None]
     # Makes the engine that drives a device, from the device's spec and the display that the
     # protocol is written for.
     MakeEngine = Callable[[str, Display], RunEngine]
@@ -285,23 +278,9 @@ class Session:
         InputError
             If the answers cannot be used with this session.
         """
-        if source is None:
-            source = self.conditions.answers
-        if isinstance(source, str):
-            used = self.progress.script_lines.get(source, 0)
-            answers = parse_answers(source, self.protocol, self.plan, used)
-        elif isinstance(source, Answers):
-            answers = source
-        else:
-            answers = GivenAnswers(self.protocol, source)
-        if self.conditions.fast and isinstance(answers, Typed):
-            raise InputError(
-                f"{setting('fast')} is for answers that are not typed; "
-                f"give {setting('answers')} simulated"
-            )
-        if isinstance(answers, ScriptedAnswers):
-            check_script(answers, self.protocol, self.progress)
-        return answers
+        chosen = self.conditions.answers if source is None else source
+        fast = self.conditions.fast
+        return answers_from(chosen, self.protocol, self.plan, self.progress, fast=fast)
 
     def run(
         self,

@@ -40,7 +40,7 @@ _VERSION: Final = 0x0100
 # Registers of the controller, and of its I/O interface. The first is ours: which one switches the
 # real Latero's motor power is not published.
 STATUS: Final = 0x00
-DIO, DIO_DIRECTION, DIO_DIRECTION_TOO = 0x10, 0x11, 0x18
+DIO = 0x10
 _HALF: Final = 0x8000
 
 

@@ -203,6 +203,26 @@ def test_numbers_are_changed_in_decimals(tmp_path):
     assert frame["t"].tolist() == ["1000", "", "6"]
 
 
+def test_a_number_of_the_mapping_keeps_all_its_digits(tmp_path):
+    text = BARE + "contrast = { always = 0.12345678 }\ntime = { always = 1234567.5 }\n"
+    text += 'block = { from = "shown", replace = { a = 1.0 } }\n'
+    frame = mapped(tmp_path, text, "who,shown,typed\nA,a,a\n")[0].frame
+    told = frame[["contrast", "time", "block"]].values.tolist()
+    assert told == [["0.12345678", "1234567.5", "1"]]
+
+
+def test_blanks_around_a_name_in_json_lose_no_value(tmp_path):
+    table = json.dumps([{"who": "A", " shown": "a", "typed ": "b"}])
+    frame = mapped(tmp_path, BARE, table, "theirs.json")[0].frame
+    assert frame[["presented", "answered"]].values.tolist() == [["a", "b"]]
+
+
+def test_a_number_too_large_to_be_changed_is_refused(tmp_path):
+    text = BARE + 'duration_s = { from = "ms", times = 1000 }\n'
+    with pytest.raises(InputError, match="no number that times or plus could change"):
+        mapped(tmp_path, text, "who,shown,typed,ms\nA,a,a,1e999999\n")
+
+
 def test_rows_stay_that_alone_are_wanted(tmp_path):
     text = BARE + '[[leave_out]]\ncolumn = "loop"\nis_not = ["main", 2]\nreason = "practice"\n'
     table = "who,shown,typed,loop\nA,a,a,main\nA,b,b,warm\nA,c,c,2\n"

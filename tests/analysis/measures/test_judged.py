@@ -9,7 +9,7 @@ from tests.analysis.making import record, sheet
 from vbraille.analysis.chapters import Options, analyse_study
 from vbraille.analysis.figures.rises import rises
 from vbraille.analysis.input.parsing import parse
-from vbraille.analysis.input.sheets import from_rows
+from vbraille.analysis.input.sheets import from_rows, read_csv
 from vbraille.analysis.input.study import Study
 from vbraille.analysis.measures import rated, sensitivity
 from vbraille.analysis.measures.thresholds import thresholds
@@ -171,6 +171,30 @@ def test_a_threshold_of_which_of_two(rule):
     assert "P1, dot_width_mm: 0." in figure.text
 
 
+def test_two_values_are_told_apart_however_they_are_written():
+    columns = "participant trial condition first second answered question outcome"
+    lines = [f"P1 {trial} all 1.50 2 1.5 which wrong" for trial in range(1, 4)]
+    one = sheet(*lines, "P1 4 all 2 1.5 2.0 which right", columns=columns).frame
+    one["presented"] = one["first"] + " " + one["second"]
+    told = found(one.to_dict("records"))
+    row = record(sensitivity.sensitivity(told), participant="P1")
+    assert (row["signals"], row["hits"], row["noises"], row["false_alarms"]) == (1, 1, 3, 3)
+    note = record(thresholds(told)[0], participant="P1")["note"]
+    assert not note.startswith("no threshold: neither")
+
+
+def test_levels_of_a_table_with_semicolons_have_decimal_commas(tmp_path):
+    path = tmp_path / "judged.csv"
+    path.write_text(
+        "participant;condition;contrast;presented;answered;question;outcome\n"
+        "P1;a;0,5;⠉;yes;detect;hit\nP1;a;0,25;⠉;no;detect;miss\n"
+        "P1;b;;1,5 2;1,50;which;wrong\n"
+    )
+    told = parse([read_csv(path)]).judgements
+    assert told["contrast"].tolist()[:2] == [0.5, 0.25]
+    assert told[["presented", "answered"]].values.tolist()[2] == ["1.5 2", "1.5"]
+
+
 def test_which_is_nearest_has_no_threshold():
     rows = chosen("P1", 1.0, 1.5, 10, 8) + chosen("P1", 2.0, 2.5, 10, 8, "less")
     table, levels = thresholds(found(rows))
@@ -256,6 +280,9 @@ def test_strings_without_confidence_are_no_judgements():
         ("P1 all 1 c yes detekt hit -", "question is 'detekt'; it must be one of identify"),
         ("P1 all 1 c yes detect right -", "outcome is 'right'; of the question 'detect'"),
         ("P1 all 1 c rough rating - -", "answered is 'rough'; give a number"),
+        ("P1 all 1 c nan rating - -", "answered is 'nan'; give a number"),
+        ("P1 all 1 c NA magnitude - -", "answered is 'NA'; give a number"),
+        ("P1 all 1 c 1e200 rating - -", "answered is '1e200'; give a number"),
         ("P1 all 1 c 0 magnitude - -", "answered is '0'; a magnitude must be above 0"),
         ("P1 all 1 c yes detect hit sure", "confidence is 'sure'; give a number"),
     ],

@@ -164,6 +164,17 @@ def test_power_that_is_off_at_the_start_is_switched_on():
     assert talk.conversation.stage is LateroStage.LIVE
 
 
+def test_power_that_is_not_switched_on_yet_is_not_told_after_a_time_without_ticks():
+    talk = Talk()
+    talk.board.powered = False
+    while talk.conversation.stage is not LateroStage.POWERING:
+        talk.run(1)
+    talk.now_ns += 1000 * MS  # the host begins
+    talk.run(40)
+    assert talk.conversation.stage is LateroStage.LIVE
+    assert not talk.of(Notice)
+
+
 def test_power_that_somebody_else_switches_off_is_left_off():
     talk = Talk().run(50)
     talk.board.powered = False

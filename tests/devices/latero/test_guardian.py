@@ -6,7 +6,9 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -103,6 +105,34 @@ def test_it_stops_when_its_driver_beats_again():
     assert guarded.guardian.step(6 * MS) is None
     assert len(guarded.sent) == 2
     assert guarded.board.words[guardian.ACTING] == 0
+
+
+def test_a_driver_that_is_killed_just_as_it_goes_on_is_not_taken_for_back():
+    """The beat of a driver that went on from a stop, and then ended, is not that it lives."""
+    board = guardian.Board(bytearray(guardian.MEMORY_BYTES))
+    board.full[:] = full_request()
+    board.off[:] = power_off(0)
+    latero, felt = LateroBoard(), bytes(64)
+    lifeline, driver = os.pipe()
+    ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
+    its.setblocking(False)
+    board.levels[:] = felt
+    board.words[guardian.BEAT] = 1  # long ago
+    watching = threading.Thread(target=guardian.watch, args=(board, lifeline, its.fileno()))
+    watching.start()
+    latero.receive(ours.recv(256))  # it acts
+    os.close(driver)
+    board.levels[:] = felt
+    board.words[guardian.BEAT] = time.monotonic_ns()
+    ours.settimeout(0.01)
+    while watching.is_alive():
+        with suppress(TimeoutError):
+            ours.send(latero.receive(ours.recv(256)))
+    watching.join()
+    os.close(lifeline)
+    ours.close()
+    its.close()
+    assert latero.at_rest
 
 
 @pytest.fixture

@@ -123,6 +123,45 @@ def test_two_programs_on_one_latero(latero):
     open_latero(address_of(latero), None).close()
 
 
+class Stopping:
+    """A wait in which the driver is stopped once for longer than the guardian waits."""
+
+    def __init__(self, latero):
+        self.latero, self.done, self.levels = latero, False, []
+
+    def __call__(self, seconds):
+        time.sleep(seconds)
+        if not self.done and (self.latero.board.levels < 150).any():
+            self.done = True
+            until(lambda: self.latero.board.at_rest)
+        self.levels.append(int(self.latero.board.levels.min()))
+
+
+@pytest.mark.parametrize("end", ["rest", "close"])
+def test_a_driver_that_is_stopped_on_its_way_to_rest_goes_on_from_where_the_guardian_was(
+    latero, end
+):
+    stopping = Stopping(latero)
+    with open_latero(address_of(latero), None, pause=stopping) as device:
+        ticks(device, np.ones((8, 8)), found=lambda *_: (latero.board.levels == 0).all())
+        getattr(device, end)()
+    after = stopping.levels[next(n for n, low in enumerate(stopping.levels) if low == 150) :]
+    assert set(after) == {150}
+
+
+def test_what_ends_the_taking_of_leave_leaves_the_blades_to_the_guardian(latero):
+    def pause(seconds):
+        time.sleep(seconds)
+        if not latero.board.at_rest:
+            raise KeyboardInterrupt
+
+    device = open_latero(address_of(latero), None, pause=pause)
+    ticks(device, found=lambda *_: (latero.board.levels == 75).all())
+    with pytest.raises(KeyboardInterrupt):
+        device.close()
+    until(lambda: latero.board.at_rest and not latero.board.powered)
+
+
 class Peer:
     """Somebody at a port who answers with what a function makes of a request."""
 

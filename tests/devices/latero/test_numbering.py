@@ -59,6 +59,14 @@ def test_an_answer_to_a_request_that_is_kept_no_more_is_late_and_not_lost():
     assert numbering.lost == 1
 
 
+def test_what_was_answered_long_ago_was_never_lost():
+    numbering = Numbering()
+    for n in range(KEPT + 9):
+        numbering.judge(numbering.sent(n * MS), n * MS)
+    assert numbering.judge(1, 300 * MS) is Fate.LATE
+    assert numbering.lost == 0
+
+
 def test_numbers_wrap():
     numbering = asked(4, first=0xFFFE)
     assert numbering.next == 2

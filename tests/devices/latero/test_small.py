@@ -122,6 +122,7 @@ def test_arms_that_cannot_be_there_are_to_be_shown_their_place_again():
         ("a?offsets=1,-2,3", LateroAddress("a", 8900, (1, 0xFFFF_FFFE, 3), 0, False)),
         ("a?power=none", LateroAddress("a", 8900, None, None, True)),
         ("a?power=0x1F", LateroAddress("a", 8900, None, 31, True)),
+        ("a?power=08", LateroAddress("a", 8900, None, 8, True)),
     ],
 )
 def test_an_address(text, address):
@@ -138,6 +139,7 @@ def test_an_address(text, address):
         ("a:0", "port is '0'"),
         ("a:65536", "port is '65536'"),
         ("a:x", "port is 'x'"),
+        ("a:000001234567", "port is '000001234567'"),
         ("a?offsets=1,2", "three whole numbers"),
         ("a?power=on", "register"),
         ("a?power=99999", "register"),

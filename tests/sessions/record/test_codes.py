@@ -35,6 +35,9 @@ def test_a_key_is_not_given_away(tmp_path):
         ("a,b\nP01,x\n", "is no key"),
         ("participant,code\nP01,x\nP01,y\n", "is no key"),
         ("participant,code\nP01\n", "is no key"),
+        ("participant,code\nP01,\n", "is no key"),
+        ("participant,code\n,x\n", "is no key"),
+        (f"participant,code\n{'P' * 200_000},x\n", "cannot be read: it is no table"),
         ("participant,code\nP01,x\nP02,x\n", "has one code for two participants; mend it"),
     ],
 )

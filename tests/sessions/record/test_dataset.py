@@ -94,7 +94,10 @@ def test_a_dataset_of_an_older_version_is_not_added_to(record, tmp_path):
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["beh", "sub-P1"]
 
 
-@pytest.mark.parametrize("table", ["", "a\tb\n1\t2\n", "\xff"])
+LONG = f"participant_id\tpseudonym\nsub-P1\t{'P' * 200_000}\n"
+
+
+@pytest.mark.parametrize("table", ["", "a\tb\n1\t2\n", "\xff", LONG], ids=range(4))
 def test_a_table_of_participants_that_is_not_one_is_refused(record, tmp_path, table):
     (tmp_path / "participants.tsv").write_text(table, "latin-1")
     if not table:

@@ -10,9 +10,9 @@ import pytest
 from tests.sessions.sittings import Session as Sitting
 from vbraille.errors import VbrailleError
 from vbraille.sessions.record import events, journal
-from vbraille.sessions.record.eventbase import AnyTime, JournalEvent, WithStimulus
+from vbraille.sessions.record.eventbase import AnyTime, InTrial, JournalEvent, WithStimulus
 from vbraille.sessions.record.eventlines import read, to_json
-from vbraille.sessions.record.events import AnyEvent
+from vbraille.sessions.record.events import AnyEvent, Lost
 from vbraille.sessions.record.progress import Progress
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "session-format.md"
@@ -39,12 +39,22 @@ def table():
     for kind in KINDS:
         said, fields = described(kind)
         given = "with a stimulus" if issubclass(kind, WithStimulus) else ""
-        given = given or ("in a trial" if issubclass(kind, events.InTrial) else "")
+        given = given or ("in a trial" if issubclass(kind, InTrial) else "")
         given = given or ("at any time" if issubclass(kind, AnyTime) else "")
         name = f"`{kind.__struct_config__.tag}`" + (" *" if kind.durable else "")
         cells = (name, said + (f" ({given})" if given else ""), members(fields))
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
+
+
+def leaves(kind):
+    """All classes that follow from one, and that none follows from."""
+    below = kind.__subclasses__()
+    return {leaf for each in below for leaf in leaves(each)} if below else {kind}
+
+
+def test_every_class_is_a_kind_that_a_journal_may_have():
+    assert set(KINDS) == leaves(JournalEvent) - {Lost}
 
 
 def test_the_document_has_the_table_of_the_classes():

@@ -271,3 +271,16 @@ def test_killed_after_the_key_the_trial_is_shown_again(tmp_path):
 def test_a_session_by_file_goes_on_where_nobody_presses(tmp_path):
     table = run(tmp_path, KEYED, ["c"] * 4).trials
     assert {row["ended_by"] for row in table} == {"answer"}
+
+
+def test_what_the_experimenter_has_set_is_what_was_there(tmp_path):
+    toml = DETECT.replace('["a", "c", "4", "0"]', '["a", "c"]')
+    toml += '[practice]\ntrials = 1\nstrings = ["⠈"]\n'
+    sat = Session(tmp_path / "s", toml).sit(
+        ("cue: practice", "contrast 0"), ("read: ", "no"),
+        ("cue: trial 1", ""), ("read: ", "no"),
+        ("cue: trial 2", "contrast 1"), ("read: ", "no"), ("last", ""),
+    )  # fmt: skip
+    assert "practice: right, it was nothing" in sat.said
+    told = [(row["contrast"], row["outcome"], row["correct"]) for row in rows(sat.record)]
+    assert told == [(0.0, "correct rejection", 1), (1.0, "miss", 0)]

@@ -160,7 +160,9 @@ def test_both_displays_alternate_in_one_session(tmp_path):
     table = {row["condition"]: row for row in rows(session.record)}
     there = next(name for name, row in table.items() if row["shown_on"] == "conventional")
     said = f"Strings of the condition {there} stood on a conventional display instead, and were"
-    assert said in methods(load_study([session.folder]))
+    text = methods(load_study([session.folder]))
+    assert said in text
+    assert text.count("conventional display") == text.count("timed by key") == 1
     assert (table["virtual"]["shown_on"], table["virtual"]["trace"]) == ("device", "trace-001.gz")
     assert (table["conventional"]["shown_on"], table["conventional"]["trace"]) == (
         "conventional",
@@ -199,6 +201,8 @@ def test_the_reference_stands_there_throughout_and_its_loss_is_a_fault(tmp_path)
     stood = [event for event in told(session, events.Stood) if event.reference]
     assert {(event.trial, event.cells) for event in stood} == {(1, "⠁"), (2, "⠁")}
     assert [row["shown_on"] for row in rows(session.record)] == ["device"] * 2
+    text = methods(load_study([session.folder]))
+    assert "; ⠁ stood on a conventional display, for comparison" in text
 
 
 def test_a_session_does_not_begin_without_its_display(tmp_path):

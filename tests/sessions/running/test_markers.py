@@ -240,6 +240,16 @@ def test_a_list_that_cannot_be_written_keeps_no_marker_back(tmp_path):
     assert markers.close()[0].startswith("markers: 1 sent")
 
 
+def test_a_list_gets_a_name_of_its_own_though_one_before_was_taken_away(tmp_path):
+    (tmp_path / "markers-002.csv").write_text("kept")
+    (tmp_path / "markers-x.csv").write_text("somebody's")
+    markers = Markers(Taking())
+    markers.begin(tmp_path)
+    markers.close()
+    assert (tmp_path / "markers-003.csv").read_text().startswith("n,event")
+    assert (tmp_path / "markers-002.csv").read_text() == "kept"
+
+
 def test_every_byte_is_of_one_kind():
     assert len(set(CODES.values())) == len(CODES)
     assert all(0 < code < OTHER for code in CODES.values())
@@ -252,6 +262,7 @@ def test_what_is_named_is_a_stream_or_a_port():
     assert parse_markers("lsl:eeg") == MarkerSpec("lsl", "eeg")
     assert parse_markers("serial:/dev/ttyS0") == MarkerSpec("serial", "/dev/ttyS0", 115_200)
     assert parse_markers("serial:COM3:9600") == MarkerSpec("serial", "COM3", 9600)
+    assert parse_markers("serial:/dev/ttyS0:0").baud == 115_200  # nobody sends at 0 bits a second
     for wrong in ("", "serial", "serial:", "usb:1", "LSL2"):
         with pytest.raises(InputError, match=r"markers.* is .*; give lsl, lsl:NAME, serial:PORT"):
             parse_markers(wrong)

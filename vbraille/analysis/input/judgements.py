@@ -4,7 +4,8 @@ Judgements have a row for each answered trial, with the columns ``participant``,
 ``protocol``, ``condition`` (categories in natural order), ``block``, ``trial``, and
 
 - ``question``: kind of the question, a key of `QUESTIONS`;
-- ``presented``, ``answered``: text as it was exported;
+- ``presented``, ``answered``: text as it was exported; of two values, each as numbers are written
+  here, so that equal values are equal texts;
 - ``number``: float64, the answer as a number; NaN for questions that have none;
 - ``outcome``: one of `OUTCOMES` of the question, or empty; where a table has none, it is made of
   what was presented and answered, or of ``correct``;
@@ -24,7 +25,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from vbraille.analysis.input.fieldvalues import UNKNOWN
+from vbraille.analysis.input.fieldvalues import UNKNOWN, is_pair, parse_pair
+from vbraille.analysis.statistics.scores import LARGEST
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
@@ -112,17 +114,19 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
                 f"{sheet.place(row)}: outcome is {outcome[row]!r}; of the question "
                 f"{kinds[row]!r} it must be one of: {known}"
             )
-    answered = rows["answered"].astype(str).str.strip()
+    presented, answered = _texts(sheet, rows, kinds)
     number = _numbers(sheet, answered.where(kinds.isin(_NUMBERS), ""), "answered")
+    for row in rows.index[kinds.isin(_NUMBERS) & number.isna()][:1]:
+        raise _no_number(sheet, row, "answered", answered[row])
     found = who.assign(
         question=kinds,
-        presented=rows["presented"].astype(str),
+        presented=presented,
         answered=answered,
         number=number,
         outcome=outcome,
         confidence=confidence,
         parameter=rows.get("parameter", empty).fillna("").astype(str).str.strip(),
-        **{name: _levels(rows.get(name, empty)) for name in LEVELS},
+        **{name: _levels(sheet, rows.get(name, empty)) for name in LEVELS},
     )
     bad = kept & (kinds == "magnitude") & (number <= 0)
     if bad.any():
@@ -131,6 +135,26 @@ def read_judgements(sheet: Sheet, rows: pd.DataFrame, who: pd.DataFrame) -> pd.D
             f"{sheet.place(row)}: answered is {answered[row]!r}; a magnitude must be above 0"
         )
     return found[kept]
+
+
+def _texts(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> tuple[pd.Series, pd.Series]:
+    """What was presented and answered; two values are written alike wherever they are equal.
+
+    Raises
+    ------
+    InputError
+        If two values cannot be read, or the answer is none of them.
+    """
+    presented, answered = rows["presented"].astype(str), rows["answered"].astype(str).str.strip()
+    pairs = presented.index[(kinds == "which") & presented.map(is_pair).astype(bool)]
+    for row in pairs:
+        try:
+            first, second, chosen = parse_pair(presented[row], answered[row], number=sheet.number)
+        except ValueError as error:
+            raise InputError(f"{sheet.place(row)}: {error}") from None
+        presented[row] = f"{first:.15g} {second:.15g}"
+        answered[row] = f"{(first, second)[chosen]:.15g}"
+    return presented, answered
 
 
 def _outcomes(sheet: Sheet, rows: pd.DataFrame, kinds: pd.Series) -> pd.Series:
@@ -178,12 +202,23 @@ def _numbers(sheet: Sheet, given: pd.Series, column: str) -> pd.Series:
             number = math.nan if text.lower() in UNKNOWN else sheet.number(text)
         except ValueError:
             number = math.inf
-        if math.isinf(number):
-            raise InputError(f"{sheet.place(row)}: {column} is {text!r}; give a number")
+        if abs(number) > LARGEST:
+            raise _no_number(sheet, row, column, text)
         values.append(number)
     return pd.Series(values, given.index, np.float64)
 
 
-def _levels(given: pd.Series) -> pd.Series:
+def _no_number(sheet: Sheet, row: object, column: str, text: str) -> InputError:
+    return InputError(f"{sheet.place(row)}: {column} is {text!r}; give a number")
+
+
+def _levels(sheet: Sheet, given: pd.Series) -> pd.Series:
     """Numbers of a column, NaN where it has something else, such as two values."""
-    return pd.to_numeric(given, errors="coerce").astype(np.float64)
+    known = {}
+    for value in given.unique():
+        try:
+            number = sheet.number(str(value))
+        except ValueError:
+            number = math.nan
+        known[value] = number if math.isfinite(number) else math.nan
+    return given.map(known).astype(np.float64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -140,7 +140,7 @@ def _changed(source: ColumnSource, value: str) -> str:
         # Decimals, as 1234 ms times 0.001 is 1.234 s and not 1.2340000000000002 s.
         number = number * Decimal(str(1 if source.times is None else source.times))
         number += Decimal(str(source.plus or 0))
-    except InvalidOperation:
+    except ArithmeticError:  # no number, or one beyond the largest exponent
         number = Decimal("NaN")
     if not number.is_finite():
         raise ValueError(f"is {value!r}, and no number that times or plus could change")
@@ -167,7 +167,8 @@ def _read_json(path: Path, encoding: str) -> Sheet:
     if wrong is not None or not rows:
         which = "it is empty" if wrong is None else f"its item {wrong} is none"
         raise InputError(f"{path.name} must be a list of objects, one for each trial; {which}")
-    names = dict.fromkeys(name.strip() for row in rows for name in row)
+    rows = [{name.strip(): value for name, value in row.items()} for row in rows]
+    names = dict.fromkeys(name for row in rows for name in row)
     columns = {name: [_text(row.get(name)) for row in rows] for name in names}
     return Sheet(path.name, pd.DataFrame(columns, range(1, len(rows) + 1), dtype=object), "item")
 

@@ -258,7 +258,7 @@ def spelling(value: Scalar) -> str:
     """Text that a value of a mapping file stands for in a table."""
     if isinstance(value, str):
         return value.strip()
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return str(value).removesuffix(".0")
 
 
 def _check_replaced(file: TomlFile, name: str, source: ColumnSource) -> None:

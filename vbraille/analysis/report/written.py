@@ -14,6 +14,7 @@ from vbraille.files import check_free, write_folder
 from vbraille.sessions.record.export import encode
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from vbraille.analysis.results import Results
@@ -24,13 +25,18 @@ CODEBOOK = "codebook.csv"
 _DPI = 300  # dots per inch of the PNGs, as journals ask for
 
 
-def write_report(results: Results, folder: Path) -> list[Path]:
+def write_report(
+    results: Results, folder: Path, *, mark: Callable[[str], str] | None = None
+) -> list[Path]:
     """Make a directory of the report, its numbers and its figures; give the files in their order.
 
     Parameters
     ----------
     folder
         Directory that does not exist yet, or is empty.
+    mark
+        Function that the text of each table goes through before it is written; None to write
+        tables as they are.
 
     Raises
     ------
@@ -42,6 +48,9 @@ def write_report(results: Results, folder: Path) -> list[Path]:
     folder = folder.absolute()
     check_free(folder)  # checked before the figures are drawn, which takes a while
     files = _files(results)
+    if mark is not None:
+        tables = {name: text for name, text in files.items() if name.endswith(".csv")}
+        files |= {name: encode(mark(text.decode("utf-8"))) for name, text in tables.items()}
     # Not flushed to the disk as a session is: a report can be made again.
     write_folder(folder, files)
     return [folder / name for name in files]

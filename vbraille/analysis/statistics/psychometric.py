@@ -121,7 +121,7 @@ def fit_psychometric(
     levels : float[n]
         What was presented, in any unit; a level may stand there several times.
     positive, trials : int[n]
-        LevelCounts that say there is more, or that are right, and all answers, at each level.
+        Answers that say there is more, or that are right, and all answers, at each level.
     shape
         A key of `SHAPES`.
     guess

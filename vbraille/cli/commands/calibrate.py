@@ -182,9 +182,9 @@ class _Guided:
         match key:
             case " ":
                 self._swinging.swing(turn.now.place)
-            case "y" | "\n" | "\r" | "w" | "d":
-                say_line(f"found: {_FINDINGS[key]}")
-                self._find(turn.is_(_FINDINGS[key]))
+            case _ if state := _FINDINGS.get(key):
+                say_line(f"found: {state}")
+                self._find(turn.is_(state))
             case "i":
                 self._set(turn.inverted())
                 say_line(f"inverted: {'yes' if self._round.now.inverted else 'no'}")

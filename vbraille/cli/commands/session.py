@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import sys
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.sessions.planning.knobs import said_value
 from vbraille.sessions.planning.protocolfiles import builtin_names, builtin_text, load_protocol
 from vbraille.sessions.record.participants import nearly_same
 from vbraille.sessions.running.answers import Typed
 from vbraille.simulation.specs import refuse_hand
-from vbraille.wording import printable, spelled
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -50,7 +52,7 @@ def _plan(arguments: argparse.Namespace) -> int:
     if arguments.brf and protocol.task == "choice":
         raise InputError(f"{protocol.name} compares dots, which cannot be embossed")
     if arguments.seed is None:
-        _warn(f"seed: {plan.seed}")
+        say_line(f"seed: {plan.seed}", aside=True)
     if arguments.brf:
         for trial in plan.trials:
             print(_cells(trial).to_brf())
@@ -105,7 +107,7 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _conduct(session: Session, answers: Answers) -> int:
-    session.run(answers, say=_say, warn=_warn, before_rest=EAR.close)
+    session.run(answers, say=_say, warn=partial(say_line, aside=True), before_rest=EAR.close)
     return 0
 
 
@@ -162,7 +164,7 @@ def _pilot(arguments: argparse.Namespace) -> int:
 
     protocol = load_protocol(arguments.protocol)
     folder = Path(arguments.out or f"pilot-{protocol.name}")
-    workers = Workers(arguments.workers).available(_warn)
+    workers = Workers(arguments.workers).available(partial(say_line, aside=True))
     with WorkProgress() as progress:
         report = pilot(
             protocol,
@@ -261,8 +263,4 @@ def _ask(field: Question, typed: Typed) -> str:
 
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because nobody listens
-        print(printable(spelled(sentence)), flush=True)
-
-
-def _warn(sentence: str) -> None:
-    print(printable(sentence), file=sys.stderr, flush=True)
+        say_line(spelled(sentence))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 # Options that only one kind of device has, and what they are when they are not given.
-_LATERO_ONLY: Final[dict[str, object]] = {
+LATERO_ONLY: Final[dict[str, object]] = {
     "port": None,
     "lines": None,
     "wait": None,
@@ -36,8 +36,9 @@ _LATERO_ONLY: Final[dict[str, object]] = {
     "double": None,
     "foreign": None,
 }
-_SERIAL_ONLY: Final[dict[str, object]] = {
+SERIAL_ONLY: Final[dict[str, object]] = {
     "model": "stress2",
+    "rate": 1000,
     "link": None,
     "encoder": "absolute",
     "travel": None,
@@ -61,9 +62,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.what == "latero":
         from vbraille.cli.commands import simulate_latero
 
-        _refuse(arguments, _SERIAL_ONLY)
+        _refuse(arguments, SERIAL_ONLY)
         return simulate_latero.run(arguments, PRIORITY)
-    _refuse(arguments, _LATERO_ONLY)
+    _refuse(arguments, LATERO_ONLY)
     display = _display(arguments)
     info = _info(arguments, display)
     hand = parse_hand(arguments.hand, arguments.seed)

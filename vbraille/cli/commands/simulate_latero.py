@@ -79,7 +79,7 @@ def _summary(simulator: LateroSimulator) -> str:
     board, tally = simulator.board, simulator.network.tally
     return (
         f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {board.fulls}, "
-        f"registers {board.raws}, no requests {board.foreign}, beyond rest {board.beyond}, "
+        f"registers {board.raws}, other datagrams {board.foreign}, beyond rest {board.beyond}, "
         f"requests lost {tally.requests_lost}, answers lost {tally.answers_lost}, "
         f"late {tally.answers_late}, doubled {tally.requests_doubled + tally.answers_doubled}, "
         f"foreign {tally.foreign}, blades {'at rest' if board.at_rest else 'not at rest'}, "

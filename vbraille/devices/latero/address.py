@@ -57,7 +57,7 @@ def parse_latero_address(text: str) -> LateroAddress:
     host, colon, port = place.partition(":")
     if not re.fullmatch(r"[A-Za-z0-9._-]{1,253}", host):
         raise InputError(f"latero: needs the name or the address of a host, as in {_EXAMPLE}")
-    if colon and not (port.isdecimal() and 1 <= int(port[:6]) <= _U16):
+    if colon and not (re.fullmatch(r"[0-9]{1,5}", port) and 1 <= int(port) <= _U16):
         raise InputError(f"port is {port!r}; it must be a whole number from 1 to {_U16}")
     address = LateroAddress(host, int(port) if colon else PORT)
     offsets, power, trusted = address.offsets, address.power, False
@@ -87,9 +87,10 @@ def _power(text: str) -> int | None:
     if text == NO_POWER:
         return None
     found = re.fullmatch(r"0x[0-9a-fA-F]{1,4}|[0-9]{1,5}", text)
-    if found is None or int(text, 0) > _U16:
+    register = int(text, 16 if text.startswith("0x") else 10) if found else -1
+    if not 0 <= register <= _U16:
         raise InputError(
             f"power is {text!r}; give the controller's register that switches motor power, 0 to "
             f"{_U16}, or {NO_POWER}"
         )
-    return int(text, 0)
+    return register

@@ -76,5 +76,7 @@ class Blades:
         self._stepped_ns = now_ns
         np.add(self._at, REST * passed_ns / RAMP_NS, out=self._at)
         np.minimum(self._at, float(REST), out=self._at)
-        np.copyto(self.levels, np.ceil(self._at), casting="unsafe")
+        whole = self._room.reshape(BLADES)
+        np.ceil(self._at, out=whole)
+        np.copyto(self.levels, whole, casting="unsafe")
         self.at_rest = self.rests

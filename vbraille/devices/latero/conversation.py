@@ -123,7 +123,7 @@ class LateroConversation(LateroHearing):
         """Mind what time brings: silence, the ramp, and what must be asked again."""
         self._now_ns = now_ns
         if now_ns - self._tended_ns >= STALL_NS:
-            self._heard_ns = now_ns  # nobody has asked meanwhile
+            self._heard_ns = self._begun_ns = now_ns  # nobody has asked meanwhile
         self._tended_ns = now_ns
         stage = self.stage
         if stage is LateroStage.PROBING and now_ns - self._begun_ns > PROBE_NS:

@@ -122,7 +122,7 @@ class LateroRequest:
 
 
 def blank(kind: int) -> bytearray:
-    """LateroRequest of a kind without its contents: head and padding, number 0."""
+    """Request of a kind without contents: its head with the number 0, and padding."""
     request = bytearray((PADDING,)) * REQUEST_BYTES
     _HEAD.pack_into(request, 0, MAGIC, VERSION, kind, 0)
     return request
@@ -167,7 +167,7 @@ def parse_answer(datagram: bytes | bytearray | memoryview) -> Answer | RawAnswer
 
 
 def parse_request(datagram: bytes) -> LateroRequest | None:
-    """LateroRequest that a datagram is; None if it is none."""
+    """Request that a datagram is; None if it is none."""
     if len(datagram) != REQUEST_BYTES:
         return None
     magic, version, kind, sequence = _HEAD.unpack_from(datagram)

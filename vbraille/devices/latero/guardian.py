@@ -9,9 +9,10 @@ answered both, or for `PATIENCE_NS`. Then it ends, or, if the driver lives, watc
 
 It is given the datagrams ready-made and imports next to nothing, so that it is there at once:
 
-    python -I -S guardian.py MEMORY LIFELINE SOCKET [LOCK]
+    python -I -S guardian.py MEMORY LIFELINE SOCKET
 
-These are descriptors; it answers with a byte on standard output when it watches.
+These are descriptors; further ones that it inherits stay open as long as it lives. It answers with
+a byte on standard output when it watches.
 """
 
 import mmap
@@ -188,7 +189,8 @@ def watch(board, lifeline, socket):
         if guardian.acting:
             due_ns = guardian.step(now_ns)
             if due_ns is None:
-                if ended:
+                # A driver that beat again may have been killed right after that: then once more.
+                if ended and words[BEAT] == guardian.beat_ns:
                     return
                 tripped_ns = guardian.beat_ns
                 continue

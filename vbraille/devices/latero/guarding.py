@@ -113,9 +113,17 @@ class Guarding:
         """Say that the driver lives; this never waits."""
         self.board.words[guardian.BEAT] = now_ns
 
-    def close(self) -> None:
-        """Have the guardian end without doing anything: the blades are at rest."""
-        self.board.words[guardian.STATE] = guardian.CLOSED
+    def close(self, *, all_done: bool = True) -> None:
+        """Have the guardian end, and wait for that.
+
+        Parameters
+        ----------
+        all_done
+            Whether it has nothing to do; otherwise it brings the blades to rest before, and
+            switches motor power off.
+        """
+        if all_done:
+            self.board.words[guardian.STATE] = guardian.CLOSED
         os.close(self._lifeline)
         try:
             self._process.wait(_END_S)

@@ -217,7 +217,7 @@ class LateroDevice(Device):
 
     def _step(self) -> None:
         now_ns = self._now_ns()
-        self._called_ns = now_ns
+        self._mind_stall(now_ns)
         self._hear(now_ns)
         self.conversation.tend(now_ns)
         self._send_due(now_ns)
@@ -233,7 +233,7 @@ class LateroDevice(Device):
                     break
                 self._pause(_STEP_S)
         finally:
-            self.guarding.close()
+            self.guarding.close(all_done=conversation.left)
             self._line.close()
             self._kept.close()
 

@@ -109,7 +109,7 @@ class Numbering:
         """Judge an answer to a request that is not kept: it was long ago, or never."""
         if not_before(self._next - 1, sequence) and self._numbers[sequence % KEPT] != -1:
             self.late += 1
-            self._gone -= 1
+            self._gone = max(self._gone - 1, 0)  # none is, if it was answered in time as well
             return Fate.LATE
         self.unasked += 1
         return Fate.UNASKED

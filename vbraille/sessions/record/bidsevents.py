@@ -50,7 +50,7 @@ class BidsRun:
     Parameters
     ----------
     event
-        JournalEvent that the run began with.
+        Event that the run began with.
     events
         Events of the run, after that one.
     notes

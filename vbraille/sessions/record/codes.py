@@ -65,10 +65,11 @@ class KeyFile:
             rows = list(csv.reader(io.StringIO(path.read_text("utf-8"))))
         except FileNotFoundError:
             return cls(path, {})
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "it is no text"
+        except (OSError, ValueError, csv.Error) as error:
+            no = "table" if isinstance(error, csv.Error) else "text"
+            reason = getattr(error, "strerror", None) or f"it is no {no}"
             raise InputError(f"the key {path} cannot be read: {reason}") from None
-        codes = {row[0]: row[1] for row in rows[1:] if len(row) == 2}
+        codes = {row[0]: row[1] for row in rows[1:] if len(row) == 2 and all(row)}
         if not rows or rows[0] != _HEAD or len(codes) != len(rows) - 1:
             raise InputError(
                 f"{path} is no key: it must have the columns participant and code, and each "

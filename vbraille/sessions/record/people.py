@@ -90,7 +90,7 @@ def read_people(folder: Path) -> PeopleTable:
         pass  # a dataset that is no directory is refused when it is written
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror}") from None
-    except (ValueError, KeyError, AttributeError):
+    except (ValueError, KeyError, AttributeError, csv.Error):
         raise InputError(
             f"{folder / PEOPLE} cannot be read as a table of {ID} and {PSEUDONYM}; "
             f"give another directory with {setting('out')}"

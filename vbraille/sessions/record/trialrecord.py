@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from msgspec import structs
@@ -147,8 +147,10 @@ class TrialRecord:
 
     @property
     def shown(self) -> Trial:
-        """The trial with the stimuli that were shown in its last attempt."""
+        """The trial as it was shown in its last attempt, with what the experimenter had set."""
         stimuli = list(self.trial.stimuli)
         for showing in self.last_attempt:
-            stimuli[showing.stimulus] = showing.stimulus_of(self.trial)
+            shown = showing.stimulus_of(self.trial)
+            tuning = replace(shown.tuning, **showing.tuning)
+            stimuli[showing.stimulus] = replace(shown, tuning=tuning)
         return structs.replace(self.trial, stimuli=Stimuli(stimuli))

@@ -8,7 +8,7 @@ protocol has them. A trial in which the device failed is shown again.
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from vbraille.engine.host import HostDiedError
@@ -22,7 +22,6 @@ from vbraille.sessions.running.phases import Phase
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.conduct import Tone
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
@@ -91,7 +90,6 @@ class Course(CourseState):
         self._play = play
         self._real = real
         self.book = Logbook(journal, progress, self._now_ns)
-        self._break_wanted = False
         self._attempt = 0
         self._ready_ns = 0
         self._cue_ns = 0
@@ -132,9 +130,9 @@ class Course(CourseState):
         self._ready_ns = self._now_ns() + round(gap_s * 1e9)
         if trial is None:
             self._wait_for_end()
-        elif self._over():
+        elif self.over:
             self.end(f"the limit of {self.protocol.session.limit_s:g} s is over")
-        elif self._break_due(trial):
+        elif self.break_due(trial):
             self.have_break()
         else:
             self._ready(trial)
@@ -149,7 +147,7 @@ class Course(CourseState):
 
     def have_break(self) -> None:
         """Begin a break before the next trial."""
-        self._break_wanted = False
+        self.break_wanted = False
         self.book.log(events.Break)
         if self._waits:
             self.phase = Phase.BREAK
@@ -159,7 +157,7 @@ class Course(CourseState):
 
     def want_break(self) -> None:
         """Have a break now, or after the open trial."""
-        self._break_wanted = True
+        self.break_wanted = True
         if self.phase is Phase.READY:
             self.have_break()
         else:
@@ -223,9 +221,7 @@ class Course(CourseState):
                 return  # it does not stand on the display yet
             self.read_said = True
             self.book.log(events.Read, trial, attempt=self._attempt, stimulus=0)
-            told = self.progress.told(trial)
-            seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
-            self._say(f"read: {seconds:.1f} s; type {self._prompt}")
+            self._say(self.told_read(trial))
             if stands is not None:
                 stands.clear()
 
@@ -243,13 +239,7 @@ class Course(CourseState):
             self._say(f"ended: the first, by {key}")
             return
         self.ended_by, self.read_said = by, True
-        told = self.progress.told(trial)
-        seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
-        self._say(f"ended: {seconds:.2f} s, by {key}; type {self._prompt}")
-
-    @property
-    def _prompt(self) -> str:
-        return "the answer" if self.protocol.question is None else self.protocol.question.typed
+        self._say(self.told_ended(trial, key))
 
     def retune(self, tuning: dict[str, float]) -> None:
         """Show the open trial and all later ones with another contrast or texture."""
@@ -261,7 +251,7 @@ class Course(CourseState):
             self.book.log(events.Tuning, trial, tuning=tuning)
             return
         self.book.log(events.Tuning, trial, tuning=tuning, line=self.display.line + 1)
-        self.display.retune(self._tuning(trial))
+        self.display.retune(self.tuning_of(trial))
 
     def look(self) -> bool:
         """Take what the display has to tell; False if its engine had to be started again.
@@ -316,11 +306,7 @@ class Course(CourseState):
 
     def _ready(self, trial: Trial) -> None:
         self.phase = Phase.READY
-        again = ", again" if self.progress.told(trial).attempts else ""
-        how = "; Enter when reading begins" if self.by_key and self._waits else ""
-        if self._stands is not None:
-            how = f", on the conventional display{how}"
-        self._say(f"ready: {self.name(trial)}{again}{how}")
+        self._say(self.told_ready(trial, waits=self._waits))
 
     def _wait_for_end(self) -> None:
         if not self._corrects:
@@ -329,20 +315,6 @@ class Course(CourseState):
         self.phase = Phase.LAST
         if self._waits:
             self._say("last: all trials are done; Enter ends, undo takes back the last answer")
-
-    def _over(self) -> bool:
-        limit_s = self.protocol.session.limit_s
-        return limit_s is not None and self.progress.t_s >= limit_s
-
-    def _break_due(self, trial: Trial) -> bool:
-        done = self.progress.done
-        if self._break_wanted:
-            return True
-        if trial.practice or done == self.progress.broken:
-            return False
-        every = self.protocol.session.break_every
-        in_block = sum(past.trial.block == trial.block for past in self.progress.history)
-        return not in_block or (every is not None and in_block % every == 0)
 
     def _show(self, trial: Trial, stimulus: int) -> None:
         self.stimulus = stimulus
@@ -360,14 +332,11 @@ class Course(CourseState):
         elif self.display is not None:
             if (referred := self._referred) is not None and not stimulus:
                 referred.show_reference()
-            self.display.show(trial.stimuli[stimulus], self._tuning(trial), first=not stimulus)
+            self.display.show(trial.stimuli[stimulus], self.tuning_of(trial), first=not stimulus)
         self._cue_ns = self._now_ns()
         self._play(self.protocol.sound.cue)
         self.book.log(events.Cue, trial)
         self._say(f"cue: {self.name(trial)}" + (", second" if stimulus else ""))
-
-    def _tuning(self, trial: Trial) -> Tuning:
-        return replace(trial.stimuli[self.stimulus].tuning, **self.progress.tuning)
 
     def _take(self, happened: Happened) -> None:
         kind, fields, said = happened
@@ -389,13 +358,10 @@ class Course(CourseState):
         """Give the warning, or show the second stimulus, if either is due."""
         if self.half is not None:
             return
-        warning_s = self.protocol.trial.warning_s
-        told = self.progress.told(trial)
-        waited_s = (self._now_ns() - self._cue_ns) / 1e9 - told.paused_s
-        if warning_s is not None and "warning" not in told.t_s and waited_s >= warning_s:
+        if self.warning_due(trial, (self._now_ns() - self._cue_ns) / 1e9):
             self._play(self.protocol.sound.warning)
             self.book.log(events.Warning, trial)
-            self._say(f"warning: {self.name(trial)}, {warning_s:g} s")
+            self._say(f"warning: {self.name(trial)}, {self.protocol.trial.warning_s:g} s")
         display = self.display
         if display is None or self.by_key or not display.read:
             return
@@ -404,7 +370,7 @@ class Course(CourseState):
                 self._show(trial, self.stimulus + 1)
         elif not self.read_said and self._waits:
             self.read_said = True
-            self._say(f"read: type {self._prompt}")
+            self._say(f"read: type {self.prompt}")
 
     def _repeat_faulty(self, trial: Trial, what: str) -> None:
         """Show the open trial again after a fault, if the protocol says so."""

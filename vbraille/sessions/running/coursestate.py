@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.sessions.planning.standing import is_conventional
 from vbraille.sessions.running.phases import Phase
 
 if TYPE_CHECKING:
+    from vbraille.render.braille.tuning import Tuning
     from vbraille.sessions.planning.plan import Plan
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.planning.stimuli import Trial
@@ -46,6 +48,8 @@ class CourseState:
         Key by which the participant has ended reading; empty before.
     stimulus : int
         Which stimulus of the open trial is shown: 0, or 1 for the second of two.
+    break_wanted : bool
+        Whether the experimenter has asked for a break that has not begun.
     """
 
     def __init__(
@@ -67,6 +71,7 @@ class CourseState:
         self.half: HalfAnswer | None = None
         self.ended_by = ""
         self.stimulus = 0
+        self.break_wanted = False
 
     @property
     def trial(self) -> Trial | None:
@@ -129,3 +134,57 @@ class CourseState:
         if self.open_trial is None or display is None or display.ended or self.by_key:
             return False
         return not (self.paused or self.half or self.ended_by)
+
+    @property
+    def over(self) -> bool:
+        """Whether the session has lasted as long as the protocol allows."""
+        limit_s = self.protocol.session.limit_s
+        return limit_s is not None and self.progress.t_s >= limit_s
+
+    def break_due(self, trial: Trial) -> bool:
+        """Whether there is a break before a trial that comes next."""
+        done = self.progress.done
+        if self.break_wanted:
+            return True
+        if trial.practice or done == self.progress.broken:
+            return False
+        every = self.protocol.session.break_every
+        in_block = sum(past.trial.block == trial.block for past in self.progress.history)
+        return not in_block or (every is not None and in_block % every == 0)
+
+    def warning_due(self, trial: Trial, since_cue_s: float) -> bool:
+        """Whether the warning is due so long after the start signal, pauses included."""
+        warning_s = self.protocol.trial.warning_s
+        told = self.progress.told(trial)
+        if warning_s is None or "warning" in told.t_s:
+            return False
+        return since_cue_s - told.paused_s >= warning_s
+
+    def tuning_of(self, trial: Trial) -> Tuning:
+        """Tuning of the stimulus that is shown, with what the experimenter has set instead."""
+        return replace(trial.stimuli[self.stimulus].tuning, **self.progress.tuning)
+
+    @property
+    def prompt(self) -> str:
+        """What the experimenter is to type as an answer."""
+        return "the answer" if self.protocol.question is None else self.protocol.question.typed
+
+    def told_ready(self, trial: Trial, *, waits: bool) -> str:
+        """Sentence that says that a trial is ready, to somebody who presses keys if it waits."""
+        again = ", again" if self.progress.told(trial).attempts else ""
+        how = "; Enter when reading begins" if self.by_key and waits else ""
+        if self._stands is not None:
+            how = f", on the conventional display{how}"
+        return f"ready: {self.name(trial)}{again}{how}"
+
+    def told_read(self, trial: Trial) -> str:
+        """Sentence that says how long a trial was read off the device, and what to type."""
+        told = self.progress.told(trial)
+        seconds = told.t_s["read"] - told.t_s["cue"] - told.unread_s
+        return f"read: {seconds:.1f} s; type {self.prompt}"
+
+    def told_ended(self, trial: Trial, key: str) -> str:
+        """Sentence that says when the participant's key ended a trial, and what to type."""
+        told = self.progress.told(trial)
+        seconds = told.t_s["ended"] - told.t_s["cue"] - told.paused_s
+        return f"ended: {seconds:.2f} s, by {key}; type {self.prompt}"

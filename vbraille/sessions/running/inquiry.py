@@ -127,6 +127,7 @@ class Inquiry:
 
     def _tell(self, trial: Trial, answer: str) -> None:
         """Say what a practice trial has shown."""
+        trial = self._progress.told(trial).shown
         question, parameter = self._course.protocol.asks, self._course.protocol.parameter
         was = question.was(trial, self._course.protocol.keys)
         values = [stimulus.value for stimulus in trial.stimuli if stimulus.value is not None]

@@ -23,7 +23,7 @@ OTHER = 255
 STREAM = "vbraille"
 BAUD = 115_200
 _WRITE_S = 1.0  # a port that takes no byte for so long is taken for one that is gone
-_SERIAL = re.compile(r"serial:(.+?)(?::([0-9]{1,8}))?")
+_SERIAL = re.compile(r"serial:(.+?)(?::([1-9][0-9]{0,7}))?")
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,7 +72,8 @@ class Markers:
         folder
             The session's directory, where the file is ``markers-001.csv``, or the next number.
         """
-        number = len(list(folder.glob("markers-*.csv"))) + 1
+        names = (path.stem.removeprefix("markers-") for path in folder.glob("markers-*.csv"))
+        number = max((int(name) for name in names if name.isdecimal()), default=0) + 1
         with suppress(OSError):  # the list is no part of the record: a session needs it not
             self._list = (folder / f"markers-{number:03}.csv").open("x", encoding="utf-8")
             self._list.write(HEAD)
