@@ -117,3 +117,13 @@ def test_any_other_key_does_nothing(key):
     controls = Controls()
     assert controls.type(key, 0.0) == ""
     assert (controls.buttons, controls.knobs) == (0, [0.5] * 4)
+
+
+def test_a_button_typed_again_is_held_for_the_whole_of_its_moment():
+    controls = Controls()
+    controls.type("1", 0.0)
+    controls.type("1", 0.8 * SHORT_S)
+    controls.advance(1.2 * SHORT_S)
+    assert controls.buttons == 1
+    controls.advance(1.9 * SHORT_S)
+    assert controls.buttons == 0

@@ -105,8 +105,9 @@ class Controls:
         if key in "12345678":
             button = int(key)
             self._do(ControlEvent(0.0, False, button, 1.0))
-            self._typed.append(ControlEvent(now_s + SHORT_S, False, button, 0.0))
-            self._typed = sorted(self._typed, key=_time_of)[::-1]
+            release = ControlEvent(now_s + SHORT_S, False, button, 0.0)
+            others = [event for event in self._typed if event.number != button]
+            self._typed = [release, *others]  # the next is the last
             return f"button {button}: pressed"
         knob = "abcd".find(key.lower())
         if knob < 0:

@@ -291,7 +291,7 @@ class OnDevice:
             display = self.engine.display
             said = placing_sentence(placing, display, press="press Enter")
             happened.append(reported(said))
-        happened += map(reported, self._upright.watch(self._newest))
+        happened += map(reported, self._upright.watch(ticks[-1]))
         if self._stimulus is not None:
             happened += sorted(
                 self._faults.look(ticks, lost) + self._follow(ticks),
