@@ -106,9 +106,11 @@ def lasting(path):
 def test_workers_end_with_the_process_that_they_work_for():
     pytest.importorskip("dask")
     run = subprocess.Popen([sys.executable, "-c", _BEGUN], stdout=subprocess.PIPE, text=True)
-    workers = {int(run.stdout.readline()) for _ in range(2)}
-    run.kill()
-    run.wait()
+    try:
+        workers = {int(run.stdout.readline()) for _ in range(2)}
+    finally:
+        run.kill()
+        run.wait()
     # The pipe is theirs too, so that it ends with the last of them.
     assert run.stdout.read() == ""
     run.stdout.close()
