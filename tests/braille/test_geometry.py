@@ -39,8 +39,10 @@ class TestPresets:
         assert (STANDARD.dot_spacing_mm, STANDARD.line_pitch_mm) == (2.29, 10.0)
 
     def test_by_name(self):
-        assert PRESETS == {"vbd": VBD, "stress2": STRESS2, "standard": STANDARD}
-        assert {preset.travel_mm for preset in PRESETS.values()} == {300.0}
+        named = {"vbd": VBD, "stress2": STRESS2, "standard": STANDARD}
+        assert named.items() <= PRESETS.items()
+        assert {preset.travel_mm for preset in named.values()} == {300.0}
+        assert PRESETS.keys() - named.keys() == {"stress2-8x8", "latero"}
 
 
 class TestChecks:

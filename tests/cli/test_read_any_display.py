@@ -88,7 +88,8 @@ def last_pass(felt, display):
 
 def test_a_text_is_read_on_eight_rows_of_eight(tmp_path):
     (tmp_path / "text.txt").write_text("no\n\nbraille\n")
-    display = replace(LATERO, travel_mm=120.0)
+    # No model has these distances.
+    display = replace(LATERO, row_pitch_mm=1.5, travel_mm=120.0)
     style = model_of(display).style
     with device_of(display) as (spec, felt):
         done = program.run(
@@ -123,7 +124,7 @@ def test_a_text_is_read_on_eight_rows_of_eight(tmp_path):
 )
 def test_what_a_display_cannot_show_is_one_sentence(call, tmp_path, rows, options, sentence):
     (tmp_path / "text.txt").write_text("no\n")
-    with device_of(array_of(rows, 8, 1.2, 1.6125)) as (spec, _):
+    with device_of(array_of(rows, 8, 1.2, 1.5)) as (spec, _):
         done = call("read", tmp_path / "text.txt", "--device", spec, *options)
     assert (done.code, done.out) == (2, "")
     assert sentence in done.err

@@ -121,7 +121,7 @@ _BEGUN = """
 import os
 from vbraille.forecast.workers import Workers
 def said(task):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}{os.linesep}".encode())
     while True:
         os.sched_yield()
 Workers(2).work(said, [1, 2], lambda *_: None)

@@ -8,6 +8,7 @@ from urllib.parse import quote
 
 from vbraille.errors import InputError
 from vbraille.files import write_file
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -63,7 +64,7 @@ def load(settings: Path, device: Device) -> Calibration | None:
         raise InputError(
             f"{path} is for {found.rows} × {found.columns} actuators and {name} has "
             f"{display.rows} × {display.columns}; calibrate it anew after "
-            f"vbraille device calibrate --forget"
+            f"vbraille device calibrate {setting('forget')}"
         )
     return found
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from vbraille.simulation.motion import Way
-from vbraille.simulation.paging import Area
+from vbraille.simulation.paging import Area, area_on
 from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
@@ -24,14 +24,17 @@ if TYPE_CHECKING:
 APPROACH_MM_S: Final = 250.0
 TURN_RAD_S: Final = 2 * math.pi
 PAST_MARK_MM: Final = 1.0
+# What a page keeps free below its last line, in line pitches, for a finger that goes on from there.
+BELOW_PITCHES: Final = 0.225
 
 
 def area_of(display: Display, pitch_mm: float) -> Area | None:
     """Lines that fill the surface of a display; None if its carriage has one axis."""
     if not display.height_mm:
         return None
-    lines = max(int(display.height_mm / pitch_mm), 1)
-    return Area(lines, pitch_mm, -display.span_mm, display.travel_mm - display.span_mm)
+    lines = max(int(display.height_mm / pitch_mm - BELOW_PITCHES), 1)
+    right_mm = display.travel_mm - display.span_mm
+    return area_on(display.height_mm, lines, pitch_mm, -display.span_mm, right_mm)
 
 
 class CarriageAt(NamedTuple):

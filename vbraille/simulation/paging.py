@@ -68,6 +68,16 @@ class Area:
         return self.lines * self.pitch_mm
 
 
+def area_on(height_mm: float, lines: int, pitch_mm: float, start_mm: float, end_mm: float) -> Area:
+    """Area of lines at the top of a surface; its foot is the surface's lower edge.
+
+    A hand that is not told how much of a page there is goes down there when it has read these
+    lines, which is below the last line of whatever page there is.
+    """
+    foot_mm = max(height_mm - lines * pitch_mm, 0.0)
+    return Area(lines, pitch_mm, start_mm, end_mm, foot_mm)
+
+
 class Drift:
     """How a hand wanders off a line and turns a little, slowly and within bounds.
 

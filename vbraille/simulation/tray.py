@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from vbraille.carriers import latero
-from vbraille.simulation.paging import Area
+from vbraille.simulation.paging import area_on
 from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Tray:
     ) -> None:
         self._hand = hand
         self._span_mm = span_mm
-        self._area = Area(lines, pitch_mm, -span_mm, latero.WIDTH_MM - span_mm)
+        self._area = area_on(latero.HEIGHT_MM, lines, pitch_mm, -span_mm, latero.WIDTH_MM - span_mm)
         self._t_s = np.zeros(1)
         self._way = tuple(np.full(1, place) for place in (-span_mm, *latero.RESET[1:]))
         self._begun_us = 0

@@ -11,6 +11,7 @@ from vbraille.devices.latero.datagrams import BUTTONS, PORT
 from vbraille.devices.latero.laterodevice import DISPLAY
 from vbraille.engine.realtime import come_first
 from vbraille.errors import InputError
+from vbraille.render.braille.models import LATERO
 from vbraille.simulation.laterosim import WAIT_S, LateroFaults, LateroSimulator
 from vbraille.simulation.pressing import parse_presses
 from vbraille.simulation.script import load_script
@@ -20,8 +21,6 @@ from vbraille.simulation.tray import Tray
 if TYPE_CHECKING:
     import argparse
 
-_PITCH_MM: Final = 10.0
-_MOST_LINES: Final = 21  # as many as the tray has room for
 _MOST_PORT: Final = 0xFFFF
 
 
@@ -40,8 +39,10 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
     if not 0 <= port <= _MOST_PORT:
         raise InputError(f"port is {port}; it must be 0 to {_MOST_PORT}")
     lines = 1 if arguments.lines is None else arguments.lines
-    if not 1 <= lines <= _MOST_LINES:
-        raise InputError(f"lines are {lines}; a Latero has room for 1 to {_MOST_LINES}")
+    pitch_mm = LATERO.style.geometry.line_pitch_mm
+    most = int(DISPLAY.height_mm / pitch_mm)
+    if not 1 <= lines <= most:
+        raise InputError(f"lines are {lines}; a Latero has room for 1 to {most}")
     try:
         faults = LateroFaults(
             drop=arguments.drop,
@@ -54,7 +55,7 @@ def run(arguments: argparse.Namespace, priority: int) -> int:
         raise InputError(str(error)) from None
     with EAR.deferred(), ControlKeys() as keys:
         simulator = LateroSimulator(
-            Tray(hand, DISPLAY.span_mm, lines, _PITCH_MM),
+            Tray(hand, DISPLAY.span_mm, lines, pitch_mm),
             say=say_line,
             port=port,
             faults=faults,
