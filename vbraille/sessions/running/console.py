@@ -249,6 +249,7 @@ class Console:
             course.paused = False
             course.book.log(events.Go, course.open_trial)
             course.go()
+            self._await_key(course.reading)  # whoever hears the sentence may press it at once
             self._say("go: on")
         elif course.phase is Phase.BREAK:
             course.book.log(events.Go)
