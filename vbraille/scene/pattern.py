@@ -1,0 +1,42 @@
+"""What patterns of every kind have in common."""
+
+from __future__ import annotations
+
+from vbraille.scene.measures import check_share
+from vbraille.scene.strokes import Vibration
+from vbraille.toml.tomlfile import Table
+
+
+class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
+    """What patterns of every kind have in common.
+
+    The three changes are made in this order: amplitude, inversion, vibration.
+
+    Parameters
+    ----------
+    id
+        Name by which other elements and people call it; empty if it has none.
+    title, description
+        What it is, in a word and in a sentence, for whoever feels it; empty for nothing.
+    amplitude
+        Factor of its deflections, from 0 to 1.
+    inverted
+        Whether 1 - δ is shown in place of δ.
+    vibration
+        Vibration of its high or of its low parts; None for none.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or two cannot go together.
+    """
+
+    id: str = ""
+    title: str = ""
+    description: str = ""
+    amplitude: float = 1.0
+    inverted: bool = False
+    vibration: Vibration | None = None
+
+    def __post_init__(self) -> None:
+        check_share("amplitude", self.amplitude)

@@ -1,0 +1,422 @@
+"""Patterns: everything that can stand in a tactile picture, as frozen values that check themselves.
+
+A pattern gives a deflection from 0, rest, to 1 for each place of the canvas (Lévesque 2009, ch. 8).
+The classes are tables of scene files at the same time: their fields are the keys of the file.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from vbraille.errors import check_range
+from vbraille.scene.measures import Point, check_angle, check_length, check_point, check_share
+from vbraille.scene.pattern import Pattern
+from vbraille.scene.strokes import DotStyle, Dotting, Markers, Stroke
+from vbraille.scene.textures import (
+    AxialGrating,
+    LinearGrating,
+    RadialGrating,
+    Uniform,
+    UniformVibration,
+)
+from vbraille.toml.tomlfile import Table
+
+
+class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):
+    """A pattern repeated over the canvas: δ(p mod (w, h)), from an origin; Lévesque 2009, 8.4.1."""
+
+    width_mm: float
+    height_mm: float
+    part: AnyPattern
+    origin_mm: Point = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_length("width", self.width_mm, 0.1)
+        check_length("height", self.height_mm, 0.1)
+        check_point("origin", self.origin_mm)
+
+
+class Image(Pattern, frozen=True, kw_only=True, tag="image"):
+    """A bitmap or a drawing as a plain map, or as the mask of a texture: Lévesque 2009, 8.4.2.
+
+    Parameters
+    ----------
+    file
+        Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
+    place_mm
+        Its top left corner on the canvas.
+    width_mm, height_mm
+        Its size; one of them follows from the other and the picture's shape if it is left out.
+    channel
+        "gray", by which white is up, or "alpha", by which what is opaque is up.
+    inverted_source
+        Whether black is up, or what is transparent.
+    blur_mm
+        Standard deviation of the Gauss by which it is blurred, since sharp edges are not pleasant.
+    outside
+        Intensity beyond its edges.
+    texture
+        Pattern that it is the mask of; None for a plain map.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    file: str
+    place_mm: Point = (0.0, 0.0)
+    width_mm: float | None = None
+    height_mm: float | None = None
+    channel: Literal["gray", "alpha"] = "gray"
+    inverted_source: bool = False
+    blur_mm: float = 0.0
+    outside: float = 0.0
+    texture: AnyPattern | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("place", self.place_mm)
+        check_length("width", self.width_mm, 0.1)
+        check_length("height", self.height_mm, 0.1)
+        check_range("blur", self.blur_mm, 0.0, 100.0, " mm")
+        check_share("outside", self.outside)
+
+
+class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
+    """Dots where a grayscale image has blobs: Lévesque 2009, 6.3.1 and eq. 6.1.
+
+    A blob is a connected set of pixels above ``threshold``. Its dot stands at its centre of mass,
+    has its largest gray as amplitude, and has its area where ``by_area`` says so, or else the
+    radius of ``dot``. How a blob becomes a dot is not in the source; this is ours to choose.
+    """
+
+    file: str
+    place_mm: Point = (0.0, 0.0)
+    width_mm: float | None = None
+    height_mm: float | None = None
+    threshold: float = 0.1
+    by_area: bool = True
+    dot: DotStyle = DotStyle(plateau=0.25)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("place", self.place_mm)
+        check_length("width", self.width_mm, 0.1)
+        check_length("height", self.height_mm, 0.1)
+        check_share("threshold", self.threshold)
+
+
+class Fill(Table, frozen=True, kw_only=True):
+    """What fills a closed shape: Lévesque 2009, fig. 8.21 and eq. 8.20.
+
+    Parameters
+    ----------
+    texture
+        Pattern of the inside.
+    gap_mm
+        Distance between the stroke's inner edge and the fill.
+    fade_mm
+        Distance over which the fill grows from there to its full strength.
+    blended
+        Whether the fill goes on under the stroke, which is blended into it (eq. 8.20); gap and
+        fade do not count then.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    texture: AnyPattern
+    gap_mm: float = 0.0
+    fade_mm: float = 1.0
+    blended: bool = False
+
+    def __post_init__(self) -> None:
+        check_length("gap", self.gap_mm, 0.0)
+        check_length("fade", self.fade_mm, 0.0)
+
+
+class Shape(Pattern, frozen=True, kw_only=True):
+    """What shapes of every kind have in common: a stroke, or dots in its place.
+
+    Parameters
+    ----------
+    stroke
+        Stroke along the shape; None for none.
+    dots
+        Dots along the shape, in place of a stroke; None for none.
+
+    Raises
+    ------
+    ValueError
+        If it has both.
+    """
+
+    stroke: Stroke | None = None
+    dots: Dotting | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.stroke is not None and self.dots is not None:
+            raise ValueError("dots cannot be given beside a stroke; leave one out")
+
+
+class Line(Shape, frozen=True, kw_only=True, tag="line"):
+    """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17."""
+
+    start_mm: Point
+    end_mm: Point
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("start", self.start_mm)
+        check_point("end", self.end_mm)
+        if self.start_mm == self.end_mm:
+            raise ValueError("end is where the line starts; a line needs two places")
+        _check_drawn(self, None)
+
+
+class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
+    """A circle, with or without a fill: Lévesque 2009, eqs. 8.18 and 8.19."""
+
+    center_mm: Point
+    radius_mm: float
+    fill: Fill | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("center", self.center_mm)
+        check_length("radius", self.radius_mm)
+        _check_drawn(self, self.fill)
+
+
+class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
+    """A closed polygon whose edges do not cross: Lévesque 2009, 8.4.3.
+
+    Parameters
+    ----------
+    vertices_mm
+        Its vertices in order, three or more; the first is where textures along it begin.
+    join
+        How a texture along the stroke goes round a corner: "straight", to the bisector, where it
+        jumps, or "rounded", along an arc round the point where the stroke's edges meet.
+    rounding_offset_mm
+        How much wider the stroke is taken to be for that arc, which moves its middle away.
+    fill
+        What fills it; None for nothing.
+    markers
+        Markers at its vertices; None for none.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, there are fewer than three vertices, two that follow each
+        other are one place, or edges cross.
+    """
+
+    vertices_mm: tuple[Point, ...]
+    join: Literal["straight", "rounded"] = "rounded"
+    rounding_offset_mm: float = 0.0
+    fill: Fill | None = None
+    markers: Markers | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check_points("vertices", self.vertices_mm, 3)
+        check_length("rounding offset", self.rounding_offset_mm, 0.0)
+        _check_drawn(self, self.fill)
+
+
+class Path(Shape, frozen=True, kw_only=True, tag="path"):
+    """Lines through many places, open or closed, one or several, as drawings have them.
+
+    Parameters
+    ----------
+    contours_mm
+        The places of each contour, in order; textures along it begin at the first.
+    closed
+        Whether each contour goes back to its first place.
+    fill
+        What fills the closed contours, by the even-odd rule; None for nothing.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, a contour has too few places, or an open one has a fill.
+    """
+
+    contours_mm: tuple[tuple[Point, ...], ...]
+    closed: bool = False
+    fill: Fill | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.contours_mm:
+            raise ValueError("contours are missing; give at least one")
+        for number, contour in enumerate(self.contours_mm, 1):
+            _check_points(f"contours, number {number}", contour, 3 if self.closed else 2)
+        if self.fill is not None and not self.closed:
+            raise ValueError("fill needs a closed path; write closed = true")
+        _check_drawn(self, self.fill)
+
+
+class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
+    """Dots at any places, which share their look; where they overlap, the larger counts."""
+
+    centers_mm: tuple[Point, ...]
+    dot: DotStyle = DotStyle()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.centers_mm:
+            raise ValueError("centers are missing; give at least one")
+        for number, center in enumerate(self.centers_mm, 1):
+            check_point(f"centers, number {number}", center)
+
+
+class Label(Pattern, frozen=True, kw_only=True, tag="label"):
+    """Braille in the picture: a text, translated by the same tables as books are.
+
+    Parameters
+    ----------
+    text
+        The text.
+    place_mm
+        Top left corner of its first cell.
+    width_mm
+        Width at which its lines are broken; None for one line.
+    table
+        Language or table of liblouis; empty for that of the scene.
+    angle_deg
+        Direction of its lines, from +x towards +y.
+
+    Raises
+    ------
+    ValueError
+        If the text is empty, or a number is out of range.
+    """
+
+    text: str
+    place_mm: Point
+    width_mm: float | None = None
+    table: str = ""
+    angle_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.text.strip():
+            raise ValueError("text is empty; a label needs one")
+        check_point("place", self.place_mm)
+        check_length("width", self.width_mm, 1.0)
+        check_angle("angle", self.angle_deg)
+
+
+Operation = Literal["overwrite", "multiply", "add", "weighted", "maximum", "blend"]
+
+
+class Group(Pattern, frozen=True, kw_only=True, tag="group"):
+    """Patterns put together: Lévesque 2009, 8.4.5.
+
+    Parameters
+    ----------
+    operation
+        "overwrite", layers of which the last is on top (eq. 8.22); "multiply", masking; "add", a
+        sum that ends at 1; "weighted", a sum by ``weights``; "maximum"; or "blend", by which
+        ``by`` chooses between two parts (eq. 8.21: 0 the first, 1 the second).
+    parts
+        The patterns.
+    weights
+        A weight for each part of a weighted sum; they add up to 1.
+    by
+        Pattern that chooses in a blend.
+
+    Raises
+    ------
+    ValueError
+        If parts, weights and operation do not go together.
+    """
+
+    operation: Operation = "overwrite"
+    parts: tuple[AnyPattern, ...]
+    weights: tuple[float, ...] | None = None
+    by: AnyPattern | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.parts:
+            raise ValueError("parts are missing; give at least one")
+        if (self.weights is not None) != (self.operation == "weighted"):
+            raise ValueError('weights belong to operation = "weighted", and to no other')
+        if self.weights is not None:
+            for number, weight in enumerate(self.weights, 1):
+                check_share(f"weights, number {number}", weight)
+            if len(self.weights) != len(self.parts) or abs(sum(self.weights) - 1.0) > 1e-6:
+                raise ValueError("weights must be one for each part, and add up to 1")
+        if (self.by is not None) != (self.operation == "blend"):
+            raise ValueError('by belongs to operation = "blend", and to no other')
+        if self.operation == "blend" and len(self.parts) != 2:
+            raise ValueError(f"parts are {len(self.parts)}; a blend has two")
+
+
+class Use(Pattern, frozen=True, kw_only=True, tag="use"):
+    """Another element or a named texture, by its name, with the changes that are given here.
+
+    Parameters
+    ----------
+    name
+        Id of an element of the scene or of what it includes, or name of a texture.
+    move_mm
+        How far it is moved, right and down.
+
+    Raises
+    ------
+    ValueError
+        If the name is empty, or a number is out of range.
+    """
+
+    name: str
+    move_mm: Point = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.name:
+            raise ValueError("name is empty; say which element or texture is used")
+        check_point("move", self.move_mm)
+
+
+AnyPattern = (
+    Uniform
+    | UniformVibration
+    | LinearGrating
+    | RadialGrating
+    | AxialGrating
+    | Tile
+    | Image
+    | ImageDots
+    | Line
+    | Circle
+    | Polygon
+    | Path
+    | Dots
+    | Label
+    | Group
+    | Use
+)
+
+
+def _check_points(what: str, points_mm: tuple[Point, ...], least: int) -> None:
+    if len(points_mm) < least:
+        raise ValueError(f"{what} are {len(points_mm)}; there must be {least} or more")
+    for number, point in enumerate(points_mm, 1):
+        check_point(f"{what}, number {number}", point)
+        if number > 1 and point == points_mm[number - 2]:
+            raise ValueError(f"{what}, number {number} is the place before it; leave it out")
+
+
+def _check_drawn(shape: Shape, fill: Fill | None) -> None:
+    """Refuse a shape of which nothing can be felt."""
+    if shape.stroke is None and shape.dots is None and fill is None:
+        raise ValueError("a shape needs a stroke, dots or a fill; add one")

@@ -1,0 +1,58 @@
+"""A scene: a canvas with a title, and the elements of a tactile picture on it."""
+
+from __future__ import annotations
+
+from vbraille.errors import check_range
+from vbraille.scene.patterns import AnyPattern, Operation
+from vbraille.toml.tomlfile import Table
+
+
+class Canvas(Table, frozen=True, kw_only=True):
+    """The surface that a scene stands on; its origin is the top left, x right, y down.
+
+    Parameters
+    ----------
+    width_mm, height_mm
+        Its size, 1 to 10,000 mm.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    width_mm: float
+    height_mm: float
+
+    def __post_init__(self) -> None:
+        check_range("width", self.width_mm, 1.0, 10_000.0, " mm")
+        check_range("height", self.height_mm, 1.0, 10_000.0, " mm")
+
+
+class Scene(Table, frozen=True, kw_only=True):
+    """A tactile picture.
+
+    Parameters
+    ----------
+    canvas
+        Surface that it stands on.
+    title, description
+        What it shows, in a word and in sentences.
+    language
+        Language of its titles and labels, or a table of liblouis.
+    operation
+        How its elements are put together: "overwrite", by which each hides what it stands on, as
+        in drawings, or one of the others that a group has.
+    elements
+        The elements in order, the last on top.
+    textures
+        Patterns by name, for `Use`.
+    """
+
+    canvas: Canvas
+    title: str = ""
+    description: str = ""
+    language: str = "en"
+    operation: Operation = "overwrite"
+    elements: tuple[AnyPattern, ...] = ()
+    textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default

@@ -1,0 +1,272 @@
+"""How shapes are drawn: strokes with their profile and textures, dots, and markers at vertices.
+
+Lévesque 2009, 8.4.3 and 8.4.4.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from vbraille.errors import check_range
+from vbraille.scene.measures import (
+    LEAST_FREQUENCY_HZ,
+    MOST_FREQUENCY_HZ,
+    check_angle,
+    check_length,
+    check_share,
+)
+from vbraille.toml.tomlfile import Table
+
+_MOST_CYCLES = 100
+
+
+class Vibration(Table, frozen=True, kw_only=True):
+    """A vibration of a pattern: neighbouring actuators swing against each other.
+
+    Lévesque 2009, eqs. 8.1-8.3.
+
+    Parameters
+    ----------
+    frequency_hz
+        Frequency of the swings, 0.1 to 50 Hz.
+    amplitude
+        Share A of the deflection that swings: 1 down to rest, 0 not at all.
+    of
+        Which part swings: "high", what is up (eq. 8.13: δ · δ¹), or "low", what is down
+        (1 - (1 - δ) δ¹; of a stroke, eq. 8.14).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    frequency_hz: float = MOST_FREQUENCY_HZ
+    amplitude: float = 1.0
+    of: Literal["high", "low"] = "high"
+
+    def __post_init__(self) -> None:
+        check_range("frequency", self.frequency_hz, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")
+        check_share("amplitude", self.amplitude)
+
+
+class Across(Table, frozen=True, kw_only=True):
+    """A texture across a stroke or from the middle of a dot: Lévesque 2009, eq. 8.10.
+
+    Parameters
+    ----------
+    amplitude
+        Weight k_t of the texture, from 0 to 1.
+    cycles
+        Number n of cycles across the whole width; odd, so that it meets rest at the edge.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or the cycles are even.
+    """
+
+    amplitude: float = 0.5
+    cycles: int = 7
+
+    def __post_init__(self) -> None:
+        check_share("amplitude", self.amplitude)
+        check_range("cycles", self.cycles, 1, _MOST_CYCLES)
+        if self.cycles % 2 == 0:
+            raise ValueError(f"cycles is {self.cycles}; it must be odd")
+
+
+class Along(Table, frozen=True, kw_only=True):
+    """A grating along a stroke, which cuts into it: Lévesque 2009, eqs. 8.11 and 8.12.
+
+    Parameters
+    ----------
+    ridge_mm, gap_mm
+        Length of the grating's ridge, where the stroke is cut, and of the gap, where it is whole.
+    amplitude
+        How deep the cuts are, as a share.
+    whole_edges
+        Whether the stroke's edges are left whole (eq. 8.12 instead of 8.11).
+    whole_cycles
+        Whether the lengths are changed a little so that a closed path has a whole number of
+        cycles; see `vbraille.scene.fitting`.
+    velocity_mm_s
+        Speed of the grating along the path, in the order of the path's points (eq. 9.2, with the
+        sign that moves ridges towards larger places).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    ridge_mm: float = 2.0
+    gap_mm: float = 0.0
+    amplitude: float = 1.0
+    whole_edges: bool = False
+    whole_cycles: bool = True
+    velocity_mm_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_length("ridge", self.ridge_mm)
+        check_length("gap", self.gap_mm, 0.0)
+        check_share("amplitude", self.amplitude)
+        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
+
+
+class Stroke(Table, frozen=True, kw_only=True):
+    """The stroke of a line, a circle, a polygon or a path: Lévesque 2009, eqs. 8.7-8.14.
+
+    Parameters
+    ----------
+    width_mm
+        Width w of the stroke.
+    edge_mm
+        Length ε of its edge, at most half of the width; None for all of it (a smooth stroke).
+    amplitude
+        Deflection k of its middle, from 0 to 1.
+    outlined
+        Whether only the outline of the stroke is up (eq. 8.8); the width must be four edges then.
+    across, along
+        Texture across and along it; None for none.
+    vibration
+        Vibration of what is up in it, or of what a texture along it has cut; None for none.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or two of them cannot go together.
+    """
+
+    width_mm: float = 4.0
+    edge_mm: float | None = 1.0
+    amplitude: float = 1.0
+    outlined: bool = False
+    across: Across | None = None
+    along: Along | None = None
+    vibration: Vibration | None = None
+
+    def __post_init__(self) -> None:
+        check_length("width", self.width_mm)
+        check_length("edge", self.edge_mm)
+        check_share("amplitude", self.amplitude)
+        four = self.outlined or (self.along is not None and self.along.whole_edges)
+        if four and self.width_mm < 4 * self.edge:
+            raise ValueError(
+                f"width is {self.width_mm:g} mm; it must be at least four edges of "
+                f"{self.edge:g} mm, or the outline fills the stroke"
+            )
+        low = self.vibration is not None and self.vibration.of == "low"
+        if low and self.along is None:
+            raise ValueError('vibration of = "low" needs a texture along the stroke; add along')
+
+    @property
+    def edge(self) -> float:
+        """Length of the edge that the stroke has, in mm."""
+        half = self.width_mm / 2
+        return half if self.edge_mm is None else min(self.edge_mm, half)
+
+
+class DotStyle(Table, frozen=True, kw_only=True):
+    """How dots look: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
+
+    Parameters
+    ----------
+    radius_mm
+        Distance from the middle of a dot to where it ends.
+    edge_mm
+        Length of its edge; None for all of the radius that the plateau leaves.
+    plateau
+        Share of the radius that is flat, instead of an edge: P of eq. 6.1, which prefers 0.25.
+    amplitude
+        Deflection of its middle, from 0 to 1.
+    across
+        Texture from its middle outwards; None for none.
+    vibration
+        Vibration of the dots; None for none.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both an edge and a plateau are given.
+    """
+
+    radius_mm: float = 1.0
+    edge_mm: float | None = None
+    plateau: float | None = None
+    amplitude: float = 1.0
+    across: Across | None = None
+    vibration: Vibration | None = None
+
+    def __post_init__(self) -> None:
+        check_length("radius", self.radius_mm)
+        check_length("edge", self.edge_mm)
+        check_range("plateau", self.plateau, 0.0, 0.95)
+        check_share("amplitude", self.amplitude)
+        if self.edge_mm is not None and self.plateau is not None:
+            raise ValueError("plateau cannot be given beside edge_mm; leave one of them out")
+
+    @property
+    def edge(self) -> float:
+        """Length of the edge that a dot has, in mm."""
+        if self.edge_mm is not None:
+            return min(self.edge_mm, self.radius_mm)
+        return self.radius_mm * (1.0 - (self.plateau or 0.0))
+
+
+class Dotting(Table, frozen=True, kw_only=True):
+    """A row of dots along a shape, in place of a stroke: Lévesque 2009, 8.4.4.
+
+    Parameters
+    ----------
+    dot
+        How the dots look.
+    separation_mm
+        Least distance between the edges of two dots, also of those on two sides of a joint.
+    vertex_vibration
+        Vibration of the dots on a polygon's vertices; None if they are like the others.
+
+    Raises
+    ------
+    ValueError
+        If the separation is out of range.
+    """
+
+    dot: DotStyle = DotStyle()
+    separation_mm: float = 1.0
+    vertex_vibration: Vibration | None = None
+
+    def __post_init__(self) -> None:
+        check_length("separation", self.separation_mm, 0.0)
+
+
+class Markers(Table, frozen=True, kw_only=True):
+    """Markers at the vertices of a polygon: Lévesque 2009, 8.4.3, figs. 8.19 and 8.20.
+
+    Parameters
+    ----------
+    span
+        What a marker spans: "angle", the angle given; "square", square to the edges; "edges",
+        where the strokes' edges go on; "arc", as far as the round joint goes.
+    angle_deg
+        Angle of the span "angle".
+    blend_mm
+        Distance over which a marker goes over into the stroke's texture.
+    vibration
+        Vibration of the markers; None for plain ones.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    span: Literal["angle", "square", "edges", "arc"] = "edges"
+    angle_deg: float = 30.0
+    blend_mm: float = 1.0
+    vibration: Vibration | None = Vibration()
+
+    def __post_init__(self) -> None:
+        check_angle("angle", self.angle_deg)
+        check_range("angle", self.angle_deg, 1.0, 180.0, "°")
+        check_length("blend", self.blend_mm)

@@ -1,0 +1,241 @@
+"""Textures, which cover the whole canvas: uniform ones, gratings, and what changes their frequency.
+
+Lévesque 2009, 8.4.1.
+"""
+
+from __future__ import annotations
+
+from vbraille.errors import check_range
+from vbraille.scene.measures import (
+    LEAST_FREQUENCY_HZ,
+    MOST_FREQUENCY_HZ,
+    MOST_MM,
+    Point,
+    check_angle,
+    check_length,
+    check_point,
+    check_share,
+)
+from vbraille.scene.pattern import Pattern
+from vbraille.toml.tomlfile import Table
+
+_LEAST_FACTOR, _MOST_FACTOR = 0.05, 20.0
+_LEAST_DEG = 0.5
+
+
+class Gradual(Table, frozen=True, kw_only=True, tag_field="kind", tag="gradual"):
+    """A spatial frequency that changes from one place to another: Lévesque 2009, eq. 8.5.
+
+    Parameters
+    ----------
+    factor
+        Factor K of the frequency beyond the change, 0.05 to 20; below 1 ridges become longer.
+    start_mm, length_mm
+        Distance along the wave at which the change begins, and how far it goes on.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    factor: float = 5.0
+    start_mm: float = 0.0
+    length_mm: float = 100.0
+
+    def __post_init__(self) -> None:
+        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
+        check_range("start", self.start_mm, -MOST_MM, MOST_MM, " mm")
+        check_length("length", self.length_mm)
+
+
+class Peak(Table, frozen=True, kw_only=True, tag_field="kind", tag="peak"):
+    """A spatial frequency that changes around a place and back: Lévesque 2009, eq. 8.6 (mended).
+
+    Parameters
+    ----------
+    factor
+        Factor K of the frequency at that place, 0.05 to 20.
+    center_mm, length_mm
+        Distance along the wave of that place, and how far the change reaches to either side.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    factor: float = 5.0
+    center_mm: float = 0.0
+    length_mm: float = 50.0
+
+    def __post_init__(self) -> None:
+        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
+        check_range("center", self.center_mm, -MOST_MM, MOST_MM, " mm")
+        check_length("length", self.length_mm)
+
+
+class TurnPeak(Table, frozen=True, kw_only=True):
+    """A frequency of an axial grating that changes around an angle and back: eq. 8.6 in degrees.
+
+    Parameters
+    ----------
+    factor
+        Factor K of the frequency at that angle, 0.05 to 20.
+    center_deg, length_deg
+        The angle, from where the grating starts, and how far the change reaches to either side.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    factor: float = 5.0
+    center_deg: float = 180.0
+    length_deg: float = 40.0
+
+    def __post_init__(self) -> None:
+        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
+        check_range("center", self.center_deg, 0.0, 360.0, "°")
+        check_range("length", self.length_deg, _LEAST_DEG, 360.0, "°")
+
+
+class Uniform(Pattern, frozen=True, kw_only=True, tag="uniform"):
+    """The same deflection everywhere, ``level``, from 0 to 1; useful as a part of others."""
+
+    level: float = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_share("level", self.level)
+
+
+class UniformVibration(Pattern, frozen=True, kw_only=True, tag="vibration"):
+    """The same vibration everywhere: Lévesque 2009, eqs. 8.1 and 8.2."""
+
+    frequency_hz: float = MOST_FREQUENCY_HZ
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_range("frequency", self.frequency_hz, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")
+
+
+class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
+    """Ridges and gaps along a direction: Lévesque 2009, eq. 8.4.
+
+    Parameters
+    ----------
+    ridge_mm, gap_mm
+        Length of a ridge and of the gap after it, along the wave.
+    wave_angle_deg, ridge_angle_deg
+        Direction in which the wave travels, or in which the ridges lie; one of them, in degrees
+        from +x (right) towards +y (down). Without either the wave travels along x.
+    start_mm
+        Place at which a ridge begins.
+    distortion
+        Change of the spatial frequency along the wave; None for none.
+    velocity_mm_s
+        Speed of the ridges in the direction of the wave (eq. 9.2); not beside a distortion.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both angles are given.
+    """
+
+    ridge_mm: float
+    gap_mm: float = 0.0
+    wave_angle_deg: float | None = None
+    ridge_angle_deg: float | None = None
+    start_mm: Point = (0.0, 0.0)
+    distortion: Gradual | Peak | None = None
+    velocity_mm_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check_grating(self)
+        check_angle("wave angle", self.wave_angle_deg)
+        check_angle("ridge angle", self.ridge_angle_deg)
+        check_point("start", self.start_mm)
+        if self.wave_angle_deg is not None and self.ridge_angle_deg is not None:
+            raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
+
+
+class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
+    """Rings of ridges around a place, ``center_mm``; the other fields are a linear grating's."""
+
+    center_mm: Point
+    ridge_mm: float
+    gap_mm: float = 0.0
+    distortion: Gradual | Peak | None = None
+    velocity_mm_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _check_grating(self)
+        check_point("center", self.center_mm)
+
+
+class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
+    """Ridges like the spokes of a wheel: Lévesque 2009, eq. 8.4 with an angle as abscissa.
+
+    Parameters
+    ----------
+    center_mm
+        Place around which they stand.
+    ridge_deg, gap_deg
+        Angle of a ridge and of the gap after it.
+    start_deg
+        Angle at which a ridge begins, from +x towards +y.
+    whole_cycles
+        Whether the angles are changed a little so that a whole number of cycles goes round.
+    fade_mm
+        Lengths of the shortest cycle's arc between which the pattern fades towards its middle,
+        where cycles would be too short: at the first there is only ``middle``, at the second only
+        the grating. What the source does there is not known, so this is ours to choose.
+    middle
+        Deflection around the centre.
+    distortion
+        Change of the frequency around an angle; None for none.
+    velocity_deg_s
+        Speed at which the spokes turn, towards larger angles; not beside a distortion.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    center_mm: Point
+    ridge_deg: float
+    gap_deg: float = 0.0
+    start_deg: float = 0.0
+    whole_cycles: bool = True
+    fade_mm: tuple[float, float] = (0.5, 1.0)
+    middle: float = 1.0
+    distortion: TurnPeak | None = None
+    velocity_deg_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_point("center", self.center_mm)
+        check_range("ridge", self.ridge_deg, 0.5, 360.0, "°")
+        check_range("gap", self.gap_deg, 0.0, 360.0, "°")
+        check_angle("start", self.start_deg)
+        check_share("middle", self.middle)
+        check_range("velocity", self.velocity_deg_s, -3600.0, 3600.0, "°/s")
+        if self.ridge_deg + self.gap_deg > 360.0:
+            raise ValueError("ridge and gap are more than a turn together; make them smaller")
+        if not 0.0 <= self.fade_mm[0] < self.fade_mm[1] <= 100.0:
+            raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
+        if self.distortion is not None and self.velocity_deg_s:
+            raise ValueError("velocity cannot be given beside a distortion; leave one out")
+
+
+def _check_grating(grating: LinearGrating | RadialGrating) -> None:
+    check_length("ridge", grating.ridge_mm)
+    check_length("gap", grating.gap_mm, 0.0)
+    check_range("velocity", grating.velocity_mm_s, -1000.0, 1000.0, " mm/s")
+    if grating.distortion is not None and grating.velocity_mm_s:
+        raise ValueError("velocity cannot be given beside a distortion; leave one out")
