@@ -1,0 +1,1 @@
+"""Scenes, compiled for a display; `vbraille.scene` has the values that they are made of."""

@@ -1,0 +1,40 @@
+"""Intensities of an image over a rectangle of the canvas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.scene.measures import Point
+
+WHOLE = 65_535  # the intensity 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bitmap:
+    """Intensities over a rectangle of the canvas, which is bilinear between them.
+
+    The value of a pixel is that of its middle. Between middles it is bilinear, and all around the
+    rectangle there are pixels of the value ``outside``, so that nothing jumps at its edges.
+
+    Parameters
+    ----------
+    intensities : uint16[rows, columns]
+        Intensities from 0 to 65,535, which stands for 1; row 0 is far from the reader.
+    place_mm
+        Top left corner of the rectangle.
+    width_mm, height_mm
+        Size of the rectangle.
+    outside
+        Intensity beyond it, from 0 to 1.
+    """
+
+    intensities: NDArray[np.uint16]
+    place_mm: Point
+    width_mm: float
+    height_mm: float
+    outside: float = 0.0
