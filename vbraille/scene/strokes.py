@@ -150,6 +150,8 @@ class Stroke(Table, frozen=True, kw_only=True):
         check_length("width", self.width_mm)
         check_length("edge", self.edge_mm)
         check_share("amplitude", self.amplitude)
+        if self.outlined and self.along is not None:
+            raise ValueError("outlined cannot be given beside along; whole_edges keeps the outline")
         four = self.outlined or (self.along is not None and self.along.whole_edges)
         if four and self.width_mm < 4 * self.edge:
             raise ValueError(
