@@ -13,7 +13,7 @@ from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label
 from vbraille.scene.resolving import said
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile
-from vbraille.scene.walking import with_inner
+from vbraille.scene.walking import with_children
 from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile
 
@@ -200,4 +200,4 @@ def _seen_from(pattern: AnyPattern, folder: Path, language: str) -> AnyPattern:
         pattern = replace(pattern, file=str(folder / pattern.file))
     elif isinstance(pattern, Label) and language and not pattern.table:
         pattern = replace(pattern, table=language)
-    return with_inner(pattern, lambda _, part: _seen_from(part, folder, language))
+    return with_children(pattern, lambda _, part: _seen_from(part, folder, language))

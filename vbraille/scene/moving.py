@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import replace
 
 from vbraille.scene.patterns import Tile
-from vbraille.scene.walking import with_inner
+from vbraille.scene.walking import with_children
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
@@ -43,7 +43,7 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
     here = replace(pattern, **_places(pattern, move_mm))
     if isinstance(here, Tile):
         return here
-    return with_inner(here, lambda _, part: moved(part, move_mm))
+    return with_children(here, lambda _, part: moved(part, move_mm))
 
 
 def _places(pattern: AnyPattern, move_mm: Point) -> dict[str, Any]:

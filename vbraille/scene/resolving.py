@@ -12,7 +12,7 @@ from vbraille.errors import InputError
 from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
-from vbraille.scene.walking import inner, walk, with_inner
+from vbraille.scene.walking import each, placed_children, with_children
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ class _Resolving:
             if depth > MOST_DEPTH:
                 self._fail(steps, f"nests more than {MOST_DEPTH} deep; make it flatter")
             yield steps, pattern
-            inside = [((*steps, *more), part, depth + 1) for more, part in inner(pattern)]
+            inside = [((*steps, *more), part, depth + 1) for more, part in placed_children(pattern)]
             left += inside[::-1]
 
     def _name(self, steps: Steps, name: str, pattern: AnyPattern) -> None:
@@ -146,7 +146,7 @@ class _Resolving:
             from vbraille.scene.blobs import dots_of  # loads the reading of images
 
             return dots_of(pattern, self._folder)
-        return with_inner(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
+        return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
 
     def _used(self, use: Use, steps: Steps) -> AnyPattern:
         """What a use stands for, with its changes."""
@@ -213,17 +213,17 @@ def points_of(pattern: AnyPattern) -> int:
 
 def _nameless(pattern: AnyPattern) -> AnyPattern:
     """Pattern without ids, since each is the name of one thing."""
-    inside = with_inner(pattern, lambda _, part: _nameless(part))
+    inside = with_children(pattern, lambda _, part: _nameless(part))
     return replace(inside, id="") if inside.id else inside
 
 
 def _measured(pattern: AnyPattern) -> _Body:
     patterns = points = depth = 0
-    for one in walk([pattern]):
+    for one in each(pattern):
         patterns += 1
         points += points_of(one)
     level = [pattern]
     while level:
         depth += 1
-        level = [part for one in level for _, part in inner(one)]
+        level = [part for one in level for _, part in placed_children(one)]
     return _Body(pattern, patterns, points, depth)

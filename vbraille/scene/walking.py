@@ -1,4 +1,4 @@
-"""The patterns that stand in another one: which they are, and how they are exchanged."""
+"""Going through the patterns of a scene, those within others included, and exchanging them."""
 
 from __future__ import annotations
 
@@ -9,38 +9,50 @@ from msgspec.structs import replace
 from vbraille.scene.patterns import Circle, Group, Image, Path, Polygon, Tile
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
 
     from vbraille.scene.patterns import AnyPattern
 
 # Keys, and indices of items, that lead from a pattern or a scene to a pattern in it.
 Steps = tuple[str | int, ...]
-_FILLED = (Circle, Polygon, Path)
 
 
-def inner(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
-    """Patterns that stand directly in another one, with the keys that lead to them.
+def children(pattern: AnyPattern) -> tuple[AnyPattern, ...]:
+    """Patterns that stand directly in a pattern, in the order in which they are written."""
+    return tuple(part for _, part in placed_children(pattern))
 
-    >>> from vbraille.scene.patterns import Tile, Uniform
-    >>> inner(Tile(width_mm=5, height_mm=5, part=Uniform()))
-    [(('part',), Uniform(id='', title='', description='', amplitude=1.0, inverted=False, \
-vibration=None, level=1.0))]
+
+def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
+    """Patterns that stand directly in a pattern, with the keys that lead from it to each.
+
+    >>> from vbraille.scene.patterns import Tile, UniformVibration
+    >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=UniformVibration()))]
+    [('part',)]
     """
     if isinstance(pattern, Group):
-        found: list[tuple[Steps, AnyPattern]] = [
+        parts: list[tuple[Steps, AnyPattern]] = [
             (("parts", number), part) for number, part in enumerate(pattern.parts)
         ]
-        return found if pattern.by is None else [*found, (("by",), pattern.by)]
+        return parts if pattern.by is None else [*parts, (("by",), pattern.by)]
     if isinstance(pattern, Tile):
         return [(("part",), pattern.part)]
     if isinstance(pattern, Image):
         return [] if pattern.texture is None else [(("texture",), pattern.texture)]
-    if isinstance(pattern, _FILLED) and pattern.fill is not None:
+    if isinstance(pattern, Circle | Polygon | Path) and pattern.fill is not None:
         return [(("fill", "texture"), pattern.fill.texture)]
     return []
 
 
-def with_inner(
+def each(*patterns: AnyPattern) -> Iterator[AnyPattern]:
+    """Patterns and all that stand in them, at any depth, each before what stands in it."""
+    left = list(reversed(patterns))
+    while left:
+        pattern = left.pop()
+        yield pattern
+        left += reversed(children(pattern))
+
+
+def with_children(
     pattern: AnyPattern, change: Callable[[Steps, AnyPattern], AnyPattern]
 ) -> AnyPattern:
     """Pattern in which each one that stands directly in it is exchanged for another.
@@ -53,8 +65,8 @@ def with_inner(
         Function that is given the keys that lead to an inner pattern, and that pattern, and gives
         what is to stand there.
     """
-    changed = {steps: change(steps, part) for steps, part in inner(pattern)}
-    if not changed:
+    changed = {steps: change(steps, part) for steps, part in placed_children(pattern)}
+    if all(changed[steps] is part for steps, part in placed_children(pattern)):
         return pattern
     if isinstance(pattern, Group):
         parts = tuple(changed["parts", number] for number in range(len(pattern.parts)))
@@ -63,15 +75,6 @@ def with_inner(
         return replace(pattern, part=changed["part",])
     if isinstance(pattern, Image):
         return replace(pattern, texture=changed["texture",])
-    assert isinstance(pattern, _FILLED)
+    assert isinstance(pattern, Circle | Polygon | Path)
     assert pattern.fill is not None
     return replace(pattern, fill=replace(pattern.fill, texture=changed["fill", "texture"]))
-
-
-def walk(patterns: Iterable[AnyPattern]) -> Iterator[AnyPattern]:
-    """All patterns and all that stand in them, at any depth, each before what stands in it."""
-    left = list(patterns)[::-1]
-    while left:
-        pattern = left.pop()
-        yield pattern
-        left += [part for _, part in reversed(inner(pattern))]
