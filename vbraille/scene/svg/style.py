@@ -96,7 +96,9 @@ class Sheet:
             self.ignored.append(f"the style sheet's selector {selector[:40]!r} is ignored")
             return
         if self._count == _MOST_RULES:
-            self.ignored.append(f"the style sheet's rules after the first {_MOST_RULES} are ignored")
+            self.ignored.append(
+                f"the style sheet's rules after the first {_MOST_RULES} are ignored"
+            )
         if self._count >= _MOST_RULES:
             self._count += 1
             return
@@ -164,11 +166,7 @@ def styled(element: Element, above: Mapping[str, str], sheet: Sheet) -> dict[str
     sheet
         The drawing's style sheets.
     """
-    own: dict[str, str] = {}
-    for name in (*INHERITED, *OWN):
-        value = element.get(name)
-        if value is not None:
-            own[name] = value.strip()
+    own = {str(k): str(v).strip() for k, v in element.items() if k in INHERITED or k in OWN}
     own |= sheet.said_of(element)
     if style := element.get("style"):
         own |= declarations(style)

@@ -180,7 +180,8 @@ def _parsed(text: str, path: Path) -> Element:
             raise InputError(
                 f"{path} has elements more than {MOST_DEPTH} deep; ungroup some of them"
             ) from None
-        raise InputError(f"{path} is not well-formed XML: {_short(error.msg or "", 150)}") from None
+        said = _short(error.msg or "it ends too soon", 150)
+        raise InputError(f"{path} is not well-formed XML: {said}") from None
 
 
 def name_of(element: Element) -> str:
@@ -198,6 +199,11 @@ def called(element: Element) -> str:
     own = element.get("id")
     name = name_of(element) or "element"
     return f"{name} {_short(own)}" if own else name
+
+
+def text_of(element: Element) -> str:
+    """All characters within an element."""
+    return "".join(map(str, element.itertext()))
 
 
 def link_of(element: Element) -> str:
