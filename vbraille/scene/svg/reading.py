@@ -55,7 +55,7 @@ def read_svg(path: Path, looks: Mapping[str, Look] | None = None) -> FoundScene:
     ------
     InputError
         If the file is none that `vbraille.scene.svg.tree.read_tree` reads, has no size, or has more
-        than 100,000 elements or 500,000 places together with what it uses again.
+        than 50,000 elements or 500,000 places together with what it uses again.
     """
     root = read_tree(path)
     sheet = Sheet()
