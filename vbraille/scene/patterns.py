@@ -10,6 +10,7 @@ import math
 from typing import Literal
 
 from vbraille.errors import check_range
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
@@ -234,6 +235,13 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_points("vertices", self.vertices_mm, 3, closed=True)
+        edges = meeting_edges(self.vertices_mm)
+        if edges is not None:
+            first, second = edges
+            raise ValueError(
+                f"vertices make edges that cross or touch, those after number {first} and number "
+                f"{second}; set them in order around the shape"
+            )
         check_length("rounding offset", self.rounding_offset_mm, 0.0)
         _check_drawn(self, self.fill)
 
@@ -424,7 +432,9 @@ def _check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed
         if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
     if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
-        raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
+        raise ValueError(
+            f"{what}, number {len(points_mm)} is the first place, to which the shape goes back anyway; leave it out"
+        )
 
 
 def _check_drawn(shape: Shape, fill: Fill | None) -> None:

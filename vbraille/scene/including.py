@@ -1,0 +1,251 @@
+"""Scene files together with those that they include."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from vbraille.errors import InputError
+from vbraille.scene.opened import Origins
+from vbraille.scene.origins import ForeignOrigin, TomlOrigin
+from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
+from vbraille.scene.scene import Scene
+from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.walking import with_children
+from vbraille.toml.textfile import read_text
+from vbraille.toml.tomlfile import TomlFile
+
+if TYPE_CHECKING:
+    from vbraille.scene.opened import FoundScene, SceneOrigin
+    from vbraille.scene.walking import Steps
+
+# Scenes of 50,000 shapes; larger files would take longer to read than anybody waits.
+MOST_BYTES = 8_000_000
+MOST_FILES = 100
+UNSAID_LANGUAGE = "en"
+_SUFFIXES = {".svg": "svg", ".svgz": "svg", ".gen": "gen", ".tx": "gen"}
+_HEAD_BYTES = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class Gathered:
+    """What a file holds together with what it includes.
+
+    Parameters
+    ----------
+    form
+        What the file itself says.
+    elements, textures
+        Its elements and named textures, and those that it includes.
+    origins
+        Where each of them is written.
+    warnings
+        What was ignored, or means something else here.
+    """
+
+    form: SceneFile
+    elements: list[AnyPattern] = field(default_factory=list)
+    textures: dict[str, AnyPattern] = field(default_factory=dict)
+    origins: Origins = field(default_factory=Origins)
+    warnings: list[str] = field(default_factory=list)
+
+    def scene(self, path: Path) -> Scene:
+        """Scene of the file and what it includes.
+
+        Raises
+        ------
+        InputError
+            If the file has no canvas.
+        """
+        form = self.form
+        if form.canvas is None:
+            raise InputError(
+                f"{path} has no canvas; write [canvas] with width_mm and height_mm, "
+                "or include it in a scene that has one"
+            )
+        return Scene(
+            canvas=form.canvas,
+            title=form.title,
+            description=form.description,
+            language=form.language or UNSAID_LANGUAGE,
+            operation=form.operation,
+            elements=tuple(self.elements),
+            textures=self.textures,
+        )
+
+    def add(
+        self,
+        elements: tuple[AnyPattern, ...] | list[AnyPattern],
+        textures: dict[str, AnyPattern],
+        origins: Origins,
+        operation: Operation,
+    ) -> None:
+        """Add elements and textures after those that are there.
+
+        Elements that are put together in another way than this file's become one group.
+        """
+        for name, texture in textures.items():
+            origin, there = origins.places["textures", name]
+            if name in self.textures:
+                first = self.origins.place(("textures", name))
+                origin.fail(there, f"is called {name}, as is {first}; give it another name")
+            self.textures[name] = texture
+            self.origins.places["textures", name] = (origin, there)
+        start = len(self.elements)
+        apart = bool(elements) and operation != self.form.operation
+        for steps, origin in origins.places.items():
+            if steps[0] == "elements":
+                number = int(steps[1])
+                above = (start, "parts", number) if apart else (start + number,)
+                self.origins.places["elements", *above, *steps[2:]] = origin
+        if apart:
+            self.elements.append(Group(operation=operation, parts=tuple(elements)))
+        else:
+            self.elements.extend(elements)
+
+
+def gather(path: Path) -> Gathered:
+    """Read a scene's file and all that it includes.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read or is not right, a name is given twice, or files include each
+        other.
+    """
+    return _Gathering().gather(path, path, ())
+
+
+class _Gathering:
+    """Files that are being read, each once."""
+
+    def __init__(self) -> None:
+        self._read: set[Path] = set()
+
+    def gather(self, name: Path, real: Path, way: tuple[Path, ...]) -> Gathered:
+        """Read a file, at the end of a way of files of which each includes the next."""
+        self._read.add(real)
+        form = form_of(name)
+        if form != "toml":
+            return _foreign(name, form)
+        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name))
+        textures = {
+            key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
+            for key in file.names("textures")
+        }
+        gathered = Gathered(file.read(SceneFile))
+        for number, included in enumerate(gathered.form.include):
+            self._include(gathered, file, number, included, name, (*way, real))
+        elements = gathered.form.elements
+        origins = _all_from(TomlOrigin(file), elements, textures)
+        gathered.add(elements, textures, origins, gathered.form.operation)
+        return gathered
+
+    def _include(
+        self,
+        into: Gathered,
+        file: TomlFile,
+        number: int,
+        included: str,
+        name: Path,
+        way: tuple[Path, ...],
+    ) -> None:
+        """Add what an included file holds."""
+        steps = ("include", number)
+        if "://" in included or not included.strip():
+            file.fail(steps, f"is {included!r}; give the name of a file, since nothing is fetched")
+        path = name.parent / included
+        try:
+            real = path.resolve()
+            there = path.is_file()
+        except (OSError, ValueError, RuntimeError):
+            there, real = False, path
+        if not there:
+            file.fail(steps, f"is {included!r}, which is no file; check the name")
+        if real in way:
+            file.fail(steps, f"is {included!r}, which includes this file itself; leave it out")
+        if real in self._read:  # two scenes may include a third
+            return
+        if len(self._read) >= MOST_FILES:
+            file.fail(steps, f"is one file more than the {MOST_FILES} that a scene can include")
+        found = self.gather(path, real, way)
+        folder, language = Path(included).parent, found.form.language
+        into.add(
+            [_seen_from(element, folder, language) for element in found.elements],
+            {key: _seen_from(one, folder, language) for key, one in found.textures.items()},
+            found.origins,
+            found.form.operation,
+        )
+        into.warnings.extend(found.warnings)
+
+
+def form_of(path: Path) -> str:
+    """Form of a scene's file by its suffix, or else by its beginning: "toml", "svg" or "gen"."""
+    form = _SUFFIXES.get(path.suffix.lower())
+    if form is not None:
+        return form
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD_BYTES)
+    except (OSError, ValueError):
+        return "toml"  # whose reader says what is wrong
+    if not head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
+        return "toml"
+    return "svg" if b"<svg" in head or b":svg" in head else "gen"
+
+
+def _foreign(path: Path, form: str) -> Gathered:
+    """Read a file of another format."""
+    found = _read_foreign(path, form)
+    scene = found.scene
+    gathered = Gathered(
+        SceneFile(
+            canvas=scene.canvas,
+            title=scene.title,
+            description=scene.description,
+            language="" if scene.language == UNSAID_LANGUAGE else scene.language,
+            operation=scene.operation,
+        ),
+        warnings=[
+            f"{path}{'' if one.startswith('line ') else ':'} {one}" for one in found.warnings
+        ],
+    )
+    origins = _all_from(ForeignOrigin(path, found), scene.elements, scene.textures)
+    gathered.add(scene.elements, scene.textures, origins, scene.operation)
+    return gathered
+
+
+def _about(path: Path, warning: str) -> str:
+    """Warning with the file that it is about; some begin with a line."""
+    return f"{path} {warning}" if warning.startswith("line ") else f"{path}: {warning}"
+
+
+def _read_foreign(path: Path, form: str) -> FoundScene:
+    if form == "svg":
+        from vbraille.scene.svgscene import read_svg  # loads the library for SVG
+
+        return read_svg(path)
+    from vbraille.scene.openlatero import read_gen  # loads the library for XML
+
+    return read_gen(path)
+
+
+def _all_from(
+    origin: SceneOrigin, elements: tuple[AnyPattern, ...], textures: dict[str, AnyPattern]
+) -> Origins:
+    """Places of elements and textures of a file, which are all its own."""
+    steps: list[Steps] = [("textures", name) for name in textures]
+    steps += [("elements", number) for number in range(len(elements))]
+    return Origins({one: (origin, one) for one in steps})
+
+
+def _seen_from(pattern: AnyPattern, folder: Path, language: str) -> AnyPattern:
+    """Pattern of an included file as one of the including file, in another folder and language."""
+    if isinstance(pattern, Image | ImageDots):
+        pattern = replace(pattern, file=str(folder / pattern.file))
+    elif isinstance(pattern, Label) and language and not pattern.table:
+        pattern = replace(pattern, table=language)
+    return with_children(pattern, lambda _, part: _seen_from(part, folder, language))
