@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from tests.render.scene.scenes import assets_of, bitmap_of, patterns, seeds
+from tests.render.scene.scenes import assets_of, bitmap_of, known_boxes, patterns, seeds
 from tests.tiers import examples
 from vbraille.render.scene import reference
-from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.bounds import EMPTY, Box, bounds
 from vbraille.scene.opaque import bitmap_box, opaque
@@ -72,18 +71,11 @@ def test_what_is_not_resolved_has_no_place(pattern):
         bounds(pattern)
 
 
-def known(assets):
-    """Boxes of the images and labels in assets."""
-    boxes = {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
-    boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
-    return {pattern: box for pattern, box in boxes.items() if box is not None}
-
-
 @examples(90)
 @given(patterns, seeds)
 def test_outside_its_bounds_a_pattern_and_its_mask_are_nothing(pattern, seed):
     assets = assets_of(pattern)
-    box = bounds(pattern, known(assets))
+    box = bounds(pattern, known_boxes(assets))
     if box is None:
         return
     rng = np.random.default_rng(seed)
