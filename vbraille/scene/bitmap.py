@@ -19,7 +19,8 @@ class Bitmap:
     """Intensities over a rectangle of the canvas, which is bilinear between them.
 
     The value of a pixel is that of its middle. Between middles it is bilinear, and all around the
-    rectangle there are pixels of the value ``outside``, so that nothing jumps at its edges.
+    rectangle there are pixels of the value ``outside``, so that nothing jumps at its edges. The
+    rectangle of a blurred image is larger than the image, by what the blur reaches.
 
     Parameters
     ----------

@@ -1,0 +1,189 @@
+"""Image files as intensities, read so that no file costs much memory or time.
+
+Pillow reads them. Only the kinds of files that are asked for are given to it, since it knows many
+more, whose readers few people test.
+"""
+
+from __future__ import annotations
+
+import warnings
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Literal
+
+from vbraille.errors import InputError
+from vbraille.scene.bitmap import WHOLE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+    from PIL import Image as Pillow
+
+# What Pillow may take a file for, whatever its name ends with.
+KINDS = ("PNG", "GIF", "BMP", "JPEG")
+MOST_FILE_BYTES = 100 << 20
+# More than the largest cameras have; a picture of four channels takes 240 MB then, for a moment.
+MOST_PIXELS = 60_000_000
+# Each scan of a progressive JPEG goes over all of it again; programs write about ten.
+_MOST_SCANS = 100
+_SCAN = b"\xff\xda"
+
+Channel = Literal["gray", "alpha"]
+
+
+def read_bytes(path: Path, most: int = MOST_FILE_BYTES) -> bytes:
+    """Content of a file that somebody drew.
+
+    Raises
+    ------
+    InputError
+        If it is not there, no file, empty, larger than ``most`` bytes, or cannot be read.
+    """
+    try:
+        if path.is_dir():
+            raise InputError(f"{path} is a directory; give the name of a file in it")
+        if not path.exists():
+            raise InputError(f"{path} does not exist; check its name")
+        if not path.is_file():
+            raise InputError(f"{path} is no ordinary file; give one that is")
+        with path.open("rb") as file:
+            content = file.read(most + 1)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    except ValueError:  # a name with a null character
+        raise InputError(f"{str(path)!r} is no name of a file; mend it") from None
+    if len(content) > most:
+        raise InputError(f"{path} is larger than {most >> 20} MB; make it smaller")
+    if not content:
+        raise InputError(f"{path} is empty; give another file")
+    return content
+
+
+def intensities_of(
+    path: Path, channel: Channel, shape_of: Callable[[int, int], tuple[int, int]]
+) -> NDArray[np.uint16]:
+    """Intensities of an image file.
+
+    A gray is the luminance of its colour (ITU-R 601, from the values as they are in the file), laid
+    over black where the image is transparent, so that what is white and opaque is up. PNG files of
+    16 bits of gray keep them; other files have 8. An image is turned as its EXIF data say, and
+    of a GIF file that moves the first picture counts.
+
+    Parameters
+    ----------
+    path
+        PNG, GIF, BMP or JPEG file.
+    channel
+        What counts: "gray", or "alpha", by which what is opaque is up.
+    shape_of
+        Function that says from the image's columns and rows, once it is turned, how many columns
+        and rows are wanted; where they are fewer, pixels are averaged.
+
+    Returns
+    -------
+    uint16[rows, columns]
+        Intensities, of which 65,535 is up.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is no such image, is damaged, is far too large, or has no
+        alpha where that is asked for.
+    """
+    from io import BytesIO
+
+    content = BytesIO(read_bytes(path))
+    with _refusing(path):
+        from PIL import Image, ImageOps
+
+        try:
+            image = Image.open(content, formats=KINDS)
+        except Image.UnidentifiedImageError:
+            raise InputError(
+                f"{path} is no PNG, GIF, BMP, JPEG or SVG file; save it as one of these"
+            ) from None
+        columns, rows = image.size
+        if columns * rows > MOST_PIXELS:
+            raise InputError(
+                f"{path} has {columns} × {rows} pixels; make it smaller, "
+                f"at most {MOST_PIXELS // 1_000_000} million"
+            )
+        if image.format in ("JPEG", "MPO") and content.getvalue().count(_SCAN) > _MOST_SCANS:
+            raise InputError(f"{path} has far too many scans for a JPEG file; save it again")
+        image.load()
+        image = ImageOps.exif_transpose(image)
+        return _intensities(image, channel, shape_of(*image.size), path)
+
+
+@contextmanager
+def _refusing(path: Path) -> Iterator[None]:
+    """Make one sentence of whatever Pillow raises or warns of."""
+    try:
+        with warnings.catch_warnings():
+            # It warns of images of 90 million pixels, and of odd but harmless data in them.
+            warnings.simplefilter("ignore")
+            yield
+    except InputError:
+        raise
+    # Readers of damaged files raise nearly everything, and Pillow promises no fewer kinds.
+    except Exception as error:
+        kind = type(error).__name__
+        if kind == "DecompressionBombError":
+            raise InputError(f"{path} has far too many pixels; make it smaller") from None
+        said = " ".join(str(error).split()) or kind
+        raise InputError(f"{path} is damaged: {said[:120]}; save it again") from None
+
+
+def _intensities(
+    image: Pillow.Image, channel: Channel, shape: tuple[int, int], path: Path
+) -> NDArray[np.uint16]:
+    import numpy as np
+
+    if image.mode == "I" or image.mode.startswith("I;16"):
+        if channel == "alpha":
+            raise _no_alpha(path)
+        return _deep(image, shape)
+    if image.mode in ("RGBA", "LA", "PA") or "transparency" in image.info:
+        # Colours times alpha, so that averaging is right at transparent edges.
+        image = _smaller(image.convert("RGBA").convert("RGBa"), shape)
+        image = image.getchannel(3) if channel == "alpha" else _luminance(image)
+    elif channel == "alpha":
+        raise _no_alpha(path)
+    else:
+        if image.mode not in ("L", "RGB"):
+            image = image.convert("L" if image.mode == "1" else "RGB")
+        image = _smaller(image.convert("L"), shape)
+    return np.asarray(image).astype(np.uint16) * (WHOLE // 255)
+
+
+def _deep(image: Pillow.Image, shape: tuple[int, int]) -> NDArray[np.uint16]:
+    """Intensities of an image of 16 bits, which Pillow averages as floating point alone."""
+    import numpy as np
+    from PIL import Image
+
+    values = np.asarray(image).astype(np.float32)
+    clear = image.info.get("transparency")
+    if isinstance(clear, int):
+        values[values == clear] = 0.0
+    averaged = np.asarray(_smaller(Image.fromarray(values), shape))
+    return np.clip(np.rint(averaged), 0, WHOLE).astype(np.uint16)
+
+
+def _luminance(premultiplied: Pillow.Image) -> Pillow.Image:
+    """Luminance of an image whose colours are laid over black already."""
+    from PIL import Image
+
+    return Image.merge("RGB", premultiplied.split()[:3]).convert("L")
+
+
+def _smaller(image: Pillow.Image, shape: tuple[int, int]) -> Pillow.Image:
+    """Average pixels so that there are so many columns and rows."""
+    from PIL import Image
+
+    return image if image.size == shape else image.resize(shape, Image.Resampling.BOX)
+
+
+def _no_alpha(path: Path) -> InputError:
+    return InputError(f'{path} has no alpha channel; write channel = "gray"')

@@ -1,0 +1,192 @@
+"""Images of a scene as bitmaps: placed, averaged, blurred: Lévesque 2009, 8.4.2."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.imagefiles import intensities_of
+from vbraille.scene.patterns import Image
+from vbraille.scene.walking import each
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.scene.patterns import ImageDots
+    from vbraille.scene.scene import Scene
+
+# The source asks for 5 to 10 pixels per mm; more than the larger is averaged away.
+MOST_PER_MM = 10.0
+# A Gauss of more pixels is as smooth with fewer (bilinear between them: within 0.002), and the
+# time that a blur takes grows with them.
+_WIDEST_BLUR = 5.0  # pixels
+_BLUR_REACH = 4.0  # standard deviations
+MOST_PIXELS = 16_000_000  # of a bitmap; larger images have fewer per mm
+MOST_TOGETHER = 64_000_000  # of a scene's bitmaps
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Laid:
+    """Intensities of an image, the size of it, and how far the bitmap goes beyond that."""
+
+    intensities: NDArray[np.uint16]
+    width_mm: float
+    height_mm: float
+    margins_mm: tuple[float, float] = (0.0, 0.0)
+
+
+def load_bitmaps(scene: Scene, folder: Path) -> dict[Image, Bitmap]:
+    """Read the image files of a scene.
+
+    An image has at most 10 pixels per mm, and at most 16 million; what is more is averaged. Images
+    of the same file, shape and blur share their intensities. A blurred image reaches beyond its
+    place by four standard deviations, so that there is no sharp edge there either: its bitmap is
+    larger than it.
+
+    Parameters
+    ----------
+    scene
+        A resolved scene.
+    folder
+        Folder from which the names of files are seen.
+
+    Returns
+    -------
+    dict
+        A bitmap for each image of the scene, wherever it stands in it.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read or is no image, the size of an image is not known, or the scene's
+        images have more than 64 million pixels together.
+    """
+    bitmaps: dict[Image, Bitmap] = {}
+    kept: dict[tuple[object, ...], _Laid] = {}
+    for image in each(*scene.elements):
+        if not isinstance(image, Image) or image in bitmaps:
+            continue
+        source = _source(image)
+        if source not in kept:
+            kept[source] = _laid(image, folder)
+            if sum(laid.intensities.size for laid in kept.values()) > MOST_TOGETHER:
+                raise InputError(
+                    f"{named(image)}: the images of the scene have more than "
+                    f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
+                )
+        bitmaps[image] = _bitmap(image, kept[source])
+    return bitmaps
+
+
+def named(image: Image | ImageDots) -> str:
+    """Name of an element with an image file, for messages."""
+    return f"element {image.id}" if image.id else f"image {image.file}"
+
+
+def size_mm(image: Image | ImageDots, columns: int, rows: int) -> tuple[float, float]:
+    """Width and height of an image on the canvas, of which one may follow from its pixels.
+
+    Raises
+    ------
+    InputError
+        If neither is given, or the one that follows is below 0.1 mm or above 10 m.
+    """
+    width, height = image.width_mm, image.height_mm
+    if width is None and height is None:
+        raise InputError(f"{named(image)} has no size; give width_mm or height_mm")
+    if width is None:
+        width = (height or 0.0) * columns / rows
+    if height is None:
+        height = width * rows / columns
+    for what, value in (("width", width), ("height", height)):
+        if not 0.1 <= value <= 10_000.0:
+            raise InputError(
+                f"{named(image)} would have a {what} of {value:g} mm by the picture's shape; "
+                "give both width_mm and height_mm"
+            )
+    return width, height
+
+
+def shape_of(width_mm: float, height_mm: float, per_mm: float) -> tuple[int, int]:
+    """Columns and rows of a bitmap of a size with so many pixels per mm, or fewer if it is vast."""
+    most = math.sqrt(MOST_PIXELS / (width_mm * height_mm))
+    per_mm = min(per_mm, most)
+    # A band of 10 m by 0.1 mm has a row, too.
+    return max(int(width_mm * per_mm), 1), max(int(height_mm * per_mm), 1)
+
+
+def _source(image: Image) -> tuple[object, ...]:
+    """All that the intensities of an image follow from."""
+    outside = image.outside if image.blur_mm else 0.0
+    looks = (image.channel, image.inverted_source, image.blur_mm, outside)
+    return (image.file, image.width_mm, image.height_mm, *looks)
+
+
+def _laid(image: Image, folder: Path) -> _Laid:
+    """Read an image, and blur it."""
+    size = (0.0, 0.0)
+    per_mm = MOST_PER_MM
+    if image.blur_mm:
+        per_mm = min(per_mm, _WIDEST_BLUR / image.blur_mm)
+
+    def shape(columns: int, rows: int) -> tuple[int, int]:
+        nonlocal size
+        size = size_mm(image, columns, rows)
+        if image.blur_mm > min(size):
+            raise InputError(
+                f"{named(image)} has a blur of {image.blur_mm:g} mm, which is more than its width "
+                "or height; make it smaller"
+            )
+        most_columns, most_rows = shape_of(*size, per_mm)
+        return min(columns, most_columns), min(rows, most_rows)
+
+    try:
+        intensities = intensities_of(Path(folder, image.file), image.channel, shape)
+    except InputError as error:
+        message = str(error)
+        if message.startswith(named(image)):
+            raise
+        raise InputError(f"{named(image)}: {message}") from None
+    if image.inverted_source:
+        intensities = WHOLE - intensities
+    laid = _Laid(intensities, *size)
+    return _blurred(laid, image) if image.blur_mm else laid
+
+
+def _blurred(laid: _Laid, image: Image) -> _Laid:
+    """Blur an image, which then reaches farther."""
+    import numpy as np
+    from scipy.ndimage import gaussian_filter
+
+    rows, columns = laid.intensities.shape
+    pixel_mm = laid.width_mm / columns, laid.height_mm / rows
+    sigmas = [image.blur_mm / of for of in pixel_mm]
+    wide, high = (math.ceil(_BLUR_REACH * sigma) for sigma in sigmas)
+    outside = round(image.outside * WHOLE)
+    padded = np.pad(laid.intensities, ((high, high), (wide, wide)), constant_values=outside)
+    blurred = gaussian_filter(
+        padded.astype(np.float32),
+        (sigmas[1], sigmas[0]),
+        mode="constant",
+        cval=outside,
+        truncate=_BLUR_REACH,
+    )
+    whole = np.clip(np.rint(blurred), 0, WHOLE).astype(np.uint16)
+    return _Laid(whole, laid.width_mm, laid.height_mm, (wide * pixel_mm[0], high * pixel_mm[1]))
+
+
+def _bitmap(image: Image, laid: _Laid) -> Bitmap:
+    beside, above = laid.margins_mm
+    left, top = image.place_mm
+    return Bitmap(
+        intensities=laid.intensities,
+        place_mm=(left - beside, top - above),
+        width_mm=laid.width_mm + 2 * beside,
+        height_mm=laid.height_mm + 2 * above,
+        outside=image.outside,
+    )
