@@ -9,7 +9,7 @@ from vbraille.errors import InputError
 _MOST_BYTES = 1_000_000
 
 
-def read_text(path: str | Path, what: str) -> str:
+def read_text(path: str | Path, what: str, most_bytes: int = _MOST_BYTES) -> str:
     """Text of a file, without a byte-order mark.
 
     Parameters
@@ -18,6 +18,8 @@ def read_text(path: str | Path, what: str) -> str:
         Path of the file.
     what
         What the file is to be, such as "protocol".
+    most_bytes
+        Size of the largest file that is read.
 
     Raises
     ------
@@ -26,7 +28,7 @@ def read_text(path: str | Path, what: str) -> str:
     """
     try:
         with Path(path).open("rb") as file:
-            content = file.read(_MOST_BYTES + 1)
+            content = file.read(most_bytes + 1)
     except FileNotFoundError:
         raise InputError(f"there is no file {path}; check the name") from None
     except IsADirectoryError:
@@ -34,8 +36,9 @@ def read_text(path: str | Path, what: str) -> str:
     except (OSError, ValueError) as error:  # ValueError: a name that no file can have
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{path} cannot be read: {reason}") from None
-    if len(content) > _MOST_BYTES:
-        raise InputError(f"{path} is too large for a {what}; give a TOML file")
+    if len(content) > most_bytes:
+        most = f"{most_bytes / 1e6:g} MB at most"
+        raise InputError(f"{path} is too large for a {what}; give a TOML file of {most}")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

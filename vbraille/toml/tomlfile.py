@@ -129,6 +129,11 @@ class TomlFile:
         """Whether there is a table at a place of the file."""
         return isinstance(self._at(path), dict)
 
+    @property
+    def where(self) -> str:
+        """Name of the file."""
+        return self._where
+
     def lines(self) -> dict[Path, int]:
         """Lines of keys, tables and items, from 1, by the keys that lead to them."""
         return lines_of(self._text)

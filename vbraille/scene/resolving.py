@@ -1,0 +1,229 @@
+"""Scenes as they are shown: each use replaced by what it names, and each image of dots by dots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from msgspec.structs import replace
+
+from vbraille.errors import InputError
+from vbraille.scene.moving import LISTS, SEVERAL, moved
+from vbraille.scene.patterns import Group, ImageDots, Use
+from vbraille.scene.stock import STOCK, stock_textures
+from vbraille.scene.walking import each, placed_children, with_children
+from vbraille.wording import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.scene import Scene
+    from vbraille.scene.walking import Steps
+
+    Fail = Callable[[Steps, str], NoReturn]
+
+# Uses of uses of uses can stand for more than any memory holds.
+MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000
+MOST_DEPTH = 32
+
+
+def resolve(scene: Scene, folder: Path | None = None, fail: Fail | None = None) -> Scene:
+    """Scene as it is shown, without names.
+
+    Each `Use` is replaced by the pattern that it names, moved by value. Changes of its own stand
+    in a `Group` around it, and its title and description count before those of what it names.
+    Each `ImageDots` is replaced by its dots. The scene that is given back has no named textures,
+    and what stands in a copy has no id.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    folder
+        Folder that the names of image files are seen from; None for the present one.
+    fail
+        Function that refuses a scene for a problem at a place in it, which it is given as keys and
+        indices; None for one that names the place by them.
+
+    Raises
+    ------
+    InputError
+        If a name is not known or given twice, uses lead back to themselves, patterns or uses nest
+        more than 32 deep, there are more than 200,000 patterns or 4,000,000 points, something is
+        moved too far, or an image of dots cannot be read.
+    """
+    return _Resolving(scene, folder or Path(), fail or _fail).scene()
+
+
+def said(steps: Steps) -> str:
+    """Words for a place in a scene.
+
+    >>> said(("elements", 3, "fill", "texture"))
+    'elements, number 4 fill texture'
+    """
+    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
+    return "".join(words).strip()
+
+
+def _fail(steps: Steps, problem: str) -> NoReturn:
+    raise InputError(f"{said(steps)} {problem}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """What a name stands for, without names, and how much it is."""
+
+    pattern: AnyPattern
+    patterns: int
+    points: int
+    depth: int
+
+
+class _Resolving:
+    """A scene that is being resolved, and how much it has become so far."""
+
+    def __init__(self, scene: Scene, folder: Path, fail: Fail) -> None:
+        self._written, self._folder, self._fail = scene, folder, fail
+        self._named: dict[str, tuple[Steps, AnyPattern]] = {}
+        self._bodies: dict[str, _Body] = {}
+        self._open: list[str] = []  # names whose uses are being replaced, outermost first
+        self._patterns = self._points = 0
+
+    def scene(self) -> Scene:
+        """Resolve the whole scene."""
+        textures = self._written.textures
+        for name, pattern in textures.items():
+            self._name(("textures", name), name, pattern)
+        for steps, pattern in self._all():
+            self._count(steps, 1, points_of(pattern))
+            if pattern.id:
+                self._name(steps, pattern.id, pattern)
+        for name in textures:  # also those that nothing uses are to be right
+            self._body(name, ("textures", name))
+        elements = tuple(
+            self._resolved(element, ("elements", number))
+            for number, element in enumerate(self._written.elements)
+        )
+        return replace(self._written, textures={}, elements=elements)
+
+    def _all(self) -> Iterator[tuple[Steps, AnyPattern]]:
+        """All patterns of the scene as it is written, in order, with the keys that lead to them."""
+        left: list[tuple[Steps, AnyPattern, int]] = [
+            *((("textures", name), one, 1) for name, one in self._written.textures.items()),
+            *((("elements", n), one, 1) for n, one in enumerate(self._written.elements)),
+        ][::-1]
+        while left:
+            steps, pattern, depth = left.pop()
+            if depth > MOST_DEPTH:
+                self._fail(steps, f"nests more than {MOST_DEPTH} deep; make it flatter")
+            yield steps, pattern
+            inside = [((*steps, *more), part, depth + 1) for more, part in placed_children(pattern)]
+            left += inside[::-1]
+
+    def _name(self, steps: Steps, name: str, pattern: AnyPattern) -> None:
+        if name.startswith(STOCK):
+            self._fail(steps, f"is called {name}; only the program's own names begin with {STOCK}")
+        if name in self._named and self._named[name][0] != steps:
+            first = said(self._named[name][0])
+            self._fail(steps, f"is called {name}, and so is {first}; give it another name")
+        self._named[name] = steps, pattern
+
+    def _count(self, steps: Steps, patterns: int, points: int) -> None:
+        """Refuse what no memory holds, before it is made."""
+        self._patterns += patterns
+        self._points += points
+        if self._patterns > MOST_PATTERNS:
+            self._fail(steps, f"makes it more than {MOST_PATTERNS} patterns; use fewer")
+        if self._points > MOST_POINTS:
+            self._fail(steps, f"makes it more than {MOST_POINTS} points; use fewer")
+
+    def _resolved(self, pattern: AnyPattern, steps: Steps) -> AnyPattern:
+        if isinstance(pattern, Use):
+            return self._used(pattern, steps)
+        if isinstance(pattern, ImageDots):
+            from vbraille.scene.blobs import dots_of  # loads the reading of images
+
+            return dots_of(pattern, self._folder)
+        return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
+
+    def _used(self, use: Use, steps: Steps) -> AnyPattern:
+        """What a use stands for, with its changes."""
+        body = self._body(use.name, steps)
+        self._count(steps, body.patterns, body.points)
+        if body.depth + len(steps) > 4 * MOST_DEPTH:
+            self._fail(steps, f"nests more than {4 * MOST_DEPTH} deep; make it flatter")
+        try:
+            pattern = moved(body.pattern, use.move_mm)
+        except ValueError as error:
+            self._fail(steps, f"cannot be moved so far: {error}")
+        own = {
+            "id": use.id,
+            "title": use.title or pattern.title,
+            "description": use.description or pattern.description,
+        }
+        if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
+            return replace(pattern, **own)
+        return Group(
+            operation="maximum",
+            parts=(replace(pattern, title="", description=""),),
+            amplitude=use.amplitude,
+            inverted=use.inverted,
+            vibration=use.vibration,
+            **own,
+        )
+
+    def _body(self, name: str, steps: Steps) -> _Body:
+        """What a name stands for, made once."""
+        if name in self._bodies:
+            return self._bodies[name]
+        if name in self._open:
+            way = ", ".join([*self._open[self._open.index(name) :], name])
+            self._fail(steps, f"uses itself: {way}; leave one of these uses out")
+        if len(self._open) >= MOST_DEPTH:
+            self._fail(steps, f"uses uses more than {MOST_DEPTH} deep; make it flatter")
+        if name.startswith(STOCK):
+            stock = stock_textures()
+            if name.removeprefix(STOCK) not in stock:
+                self._fail_unknown(name, steps, [f"{STOCK}{one}" for one in stock])
+            pattern = stock[name.removeprefix(STOCK)]
+        elif name in self._named:
+            there, written = self._named[name]
+            self._open.append(name)
+            pattern = self._resolved(written, there)
+            self._open.pop()
+        else:
+            stock = [f"{STOCK}{one}" for one in stock_textures()]
+            self._fail_unknown(name, steps, [*self._named, *stock])
+        body = _measured(_nameless(pattern))
+        self._bodies[name] = body
+        return body
+
+    def _fail_unknown(self, name: str, steps: Steps, names: Iterable[str]) -> NoReturn:
+        self._fail(steps, f"name is {name!r}, which nothing here is called; {nearest(name, names)}")
+
+
+def points_of(pattern: AnyPattern) -> int:
+    """Number of points that a pattern has itself."""
+    several = sum(len(getattr(pattern, name)) for name in SEVERAL if hasattr(pattern, name))
+    lists = (getattr(pattern, name) for name in LISTS if hasattr(pattern, name))
+    return several + sum(len(one) for contours in lists for one in contours)
+
+
+def _nameless(pattern: AnyPattern) -> AnyPattern:
+    """Pattern without ids, since each is the name of one thing."""
+    inside = with_children(pattern, lambda _, part: _nameless(part))
+    return replace(inside, id="") if inside.id else inside
+
+
+def _measured(pattern: AnyPattern) -> _Body:
+    patterns = points = depth = 0
+    for one in each(pattern):
+        patterns += 1
+        points += points_of(one)
+    level = [pattern]
+    while level:
+        depth += 1
+        level = [part for one in level for _, part in placed_children(one)]
+    return _Body(pattern, patterns, points, depth)
