@@ -128,7 +128,7 @@ def _line(mark: InkLine) -> PathPatch:
     patch.set_joinstyle("round" if mark.round_ends else "miter")
     if mark.dashes_mm is not None:
         # Dashes are told in widths of the line.
-        patch.set_linestyle((0, tuple(length / mark.width_mm for length in mark.dashes_mm)))
+        patch.set_linestyle((mark.into_mm / mark.width_mm, tuple(length / mark.width_mm for length in mark.dashes_mm)))
     return patch
 
 

@@ -47,6 +47,8 @@ class InkLine:
         Whether each line goes back to its first place.
     dashes_mm
         Lengths of a dash and of the blank after it; None for a whole line.
+    into_mm
+        How far into a dash and its blank a line begins.
     round_ends
         Whether ends are round; they are cut square otherwise, as dashes are.
     """
@@ -56,6 +58,7 @@ class InkLine:
     gray: float = 0.0
     closed: bool = False
     dashes_mm: tuple[float, float] | None = None
+    into_mm: float = 0.0
     round_ends: bool = True
 
 
@@ -137,6 +140,7 @@ def shifted(mark: InkMark, by_mm: tuple[float, float], scale: float = 1.0) -> In
                 contours=tuple(c * scale + by for c in mark.contours),
                 width_mm=mark.width_mm * scale,
                 dashes_mm=None if dashes is None else (dashes[0] * scale, dashes[1] * scale),
+                into_mm=mark.into_mm * scale,
             )
         case InkDiscs():
             centers = mark.centers_mm * scale + by

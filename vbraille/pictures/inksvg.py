@@ -98,6 +98,8 @@ def _line(mark: InkLine) -> dict[str, str]:
         keys |= {"stroke-linecap": "round", "stroke-linejoin": "round"}
     if mark.dashes_mm is not None:
         keys["stroke-dasharray"] = " ".join(map(_length, mark.dashes_mm))
+        if mark.into_mm:
+            keys["stroke-dashoffset"] = _length(mark.into_mm)
     return keys
 
 

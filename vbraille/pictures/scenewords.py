@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.pictures.words import plain
+from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -15,10 +16,10 @@ from vbraille.scene.patterns import (
     Line,
     Path,
     Polygon,
-    Shape,
     Tile,
     Use,
 )
+from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -26,15 +27,14 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
+from vbraille.scene.walking import each
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
-    from vbraille.scene.strokes import DotStyle, Stroke, Vibration
+    from vbraille.scene.strokes import DotStyle, Stroke
 
 # How groups put their parts together, in words that need no formula.
 _TOGETHER = {
@@ -91,37 +91,21 @@ def pattern_words(pattern: AnyPattern) -> str:
     return (f"{name}, " if name else "") + ", ".join(words)
 
 
-def vibrations(pattern: AnyPattern) -> Iterator[Vibration]:
+def vibrations(pattern: AnyPattern) -> list[Vibration]:
     """Tell every vibration of a pattern and of what it is made of."""
-    if isinstance(pattern, UniformVibration):
-        from vbraille.scene.strokes import Vibration
-
-        yield Vibration(frequency_hz=pattern.frequency_hz)
-    own = [pattern.vibration]
-    if isinstance(pattern, Dots | ImageDots):
-        own.append(pattern.dot.vibration)
-    if isinstance(pattern, Shape):
-        own += [pattern.stroke.vibration] if pattern.stroke else []
-        own += [pattern.dots.dot.vibration, pattern.dots.vertex_vibration] if pattern.dots else []
-    if isinstance(pattern, Polygon) and pattern.markers is not None:
-        own.append(pattern.markers.vibration)
-    yield from (vibration for vibration in own if vibration is not None)
-    for part in parts_of(pattern):
-        yield from vibrations(part)
-
-
-def parts_of(pattern: AnyPattern) -> tuple[AnyPattern, ...]:
-    """Patterns that a pattern is made of."""
-    match pattern:
-        case Group():
-            return pattern.parts + (() if pattern.by is None else (pattern.by,))
-        case Tile():
-            return (pattern.part,)
-        case Image():
-            return () if pattern.texture is None else (pattern.texture,)
-        case Circle() | Polygon() | Path():
-            return () if pattern.fill is None else (pattern.fill.texture,)
-    return ()
+    found: list[Vibration | None] = []
+    for part in each(pattern):
+        found.append(part.vibration)
+        if isinstance(part, UniformVibration):
+            found.append(Vibration(frequency_hz=part.frequency_hz))
+        if isinstance(part, Dots | ImageDots):
+            found.append(part.dot.vibration)
+        if isinstance(part, Line | Circle | Polygon | Path):
+            found += [part.stroke.vibration] if part.stroke else []
+            found += [part.dots.dot.vibration, part.dots.vertex_vibration] if part.dots else []
+        if isinstance(part, Polygon) and part.markers is not None:
+            found.append(part.markers.vibration)
+    return [vibration for vibration in found if vibration is not None]
 
 
 def _kind_words(pattern: AnyPattern) -> str:
@@ -169,8 +153,6 @@ def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str
 
 def wave_angle_deg(grating: LinearGrating) -> float:
     """Direction in which the wave of a grating travels, in degrees from +x towards +y."""
-    from vbraille.scene.measures import travel_deg
-
     return travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg)
 
 
