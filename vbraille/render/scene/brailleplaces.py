@@ -20,11 +20,13 @@ import numpy as np
 
 from vbraille.braille.dots import PLACES
 from vbraille.render.braille.profiles import coefficients
+from vbraille.scene.bounds import around
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.scene.assets import Written
+    from vbraille.scene.bounds import Box
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Label
 
@@ -147,3 +149,9 @@ def pack_label(label: Label, written: Written) -> PackedLabel:
     for row, masks in zip(table, written.lines, strict=True):
         row[1 : 1 + len(masks)] = _WORDS[masks]
     return PackedLabel(numbers, table.ravel())
+
+
+def box_of(label: Label, written: Written) -> Box:
+    """Tell the upright rectangle outside which a label and its opacity are 0."""
+    margin_mm = written.style.geometry.dot_width_mm / 2 + FADE_MM
+    return around(corners_mm(label, written, margin_mm))
