@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.moving import LISTS, SEVERAL, moved
+from vbraille.scene.naming import said
 from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.walking import each, placed_children, with_children
@@ -55,16 +56,6 @@ def resolve(scene: Scene, folder: Path | None = None, fail: Fail | None = None) 
         moved too far, or an image of dots cannot be read.
     """
     return _Resolving(scene, folder or Path(), fail or _fail).scene()
-
-
-def said(steps: Steps) -> str:
-    """Words for a place in a scene.
-
-    >>> said(("elements", 3, "fill", "texture"))
-    'elements, number 4 fill texture'
-    """
-    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
-    return "".join(words).strip()
 
 
 def _fail(steps: Steps, problem: str) -> NoReturn:
@@ -158,20 +149,19 @@ class _Resolving:
             pattern = moved(body.pattern, use.move_mm)
         except ValueError as error:
             self._fail(steps, f"cannot be moved so far: {error}")
-        own = {
-            "id": use.id,
-            "title": use.title or pattern.title,
-            "description": use.description or pattern.description,
-        }
+        title = use.title or pattern.title
+        description = use.description or pattern.description
         if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
-            return replace(pattern, **own)
+            return replace(pattern, id=use.id, title=title, description=description)
         return Group(
             operation="maximum",
             parts=(replace(pattern, title="", description=""),),
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,
-            **own,
+            id=use.id,
+            title=title,
+            description=description,
         )
 
     def _body(self, name: str, steps: Steps) -> _Body:
