@@ -76,7 +76,8 @@ def ink_png(drawing: InkDrawing, pixels_per_mm: float) -> bytes:
 
 def _figure(drawing: InkDrawing) -> Figure:
     size = drawing.width_mm / _MM_PER_INCH, drawing.height_mm / _MM_PER_INCH
-    figure = Figure(figsize=size, layout="none", facecolor="white")
+    figure = Figure(figsize=size, facecolor="white")
+    figure.set_layout_engine("none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, drawing.width_mm), ylim=(drawing.height_mm, 0), aspect="auto")
@@ -128,7 +129,12 @@ def _line(mark: InkLine) -> PathPatch:
     patch.set_joinstyle("round" if mark.round_ends else "miter")
     if mark.dashes_mm is not None:
         # Dashes are told in widths of the line.
-        patch.set_linestyle((mark.into_mm / mark.width_mm, tuple(length / mark.width_mm for length in mark.dashes_mm)))
+        patch.set_linestyle(
+            (
+                mark.into_mm / mark.width_mm,
+                tuple(length / mark.width_mm for length in mark.dashes_mm),
+            )
+        )
     return patch
 
 

@@ -16,7 +16,13 @@ from vbraille.errors import InputError
 from vbraille.pictures.ink import InkArea, InkDiscs, InkLine
 from vbraille.pictures.scenewords import wave_angle_deg
 from vbraille.scene.fitting import axial_cycle
-from vbraille.scene.textures import Gradual
+from vbraille.scene.textures import (
+    AxialGrating,
+    Gradual,
+    LinearGrating,
+    RadialGrating,
+    TurnPeak,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +32,9 @@ if TYPE_CHECKING:
     from vbraille.pictures.ink import PlainMark
     from vbraille.pictures.looks import InkLook
     from vbraille.scene.scene import Canvas
-    from vbraille.scene.textures import AxialGrating, LinearGrating, Peak, RadialGrating, TurnPeak
+    from vbraille.scene.textures import Peak
+
+AnyGrating = LinearGrating | RadialGrating | AxialGrating
 
 _MOST_LINES = 20_000
 _MOST_DOTS = 50_000
@@ -35,7 +43,7 @@ _FINE = 20_001  # places at which a distortion is looked up
 
 
 def grating_marks(
-    grating: LinearGrating | RadialGrating | AxialGrating, canvas: Canvas, look: InkLook, gray: float
+    grating: AnyGrating, canvas: Canvas, look: InkLook, gray: float
 ) -> Iterator[PlainMark]:
     """Draw a grating all over a canvas.
 
@@ -44,8 +52,6 @@ def grating_marks(
     InputError
         If it has more ridges on the canvas than anybody could see.
     """
-    from vbraille.scene.textures import AxialGrating, LinearGrating
-
     if isinstance(grating, LinearGrating):
         return _linear(grating, canvas, look, gray)
     if isinstance(grating, AxialGrating):
@@ -104,7 +110,9 @@ def _radial(
         yield _ridge_line(grating, rings, width, gray, look, closed=True)
 
 
-def _axial(grating: AxialGrating, canvas: Canvas, look: InkLook, gray: float) -> Iterator[PlainMark]:
+def _axial(
+    grating: AxialGrating, canvas: Canvas, look: InkLook, gray: float
+) -> Iterator[PlainMark]:
     cycle = axial_cycle(grating)
     center = np.array(grating.center_mm)
     corners = np.array([(x, y) for x in (0.0, canvas.width_mm) for y in (0.0, canvas.height_mm)])
@@ -113,7 +121,8 @@ def _axial(grating: AxialGrating, canvas: Canvas, look: InkLook, gray: float) ->
     if grating.inverted:
         middle, half = (cycle.ridge + cycle.length) / 2, cycle.length / 2 - cycle.ridge / 4
     number = max(round(360.0 / cycle.length), 1)
-    turns = _warped_back(middle + cycle.length * np.arange(number), grating.distortion, 0.0, 360.0)
+    turns = middle + cycle.length * np.arange(number, dtype=np.float64)
+    turns = _warped_back(turns, grating.distortion, 0.0, 360.0)
     # Spokes begin where both they and the blanks between them are wide enough.
     blank = math.radians(max(cycle.length - 2 * half, 0.1))
     first = max(look.line_mm / (2 * math.radians(half)), look.gap_mm / blank, grating.fade_mm[1])
@@ -159,7 +168,9 @@ def _ridges(
     if grating.inverted:
         middle, width = (ridge + length) / 2, length - ridge / 2
     low, high = _warped(np.array([low_mm, high_mm]), grating.distortion)
-    numbers = np.arange(math.floor((low - middle) / length), math.ceil((high - middle) / length) + 1)
+    numbers = np.arange(
+        math.floor((low - middle) / length), math.ceil((high - middle) / length) + 1
+    )
     if numbers.size > _MOST_LINES:
         raise InputError(
             f"a grating has {numbers.size} ridges on the canvas, too many to draw them as lines; "
@@ -171,11 +182,11 @@ def _ridges(
     middles, widths = edges[:, 1], np.maximum(edges[:, 2] - edges[:, 0], look.line_mm)
     if look.raised:
         widths = np.minimum(widths, np.maximum(look.line_mm, 2 * look.gap_mm))
-    kept, last = [], -math.inf
+    kept, end = [], -math.inf
     for number, (at, wide) in enumerate(zip(middles.tolist(), widths.tolist(), strict=True)):
-        if at - wide / 2 >= last + look.gap_mm:
+        if at - wide / 2 >= end + look.gap_mm:
             kept.append(number)
-            last = at + wide / 2
+            end = at + wide / 2
     inside = [n for n in kept if low_mm - length <= middles[n] <= high_mm + length]
     return middles[inside], widths[inside]
 
@@ -202,11 +213,10 @@ def _bent(x: NDArray[np.float64], distortion: Gradual | Peak | TurnPeak) -> NDAr
         u = np.clip(x - distortion.start_mm, 0.0, None)
         length = distortion.length_mm
         return x + more * np.where(u < length, u * u / (2 * length), u - length / 2)
-    center, length = (
-        (distortion.center_mm, distortion.length_mm)
-        if hasattr(distortion, "center_mm")
-        else (distortion.center_deg, distortion.length_deg)
-    )
+    if isinstance(distortion, TurnPeak):
+        center, length = distortion.center_deg, distortion.length_deg
+    else:
+        center, length = distortion.center_mm, distortion.length_mm
     u = x - center
     below = np.clip(length + u, 0.0, None) ** 2
     above = 2 * length * length - np.clip(length - u, 0.0, None) ** 2
@@ -214,7 +224,10 @@ def _bent(x: NDArray[np.float64], distortion: Gradual | Peak | TurnPeak) -> NDAr
 
 
 def _warped_back(
-    places: NDArray[np.float64], distortion: Gradual | Peak | TurnPeak | None, low: float, high: float
+    places: NDArray[np.float64],
+    distortion: Gradual | Peak | TurnPeak | None,
+    low: float,
+    high: float,
 ) -> NDArray[np.float64]:
     """Where x' has given values; x' grows, and so has an inverse."""
     if distortion is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from msgspec.structs import replace
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vbraille.render.scene.assets import Assets
     from vbraille.scene.patterns import AnyPattern
 
-Region = "NDArray[np.float32]"  # [rows, columns], 1 inside and 0 outside
+# Patterns that cover the whole canvas.
 TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 _PIXELS_PER_MM, _MOST_PIXELS = 4.0, 1_000_000
 # When vibrations of 50 Hz are at one end; the actuators of parity 0 are up then.
@@ -79,11 +79,11 @@ class Regions:
         x = np.concatenate([[self.x_mm[0] - step], self.x_mm, [self.x_mm[-1] + step]])
         y = np.concatenate([[self.y_mm[0] - step], self.y_mm, [self.y_mm[-1] + step]])
         lines = contour_generator(x, y, padded, fill_type=FillType.OuterOffset)
-        areas, offsets = lines.filled(0.5, math.inf)
+        found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(0.5, math.inf))
         edge = np.array([self._scene.canvas.width_mm, self._scene.canvas.height_mm])
         return tuple(
             np.clip(part, 0.0, edge)
-            for points, breaks in zip(areas, offsets, strict=True)
+            for points, breaks in zip(*found, strict=True)
             for part in np.split(points, breaks[1:-1].astype(int))
         )
 
@@ -112,7 +112,7 @@ class Regions:
             return None
         return reduce(np.maximum, some)
 
-    def _map(self, pattern: AnyPattern, assets: Assets | None = None):  # noqa: ANN202
+    def _map(self, pattern: AnyPattern, assets: Assets | None = None):
         from vbraille.render.scene.canvas import SceneMap  # loads the kernels
 
         scene = Scene(canvas=self._scene.canvas, elements=(pattern,))

@@ -67,7 +67,8 @@ def map_places(
             f"{MOST_PIXELS // 10**6} million; give {setting('resolution')} {0.99 * most:.2g} or "
             "less"
         )
-    return (np.arange(columns) + 0.5) / pixels_per_mm, (np.arange(rows) + 0.5) / pixels_per_mm
+    x, y = (np.arange(count, dtype=np.float64) + 0.5 for count in (columns, rows))
+    return x / pixels_per_mm, y / pixels_per_mm
 
 
 def map_deflections(
