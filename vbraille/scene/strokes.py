@@ -169,6 +169,12 @@ class Stroke(Table, frozen=True, kw_only=True):
         return half if self.edge_mm is None else min(self.edge_mm, half)
 
 
+def _check_high(vibration: Vibration | None, what: str) -> None:
+    """Refuse a vibration of what is down in something that is up throughout."""
+    if vibration is not None and vibration.of == "low":
+        raise ValueError(f'vibration of = "low" is not for {what}, which are up; write "high"')
+
+
 class DotStyle(Table, frozen=True, kw_only=True):
     """How dots look: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
 
@@ -275,9 +281,3 @@ class Markers(Table, frozen=True, kw_only=True):
         check_range("angle", self.angle_deg, 1.0, 180.0, "°")
         check_length("blend", self.blend_mm)
         _check_high(self.vibration, "markers")
-
-
-def _check_high(vibration: Vibration | None, what: str) -> None:
-    """Refuse a vibration of what is down in something that is up throughout."""
-    if vibration is not None and vibration.of == "low":
-        raise ValueError(f'vibration of = "low" is not for {what}, which are up; write "high"')
