@@ -8,17 +8,17 @@ inverted - is drawn black where it is above half of its height.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import structs
 
-from vbraille.pictures.hatching import grating_marks, vibration_marks
+from vbraille.pictures.hatching import grating_marks, vibration_discs
 from vbraille.pictures.ink import InkArea, InkClip, InkDrawing, InkLine, InkRaster
 from vbraille.pictures.inkshapes import (
     dots_marks,
-    is_closed,
     label_marks,
-    outline,
     shape_marks,
 )
 from vbraille.pictures.looks import ABSTRACT, InkLook
@@ -169,7 +169,7 @@ class _Painter:
                     area = InkArea(self.regions.canvas, look.ink(strength * level))
                     yield from self._clipped([area], where)
             case UniformVibration():
-                yield from self._clipped(vibration_marks(self._canvas, look, ink), where)
+                yield from self._shaking(where, ink)
             case Tile():
                 yield from self._area(self.regions.felt(texture), where, strength)
             case _:
@@ -181,21 +181,21 @@ class _Painter:
     def _fill(self, shape: AnyShape, where: Where, strength: float) -> Iterator[InkMark]:
         if isinstance(shape, Line) or shape.fill is None:
             return
-        from msgspec.structs import replace
-
-        fill = replace(shape.fill, texture=Uniform(), gap_mm=0.0, fade_mm=0.0)
-        inside = self.regions.of(replace(shape, stroke=None, dots=None, inverted=False, fill=fill))
+        fill = structs.replace(shape.fill, texture=Uniform(), gap_mm=0.0, fade_mm=0.0)
+        bare = structs.replace(shape, stroke=None, dots=None, inverted=False, fill=fill)
+        if isinstance(bare, Polygon):
+            bare = structs.replace(bare, markers=None)
+        inside = self.regions.of(bare)
         inside = _both(inside, where)
-        yield from self.paint(shape.fill.texture, inside, strength)
-        if shape.vibration is not None:
-            yield from self._shaking(inside)
         wide = 0.0 if shape.stroke is None else shape.stroke.width_mm
         if shape.dots is not None:
             wide = 2 * shape.dots.dot.radius_mm
-        if wide and not shape.fill.blended:
+        if wide and (self._look.raised or not shape.fill.blended):
             gap = max(shape.fill.gap_mm, self._look.halo_mm)
-            blank = InkLine(outline(shape), wide + 2 * gap, 1.0, is_closed(shape))
-            yield from self._clipped([blank], inside)
+            inside = self.regions.grown(inside, -(wide / 2 + gap))
+        yield from self.paint(shape.fill.texture, inside, strength)
+        if shape.vibration is not None:
+            yield from self._shaking(inside)
 
     def _image(self, image: Image, where: Where, strength: float) -> Iterator[InkMark]:
         region = self.regions.of(image)
@@ -221,18 +221,22 @@ class _Painter:
         if region is None:
             contours = self.regions.canvas
         else:
+            if self._look.halo_mm:
+                region = self.regions.grown(region, self._look.halo_mm)
             contours = self.regions.contours(_both(region, where))
-        if not contours:
-            return
-        marks: list[PlainMark] = [InkArea(contours, 1.0)]
-        if region is not None and self._look.halo_mm:
-            marks.append(InkLine(contours, 2 * self._look.halo_mm, 1.0, closed=True))
-        yield from self._clipped(marks, where)
+        if contours:
+            yield from self._clipped([InkArea(contours, 1.0)], where)
 
-    def _shaking(self, where: Where) -> Iterator[InkMark]:
-        """Draw vibration over what vibrates: white dots on gray, or black ones on raised paper."""
-        gray = 0.0 if self._look.raised else 1.0
-        yield from self._clipped(vibration_marks(self._canvas, self._look, gray), where)
+    def _shaking(self, where: Where, gray: float | None = None) -> Iterator[InkMark]:
+        """Draw vibration in a region as whole dots, white over what vibrates, or black if raised."""
+        if gray is None:
+            gray = 0.0 if self._look.raised else 1.0
+        discs = vibration_discs(self._canvas, self._look, gray)
+        if where is not None:
+            held = self.regions.holds(where, discs.centers_mm, discs.radius_mm)
+            discs = replace(discs, centers_mm=discs.centers_mm[held])
+        if len(discs.centers_mm):
+            yield discs
 
     def _area(
         self, region: NDArray[np.floating], where: Where, strength: float

@@ -59,7 +59,7 @@ def grating_marks(
     return _radial(grating, canvas, look, gray)
 
 
-def vibration_marks(canvas: Canvas, look: InkLook, gray: float) -> Iterator[PlainMark]:
+def vibration_discs(canvas: Canvas, look: InkLook, gray: float) -> InkDiscs:
     """Draw vibration all over a canvas: dots in rows, of which every second one is shifted.
 
     Raises
@@ -77,7 +77,7 @@ def vibration_marks(canvas: Canvas, look: InkLook, gray: float) -> Iterator[Plai
         )
     x, y = np.meshgrid(across, down)
     x[1::2] -= pitch / 2
-    yield InkDiscs(np.stack([x.ravel(), y.ravel()], axis=-1), look.dot_mm / 2, gray)
+    return InkDiscs(np.stack([x.ravel(), y.ravel()], axis=-1), look.dot_mm / 2, gray)
 
 
 def _linear(
@@ -102,7 +102,7 @@ def _radial(
     center = np.array(grating.center_mm)
     corners = np.array([(x, y) for x in (0.0, canvas.width_mm) for y in (0.0, canvas.height_mm)])
     farthest = np.hypot(*(corners - center).T).max()
-    middles, widths = _ridges(grating, 0.0, farthest, look)
+    middles, widths = _ridges(grating, 0.0, farthest, look, least_mm=0.0)
     turns = np.radians(np.arange(0.0, 360.0, _ROUND_DEG))
     ring = np.stack([np.cos(turns), np.sin(turns)], axis=-1)
     for group, width in _by_width(middles, widths):
@@ -160,7 +160,11 @@ def dotted(width_mm: float, look: InkLook) -> tuple[float, float]:
 
 
 def _ridges(
-    grating: LinearGrating | RadialGrating, low_mm: float, high_mm: float, look: InkLook
+    grating: LinearGrating | RadialGrating,
+    low_mm: float,
+    high_mm: float,
+    look: InkLook,
+    least_mm: float = -math.inf,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Middles of the ridges that are drawn between two places along the wave, and their widths."""
     ridge, length = grating.ridge_mm, grating.ridge_mm + grating.gap_mm
@@ -184,7 +188,7 @@ def _ridges(
         widths = np.minimum(widths, np.maximum(look.line_mm, 2 * look.gap_mm))
     kept, end = [], -math.inf
     for number, (at, wide) in enumerate(zip(middles.tolist(), widths.tolist(), strict=True)):
-        if at - wide / 2 >= end + look.gap_mm:
+        if at > least_mm and at - wide / 2 >= end + look.gap_mm:
             kept.append(number)
             end = at + wide / 2
     inside = [n for n in kept if low_mm - length <= middles[n] <= high_mm + length]

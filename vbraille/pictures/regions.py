@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 # Patterns that cover the whole canvas.
 TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 _PIXELS_PER_MM, _MOST_PIXELS = 4.0, 1_000_000
+_HALF = 0.5
 # When vibrations of 50 Hz are at one end; the actuators of parity 0 are up then.
 _UP_S = 0.005
 
@@ -74,18 +75,44 @@ class Regions:
         """Draw lines around all that is above ½; holes run the other way round."""
         from contourpy import FillType, contour_generator
 
-        padded = np.pad(region, 1)
+        padded = np.pad(_smoothed(region), 1)
         step = 1 / self._per_mm
         x = np.concatenate([[self.x_mm[0] - step], self.x_mm, [self.x_mm[-1] + step]])
         y = np.concatenate([[self.y_mm[0] - step], self.y_mm, [self.y_mm[-1] + step]])
         lines = contour_generator(x, y, padded, fill_type=FillType.OuterOffset)
-        found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(0.5, math.inf))
+        found = cast("tuple[list[NDArray], list[NDArray]]", lines.filled(_HALF, math.inf))
         edge = np.array([self._scene.canvas.width_mm, self._scene.canvas.height_mm])
         return tuple(
             np.clip(part, 0.0, edge)
             for points, breaks in zip(*found, strict=True)
             for part in np.split(points, breaks[1:-1].astype(int))
         )
+
+    def grown(self, region: NDArray[np.floating], by_mm: float) -> NDArray[np.float32]:
+        """Make a region larger by a distance on all sides, or smaller by a negative one."""
+        from scipy.ndimage import distance_transform_edt  # takes half a second to load
+
+        inside = region >= _HALF
+        if by_mm < 0.0:
+            return 1.0 - self.grown(1.0 - inside, -by_mm)
+        if not inside.any():
+            return np.zeros(region.shape, np.float32)
+        away_mm = np.asarray(distance_transform_edt(~inside)) / self._per_mm
+        return np.clip(_HALF + (by_mm - away_mm) * self._per_mm, 0.0, 1.0).astype(np.float32)
+
+    def holds(
+        self, region: NDArray[np.floating], centers_mm: NDArray[np.float64], radius_mm: float
+    ) -> NDArray[np.bool_]:
+        """Tell which discs are wholly in a region; float64[n, 2] to bool[n]."""
+        held = np.ones(len(centers_mm), bool)
+        for angle in np.arange(0.0, math.tau, math.tau / 8):
+            at = centers_mm + radius_mm * np.array([math.cos(angle), math.sin(angle)])
+            column, row = np.floor(at * self._per_mm).astype(int).T
+            rows, columns = region.shape
+            on = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+            held &= on
+            held[on] &= region[row[on], column[on]] >= _HALF
+        return held
 
     def _plainly(self, pattern: AnyPattern) -> NDArray[np.float32] | None:
         if isinstance(pattern, TEXTURES):
@@ -117,3 +144,11 @@ class Regions:
 
         scene = Scene(canvas=self._scene.canvas, elements=(pattern,))
         return SceneMap(scene, self._assets if assets is None else assets)
+
+
+def _smoothed(region: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Blur by a pixel, so that edges as sharp as pixels make lines without steps."""
+    for _ in range(2):
+        padded = np.pad(region, ((1, 1), (0, 0)), mode="edge")
+        region = ((padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4).T
+    return region
