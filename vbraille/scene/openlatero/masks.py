@@ -64,8 +64,8 @@ def read_image(element: GenElement, context: Context) -> AnyPattern | None:
     found = None if file is None else _found(file, context)
     if file is None or found is None:
         mask.forget()
-        what = "its picture is not named" if file is None else "its picture is not there"
-        element.say(f"{what}; left out")
+        if file is None:
+            element.say("its picture is not named; left out")
         return None
     width, height = _size(mask, found.picture)
     place = _place(mask, width, height)
@@ -75,14 +75,19 @@ def read_image(element: GenElement, context: Context) -> AnyPattern | None:
     mask.say("between pixels it is bilinear here, and the nearest pixel counts there")
     return Image(
         file=found.name,
-        place_mm=place,
-        width_mm=width,
-        height_mm=height,
+        place_mm=(_plain(place[0]), _plain(place[1])),
+        width_mm=_plain(width),
+        height_mm=_plain(height),
         channel=channel,
-        blur_mm=blur,
+        blur_mm=_plain(blur),
         outside=mask.number("default_alpha", 0.0, 0.0, 1.0, "share"),
         texture=None if texture == Uniform() else texture,
     )
+
+
+def _plain(value_mm: float) -> float:
+    """Length to the nanometre, since people read it."""
+    return round(value_mm, 6)
 
 
 def _found(file: GenElement, context: Context) -> _Found | None:
@@ -98,10 +103,10 @@ def _found(file: GenElement, context: Context) -> _Found | None:
             path, name = context.folder / beside, beside
         picture = measure(path)
     except InputError as error:
-        file.say(f"picture {_in(context.folder, error)}")
+        file.say(f"its picture is left out: {_in(context.folder, error)}")
         return None
     except (OSError, ValueError):
-        file.say("its name is no name of a file")
+        file.say("its picture has no name that a file can have; left out")
         return None
     return _Found(name, picture)
 
