@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Literal
 
 from vbraille.errors import check_range
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import Point, check_angle, check_length, check_point, check_share
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.strokes import DotStyle, Dotting, Markers, Stroke
@@ -226,6 +227,14 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_points("vertices", self.vertices_mm, 3)
+        _check_not_closed("vertices", self.vertices_mm)
+        edges = meeting_edges(self.vertices_mm)
+        if edges is not None:
+            first, second = edges
+            raise ValueError(
+                f"vertices make edges that cross or touch, those after number {first} and number "
+                f"{second}; set them in order around the shape"
+            )
         check_length("rounding offset", self.rounding_offset_mm, 0.0)
         _check_drawn(self, self.fill)
 
@@ -258,6 +267,8 @@ class Path(Shape, frozen=True, kw_only=True, tag="path"):
             raise ValueError("contours are missing; give at least one")
         for number, contour in enumerate(self.contours_mm, 1):
             _check_points(f"contours, number {number}", contour, 3 if self.closed else 2)
+            if self.closed:
+                _check_not_closed(f"contours, number {number}", contour)
         if self.fill is not None and not self.closed:
             raise ValueError("fill needs a closed path; write closed = true")
         _check_drawn(self, self.fill)
@@ -414,6 +425,11 @@ def _check_points(what: str, points_mm: tuple[Point, ...], least: int) -> None:
         check_point(f"{what}, number {number}", point)
         if number > 1 and point == points_mm[number - 2]:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
+
+
+def _check_not_closed(what: str, points_mm: tuple[Point, ...]) -> None:
+    if points_mm[0] == points_mm[-1]:
+        raise ValueError(f"{what} end where they begin, and are closed anyway; leave the last out")
 
 
 def _check_drawn(shape: Shape, fill: Fill | None) -> None:

@@ -1,0 +1,18 @@
+"""Places in scenes, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vbraille.scene.walking import Steps
+
+
+def said(steps: Steps) -> str:
+    """Words for a place in a scene, which keys and indices lead to.
+
+    >>> said(("elements", 3, "fill", "texture"))
+    'elements, number 4 fill texture'
+    """
+    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
+    return "".join(words).strip()
