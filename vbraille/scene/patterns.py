@@ -10,6 +10,7 @@ import math
 from typing import Literal
 
 from vbraille.errors import check_range
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
@@ -241,6 +242,13 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_points("vertices", self.vertices_mm, 3, closed=True)
+        edges = meeting_edges(self.vertices_mm)
+        if edges is not None:
+            first, second = edges
+            raise ValueError(
+                f"vertices make edges that cross or touch, those after number {first} and number "
+                f"{second}; set them in order around the shape"
+            )
         check_length("rounding offset", self.rounding_offset_mm, 0.0)
         _check_drawn(self, self.fill)
 
