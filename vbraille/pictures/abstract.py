@@ -228,7 +228,7 @@ class _Painter:
             yield from self._clipped([InkArea(contours, 1.0)], where)
 
     def _shaking(self, where: Where, gray: float | None = None) -> Iterator[InkMark]:
-        """Draw vibration in a region as whole dots, white over what vibrates, or black if raised."""
+        """Draw vibration in a region as whole dots: white over what vibrates, black if raised."""
         if gray is None:
             gray = 0.0 if self._look.raised else 1.0
         discs = vibration_discs(self._canvas, self._look, gray)
