@@ -115,7 +115,8 @@ def _relative(file: Path, folder: Path) -> str:
 
 def _read(path: Path, form: str, as_shown: bool) -> FoundScene:
     if form == "svg":
-        from vbraille.scene.svgscene import read_svg  # loads the library for SVG
+        # It loads the library for SVG.
+        from vbraille.scene.svgscene import read_svg  # pyright: ignore[reportMissingImports]
 
         return read_svg(path)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML
@@ -136,12 +137,11 @@ def _comments(path: Path, found: FoundScene) -> dict[Steps, tuple[str, ...]]:
 
 
 def _about(warning: str, lines: Mapping[Steps, int]) -> Steps:
-    """Element that a warning is about: the last that begins at its line or before."""
+    """Element of the scene that a warning is about: the last that begins at its line or before."""
     found = _LINE.match(warning)
-    before = [
-        (line, steps) for steps, line in lines.items() if found and line <= int(found[1])
-    ]  # fmt: skip
-    return max(before, key=lambda one: (one[0], len(one[1])))[1] if before else ()
+    line = int(found[1]) if found else 0
+    before = [(at, steps) for steps, at in lines.items() if len(steps) == 2 and at <= line]
+    return max(before)[1] if before else ()
 
 
 def _printed(text: str) -> str:
