@@ -20,8 +20,10 @@ from vbraille.scene.patterns import (
     Use,
 )
 from vbraille.scene.patterns import Path as Lines
+from vbraille.scene.reading import open_scene
+from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Dotting, Stroke
-from vbraille.scene.svg.looks import Look
+from vbraille.scene.svg.looks import BY_HUE, Look
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
 
@@ -64,13 +66,13 @@ def test_a_drawing_of_inkscape():
     assert water.closed
     assert water.contours_mm[0][0] == (20, 30)
     assert water.contours_mm[0][-3:] == ((40, 50), (50, 50), (50, 70))
-    assert water.fill == Fill(texture=Use(name="stock:vertical"))
+    assert water.fill == Fill(texture=Use(name="stock:linear-90"))
     assert water.stroke == Stroke(width_mm=2.5, edge_mm=1)
     assert isinstance(house, Polygon)
     assert house.vertices_mm == ((70, 30), (110, 30), (110, 60), (70, 60))
     assert house.stroke == Stroke(width_mm=3, edge_mm=1, along=Along(ridge_mm=2, gap_mm=6))
     assert tower == Circle(
-        center_mm=(130, 50), radius_mm=12.5, fill=Fill(texture=Use(name="stock:horizontal"))
+        center_mm=(130, 50), radius_mm=12.5, fill=Fill(texture=Use(name="stock:linear-0"))
     )
     assert (great.text, lake.text) == ("Great", "Lake")
     assert lake.place_mm[1] - great.place_mm[1] == pytest.approx(12.5)
@@ -98,6 +100,29 @@ def test_a_drawing_of_illustrator():
     assert word.text == "Main Street"
     assert word.angle_deg == pytest.approx(90)
     assert not found.warnings
+
+
+@pytest.mark.parametrize("name", ["inkscape.svg", "illustrator.svg"])
+def test_drawings_are_opened_and_included_with_textures_of_the_bank(tmp_path, name):
+    opened = open_scene(FILES / name)
+    assert not any(isinstance(one, Use) for one in each(*opened.resolved.elements))
+    (tmp_path / name).write_bytes((FILES / name).read_bytes())
+    (tmp_path / "my.scene").write_text(
+        f'include = ["{name}"]\n[canvas]\nwidth_mm = 300\nheight_mm = 200\n'
+    )
+    included = open_scene(tmp_path / "my.scene")
+    kinds = [
+        [(type(part), part.id, part.title) for part in each(*one.resolved.elements)]
+        for one in (included, opened)
+    ]
+    assert kinds[0] == kinds[1]
+    assert included.warnings == tuple(
+        warning.replace(str(FILES), str(tmp_path)) for warning in opened.warnings
+    )
+
+
+def test_each_hue_has_a_texture_of_the_bank():
+    assert {name.removeprefix("stock:") for name in BY_HUE.values()} <= set(stock_textures())
 
 
 @pytest.mark.parametrize(
@@ -156,18 +181,18 @@ SHAPES = {
         fill=Fill(texture=Use(name="stock:vibration")),
     ),
     '<ellipse cx="9" cy="9" rx="5" ry="5" fill="#ff0"/>': Circle(
-        center_mm=(9, 9), radius_mm=5, fill=Fill(texture=Use(name="stock:diagonal"))
+        center_mm=(9, 9), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-45"))
     ),
     '<g transform="translate(5 5) rotate(90) scale(2)"><circle r="3" fill="purple"/></g>': Circle(
         center_mm=(5, 5), radius_mm=6, fill=Fill(texture=Use(name="stock:grid"))
     ),
     '<circle r="5" fill="black" opacity="50%" id="sun"><title> The\n sun </title></circle>': Circle(
         id="sun", title="The sun", amplitude=0.5,
-        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:horizontal")),
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0")),
     ),
-    '<g opacity=".5"><circle r="5" fill-opacity=".5" fill="rgb(0,0,99)" opacity=".5"/></g>': Circle(
+    '<g opacity=".5"><circle r="5" fill-opacity=".5" fill="rgb(9,0,0)" opacity=".5"/></g>': Circle(
         amplitude=0.25,
-        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:vertical", amplitude=0.5)),
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0", amplitude=0.495)),
     ),
     '<text x="20" y="30">A <tspan font-weight="bold">b</tspan>\n c</text>': Label(
         text="A b c", place_mm=(20, 21)
@@ -176,11 +201,11 @@ SHAPES = {
         text="ab", place_mm=(41, 52.2), angle_deg=-90
     ),
     '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1"><circle r="1"/></svg>': Circle(
-        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:horizontal"))
+        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),
     '<symbol id="s" viewBox="0 0 2 1"><circle r="1"/></symbol>'
     '<use href="#s" x="10" y="10" width="20" height="10"/>': Circle(
-        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:horizontal"))
+        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
     ),
     '<style>.a{fill:blue} circle.a{fill:red} #b{fill:green} /* {} */ circle{fill:yellow}</style>'
     '<circle class="c a" fill="white" r="5"/>': Circle(
@@ -190,7 +215,7 @@ SHAPES = {
         id="b", center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:dots"))
     ),
     '<switch><foreignObject/><g><circle r="5"/></g><g><circle r="6"/></g></switch>': Circle(
-        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:horizontal"))
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0"))
     ),
 }  # fmt: skip
 

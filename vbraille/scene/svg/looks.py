@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 # Textures of the bank by hue; white surfaces are smooth, and hide what they lie on.
 BY_HUE = {
-    "gray": "stock:horizontal",
-    "blue": "stock:vertical",
+    "gray": "stock:linear-0",
+    "blue": "stock:linear-90",
     "green": "stock:dots",
-    "yellow": "stock:diagonal",
+    "yellow": "stock:linear-45",
     "purple": "stock:grid",
     "red": "stock:vibration",
 }
