@@ -192,7 +192,8 @@ SHAPES = {
     ),
     '<g opacity=".5"><circle r="5" fill-opacity=".5" fill="rgb(9,0,0)" opacity=".5"/></g>': Circle(
         amplitude=0.25,
-        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0", amplitude=0.495)),
+        center_mm=(0, 0), radius_mm=5,
+        fill=Fill(texture=Use(name="stock:linear-0", amplitude=0.495)),
     ),
     '<text x="20" y="30">A <tspan font-weight="bold">b</tspan>\n c</text>': Label(
         text="A b c", place_mm=(20, 21)
