@@ -23,7 +23,7 @@ from vbraille.scene.patterns import Path as Lines
 from vbraille.scene.reading import open_scene
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Dotting, Stroke
-from vbraille.scene.svg.looks import BY_HUE, Look
+from vbraille.scene.svg.looks import BY_HUE, ClassLook
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
 
@@ -366,7 +366,7 @@ def test_a_fill_that_is_not_closed_has_a_stroke_that_is_not(read):
     assert fill.contours_mm == stroke.contours_mm
 
 
-WATER = Look(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))
+WATER = ClassLook(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))
 
 
 @pytest.mark.parametrize(
@@ -383,11 +383,11 @@ def test_a_scene_says_what_a_class_becomes(read, text):
 
 
 def test_a_class_may_be_dotted_or_hidden(read):
-    looks = {"way": Look(dots=Dotting()), "frame": Look(hidden=True)}
+    looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
     found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
     assert element_of(found) == Line(start_mm=(0, 0), end_mm=(9, 0), dots=Dotting())
     with pytest.raises(ValueError, match="dots cannot be given beside a stroke"):
-        Look(dots=Dotting(), stroke=Stroke())
+        ClassLook(dots=Dotting(), stroke=Stroke())
 
 
 @given(st.data())

@@ -15,8 +15,8 @@ from vbraille.scene.svg.tree import name_of
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.looks import Drawn
-    from vbraille.scene.svg.numbers import Matrix
+    from vbraille.scene.svg.looks import ShapeLook
+    from vbraille.scene.svg.numbers import AffineMap
     from vbraille.scene.svg.tree import Element
 
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))
@@ -25,7 +25,7 @@ _MOST_CROSSED = 2000  # places of a contour that is searched for crossings
 CROSSING = "it crosses itself, or may; it is filled by the even-odd rule"
 
 
-def outline(element: Element, matrix: Matrix, view: Point, room: int) -> list[Contour]:
+def outline(element: Element, matrix: AffineMap, view: Point, room: int) -> list[Contour]:
     """Contours of a shape.
 
     Parameters
@@ -82,7 +82,7 @@ def rounded(element: Element, view: Point) -> tuple[Point, Point]:
     return (place[0], place[1]), _radii(element, view)
 
 
-def circle_of(element: Element, matrix: Matrix, view: Point, drawn: Drawn) -> Circle | None:
+def circle_of(element: Element, matrix: AffineMap, view: Point, drawn: ShapeLook) -> Circle | None:
     """Circle that a circle or an ellipse is on the canvas; None if it is none there."""
     (x, y), (rx, ry) = rounded(element, view)
     radius = rx * matrix.scale
@@ -99,7 +99,7 @@ def circle_of(element: Element, matrix: Matrix, view: Point, drawn: Drawn) -> Ci
 
 
 def patterns_of(
-    name: str, contours: list[Contour], drawn: Drawn, *, nonzero: bool, notes: list[str]
+    name: str, contours: list[Contour], drawn: ShapeLook, *, nonzero: bool, notes: list[str]
 ) -> list[AnyPattern]:
     """Patterns of a shape, from the lowest on.
 
@@ -155,7 +155,7 @@ def _is_polygon(name: str, contours: list[Contour]) -> bool:
     return name == "polygon" or (name == "rect" and len(contours[0].points_mm) == 4)
 
 
-def _rectangle(element: Element, matrix: Matrix, view: Point) -> list[Contour]:
+def _rectangle(element: Element, matrix: AffineMap, view: Point) -> list[Contour]:
     x, y, width, height = _lengths(element, ("x", "y", "width", "height"), (*view, *view))
     if width <= 0 or height <= 0:
         return []
