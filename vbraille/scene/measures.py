@@ -13,6 +13,8 @@ Point = tuple[float, float]
 MOST_MM = 10_000.0
 # Ridges below this size are finer than any array can show, and would cost as much as coarse ones.
 LEAST_MM = 0.05
+# Two points of a path that are nearer are one: there is no direction between them.
+LEAST_APART_MM = 1e-6
 LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ = 0.1, 50.0
 
 

@@ -6,11 +6,19 @@ The classes are tables of scene files at the same time: their fields are the key
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from vbraille.errors import check_range
 from vbraille.scene.crossing import meeting_edges
-from vbraille.scene.measures import Point, check_angle, check_length, check_point, check_share
+from vbraille.scene.measures import (
+    LEAST_APART_MM,
+    Point,
+    check_angle,
+    check_length,
+    check_point,
+    check_share,
+)
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.strokes import DotStyle, Dotting, Markers, Stroke
 from vbraille.scene.textures import (
@@ -222,7 +230,7 @@ class Line(Shape, frozen=True, kw_only=True, tag="line"):
         super().__post_init__()
         check_point("start", self.start_mm)
         check_point("end", self.end_mm)
-        if self.start_mm == self.end_mm:
+        if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
             raise ValueError("end is where the line starts; a line needs two places")
         _check_drawn(self, None)
 
@@ -286,8 +294,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check_points("vertices", self.vertices_mm, 3)
-        _check_not_closed("vertices", self.vertices_mm)
+        _check_points("vertices", self.vertices_mm, 3, closed=True)
         edges = meeting_edges(self.vertices_mm)
         if edges is not None:
             first, second = edges
@@ -326,9 +333,8 @@ class Path(Shape, frozen=True, kw_only=True, tag="path"):
         if not self.contours_mm:
             raise ValueError("contours are missing; give at least one")
         for number, contour in enumerate(self.contours_mm, 1):
-            _check_points(f"contours, number {number}", contour, 3 if self.closed else 2)
-            if self.closed:
-                _check_not_closed(f"contours, number {number}", contour)
+            least = 3 if self.closed else 2
+            _check_points(f"contours, number {number}", contour, least, closed=self.closed)
         if self.fill is not None and not self.closed:
             raise ValueError("fill needs a closed path; write closed = true")
         _check_drawn(self, self.fill)
@@ -491,18 +497,15 @@ AnyPattern = (
 )
 
 
-def _check_points(what: str, points_mm: tuple[Point, ...], least: int) -> None:
+def _check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed: bool) -> None:
     if len(points_mm) < least:
         raise ValueError(f"{what} are {len(points_mm)}; there must be {least} or more")
     for number, point in enumerate(points_mm, 1):
         check_point(f"{what}, number {number}", point)
-        if number > 1 and point == points_mm[number - 2]:
+        if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
-
-
-def _check_not_closed(what: str, points_mm: tuple[Point, ...]) -> None:
-    if points_mm[0] == points_mm[-1]:
-        raise ValueError(f"{what} end where they begin, and are closed anyway; leave the last out")
+    if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
+        raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
 
 
 def _check_drawn(shape: Shape, fill: Fill | None) -> None:

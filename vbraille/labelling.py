@@ -1,0 +1,231 @@
+"""Braille in a picture: labels as cells, by the tables and the lines that books have.
+
+A label's text is translated as a paragraph of a book is; each of its lines is a paragraph of its
+own, and is broken where it is wider than the label may be.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.layout.wrapping import breaks_of, wrap
+from vbraille.render.scene.assets import Written
+from vbraille.render.scene.brailleplaces import corners_mm
+from vbraille.scene.patterns import Label, Tile
+from vbraille.scene.walking import each
+from vbraille.translate.languages import find_table
+from vbraille.translate.liblouis import BrailleTable
+from vbraille.translate.text import Text, to_codes
+from vbraille.wording import count, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.scene.measures import Point
+    from vbraille.scene.scene import Scene
+
+_MOST_SAID = 24  # characters of a label's text in a sentence
+_TOUCHING_MM = 1e-6
+# Labels of a picture are compared with each other; a file may have a million.
+_MOST_COMPARED = 400
+
+
+def write_labels(
+    scene: Scene, style: BrailleStyle, places: Sequence[str] = ()
+) -> dict[Label, Written]:
+    """Translate the labels of a scene, wherever in it they stand, and break their lines.
+
+    Parameters
+    ----------
+    scene
+        A resolved scene.
+    style
+        Distances, profile and tuning of their dots.
+    places
+        Words for where each element of the scene is written, such as "house.scene line 12";
+        without them sentences number the elements.
+
+    Raises
+    ------
+    InputError
+        If there is no such language or table, a label has nothing that braille can show, or is
+        narrower than a cell; the sentence names the element.
+    """
+    written: dict[Label, Written] = {}
+    for label, name in _labels(scene, places):
+        if label in written:
+            continue
+        try:
+            written[label] = write_label(label, style, scene.language)
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
+    return written
+
+
+def write_label(label: Label, style: BrailleStyle, language: str = "en") -> Written:
+    """Translate a label and break its lines.
+
+    Parameters
+    ----------
+    label
+        The label.
+    style
+        Distances, profile and tuning of its dots.
+    language
+        Language or table where the label has none of its own.
+
+    Raises
+    ------
+    InputError
+        If there is no such language or table, the label has nothing that braille can show, or is
+        narrower than a cell.
+    """
+    table = _table(label.table or language)
+    cells = _cells_across(label, style)
+    lines = tuple(
+        masks for line in label.text.splitlines() for masks in _broken(line, table, cells)
+    )
+    while lines and not lines[-1].any():
+        lines = lines[:-1]
+    if not lines:
+        raise InputError("text holds nothing that braille can show; write something else")
+    return Written(lines, style)
+
+
+def label_warnings(
+    scene: Scene, written: Mapping[Label, Written], places: Sequence[str] = ()
+) -> list[str]:
+    """Say which labels cannot be read as they stand.
+
+    Parameters
+    ----------
+    scene
+        A resolved scene.
+    written
+        Its labels, from `write_labels`.
+    places
+        Words for where each element is written; see `write_labels`.
+
+    Returns
+    -------
+    list of str
+        One sentence for each label that reaches beyond the canvas, or has characters that its
+        table does not know, and for each two of which one stands on the other.
+    """
+    said: list[str] = []
+    standing: list[_Standing] = []
+    tiles = (tile for tile in each(*scene.elements) if isinstance(tile, Tile))
+    tiled = {part for part in each(*tiles) if isinstance(part, Label)}
+    for label, name in _labels(scene, places):
+        unknown = _unknown(label, label.table or scene.language)
+        if unknown:
+            said.append(
+                f"{name} has {count(len(unknown), 'character')} that its table does not know: "
+                f"{printable(' '.join(sorted(unknown)))}; give it another table"
+            )
+        if label in tiled:
+            continue  # it has no one place
+        corners = corners_mm(label, written[label])
+        if beyond := _beyond_mm(corners, scene.canvas.width_mm, scene.canvas.height_mm):
+            said.append(
+                f"{name} reaches {beyond:.1f} mm beyond the canvas; move it, or make it narrower"
+            )
+        standing.append(_Standing(name, np.array(corners)))
+    return said + list(_overlaps(standing[:_MOST_COMPARED]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Standing:
+    """The corners of a label, in order round it; float64[4, 2]."""
+
+    name: str
+    corners: NDArray[np.float64]
+
+
+def _labels(scene: Scene, places: Sequence[str]) -> Iterator[tuple[Label, str]]:
+    """Labels of a scene, in order, each with the words that name it."""
+    for number, element in enumerate(scene.elements):
+        place = places[number] if number < len(places) else f"elements, number {number + 1}"
+        for pattern in each(element):
+            if isinstance(pattern, Label):
+                yield pattern, f"{place}, label {_said(pattern)}"
+
+
+def _said(label: Label) -> str:
+    """Words for a label: its id, or else its text."""
+    text = " ".join(label.id.split() or label.text.split())
+    return repr(text if len(text) <= _MOST_SAID else f"{text[: _MOST_SAID - 1]}…")
+
+
+@cache
+def _table(name: str) -> BrailleTable:
+    """Table by its own name or by a language; names of tables have a dot in them, or a folder."""
+    return BrailleTable(name if {".", "/", ","} & set(name) else find_table(name))
+
+
+def _text(line: str) -> Text:
+    codes = to_codes(unicodedata.normalize("NFC", " ".join(line.split())))
+    return Text(codes, np.arange(codes.size), codes.size, frozenset(codes.tolist()))
+
+
+def _unknown(label: Label, table: str) -> set[str]:
+    """Characters of a label that were written as a mark, since its table does not know them."""
+    own = {code for line in label.text.splitlines() for code in _text(line).alphabet}
+    return {chr(code) for code in own & _table(table).undefined}
+
+
+def _cells_across(label: Label, style: BrailleStyle) -> int | None:
+    """Number of cells that fit into the width of a label; None if it is one line."""
+    if label.width_mm is None:
+        return None
+    least_mm = style.geometry.extent_mm(1)
+    if label.width_mm < least_mm - _TOUCHING_MM:
+        raise InputError(
+            f"width is {label.width_mm:g} mm; a cell takes {least_mm:g} mm, so make it wider"
+        )
+    more_mm = label.width_mm - least_mm + _TOUCHING_MM
+    return 1 + int(more_mm / style.geometry.cell_pitch_mm)
+
+
+def _broken(line: str, table: BrailleTable, width: int | None) -> Iterator[NDArray[np.uint8]]:
+    text = _text(line)
+    cells = table.translate(text)
+    if width is None:
+        yield cells.masks
+        return
+    for start, stop, _ in wrap(breaks_of(text, cells), width, starts=cells.starts.tolist()):
+        yield cells.masks[start:stop]
+
+
+def _beyond_mm(corners: Sequence[Point], width_mm: float, height_mm: float) -> float:
+    """How far the farthest corner is beyond a canvas; 0 if none is."""
+    far_mm = max(max(-x, x - width_mm, -y, y - height_mm) for x, y in corners)
+    return far_mm if far_mm > _TOUCHING_MM else 0.0
+
+
+def _overlaps(standing: Sequence[_Standing]) -> Iterator[str]:
+    """Say which labels stand on others."""
+    for number, upper in enumerate(standing):
+        for lower in standing[:number]:
+            if not _apart(upper.corners, lower.corners):
+                yield f"{upper.name} stands on {lower.name}; move one of them"
+
+
+def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    """Whether a side of one of two rectangles has the other one wholly beyond it."""
+    for corners in (one, other):
+        for axis in (corners[1] - corners[0], corners[3] - corners[0]):
+            ways = sorted((place @ axis for place in (one, other)), key=lambda way: way.min())
+            room = _TOUCHING_MM * float(np.hypot(*axis))
+            if ways[0].max() <= ways[1].min() + room:
+                return True
+    return False

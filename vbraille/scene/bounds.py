@@ -1,0 +1,162 @@
+"""Where on the canvas a pattern can be anything but rest, so that it is not looked at elsewhere."""
+
+from __future__ import annotations
+
+import math
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from vbraille.scene.patterns import (
+    AnyPattern,
+    Circle,
+    Dots,
+    Group,
+    Image,
+    ImageDots,
+    Label,
+    Line,
+    Path,
+    Polygon,
+    Use,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from vbraille.scene.measures import Point
+    from vbraille.scene.pattern import Pattern
+
+
+class Box(NamedTuple):
+    """A rectangle of the canvas, in mm; an empty one ends before it begins."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing in it, not even a point."""
+        return self.right < self.left or self.bottom < self.top
+
+    def grown(self, by_mm: float) -> Box:
+        """Make the box that reaches so much farther on each side."""
+        if self.is_empty:
+            return self
+        return Box(self.left - by_mm, self.top - by_mm, self.right + by_mm, self.bottom + by_mm)
+
+    def holds(self, x_mm: float, y_mm: float) -> bool:
+        """Tell whether a place is in the box or on its edge."""
+        return self.left <= x_mm <= self.right and self.top <= y_mm <= self.bottom
+
+    def joined(self, other: Box) -> Box:
+        """Make the smallest box that holds both."""
+        return Box(
+            min(self.left, other.left),
+            min(self.top, other.top),
+            max(self.right, other.right),
+            max(self.bottom, other.bottom),
+        )
+
+    def common(self, other: Box) -> Box:
+        """Make the box of what is in both; `EMPTY` if that is nothing."""
+        box = Box(
+            max(self.left, other.left),
+            max(self.top, other.top),
+            min(self.right, other.right),
+            min(self.bottom, other.bottom),
+        )
+        return EMPTY if box.is_empty else box
+
+
+EMPTY = Box(math.inf, math.inf, -math.inf, -math.inf)
+_NOWHERE_KNOWN: Mapping[Image | Label, Box] = MappingProxyType({})
+
+
+def bounds(pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KNOWN) -> Box | None:
+    """Compute a rectangle outside which a pattern and its opacity mask are 0.
+
+    It is as small as the pattern's parts allow, but for groups, of which it takes the parts' boxes
+    together. Vibrations and amplitudes do not change it.
+
+    Parameters
+    ----------
+    pattern
+        A pattern of a resolved scene.
+    known
+        Boxes of images and labels, which only their pixels and cells can tell; those that are not
+        in it are taken to be everywhere.
+
+    Returns
+    -------
+    Box or None
+        The rectangle; None for everywhere.
+
+    Raises
+    ------
+    TypeError
+        If the pattern is a `Use` or has dots of an image, which only a resolved scene can place.
+    """
+    if is_everywhere(pattern):
+        return None
+    match pattern:
+        case Image() | Label():
+            return known.get(pattern)
+        case Line():
+            return around((pattern.start_mm, pattern.end_mm)).grown(drawn_radius_mm(pattern))
+        case Circle():
+            return around((pattern.center_mm,)).grown(pattern.radius_mm + drawn_radius_mm(pattern))
+        case Polygon():
+            return around(pattern.vertices_mm).grown(drawn_radius_mm(pattern))
+        case Path():
+            points = (point for contour in pattern.contours_mm for point in contour)
+            return around(points).grown(drawn_radius_mm(pattern))
+        case Dots():
+            return around(pattern.centers_mm).grown(pattern.dot.radius_mm)
+        case Group():
+            return _of_group(pattern, known)
+        case Use() | ImageDots():
+            raise TypeError(f"a {type(pattern).__name__} has no place before the scene is resolved")
+    return None
+
+
+def is_everywhere(pattern: Pattern) -> bool:
+    """Tell whether a pattern is changed so that it is up where there is nothing of it.
+
+    That is so if it is inverted, or if what is down in it vibrates: its opacity mask is 1 then.
+    """
+    low = pattern.vibration is not None and pattern.vibration.of == "low"
+    return pattern.inverted or low
+
+
+def drawn_radius_mm(shape: Line | Circle | Polygon | Path) -> float:
+    """How far a shape's stroke or its dots reach from its path, to one side."""
+    if shape.stroke is not None:
+        return shape.stroke.width_mm / 2
+    return 0.0 if shape.dots is None else shape.dots.dot.radius_mm
+
+
+def around(points_mm: Iterable[Point]) -> Box:
+    """Make the smallest box that holds all these places."""
+    points = tuple(points_mm)
+    if not points:
+        return EMPTY
+    xs, ys = zip(*points, strict=True)
+    return Box(min(xs), min(ys), max(xs), max(ys))
+
+
+def _of_group(group: Group, known: Mapping[Image | Label, Box]) -> Box | None:
+    boxes = [bounds(part, known) for part in group.parts]
+    if group.operation == "multiply":
+        box = None
+        for part in boxes:
+            if part is not None:
+                box = part if box is None else box.common(part)
+        return box
+    box = EMPTY
+    for part in boxes:
+        if part is None:
+            return None
+        box = box.joined(part)
+    return box

@@ -1,0 +1,177 @@
+"""Where the dots of dotted shapes stand: Lévesque 2009, 8.4.4.
+
+The source wants a dot on each end of a line and on each vertex of a polygon, the others evenly
+between, and a least separation that also holds across joints. The arithmetic is that of its
+author's later code, with m, the least distance of two middles, a dot's diameter and the separation:
+
+- a line of length d has ⌊d/m⌋ + 1 dots, and so has an edge of a polygon, but with m / sin θ in
+  place of m where the angle θ at one of its ends is below 90°;
+- a circle has ⌊π / asin(m/2R)⌋ dots, the first to the right of its middle.
+
+Ours is the rest. Of dots that would still be nearer than m, because edges are short or come near
+each other, the later is left out, and one on a vertex counts before the others. A path has its
+vertices where it turns by more than 40°; between them dots are evenly spaced along it, so that a
+curve that is many short edges is dotted like a line.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import defaultdict
+from typing import TYPE_CHECKING, NamedTuple
+
+from vbraille.scene.joints import edge_lengths_mm
+from vbraille.scene.patterns import Circle, Line, Path, Polygon
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from vbraille.scene.measures import Point
+
+_CORNER = math.radians(40.0)
+_TOLERANCE = 1.0 - 1e-9  # two dots whose distance is m but for rounding may stay
+
+
+class PlacedDot(NamedTuple):
+    """A place of the middle of a dot, and whether it is a vertex of a polygon or a path."""
+
+    x_mm: float
+    y_mm: float
+    vertex: bool = False
+
+
+def dots_of(shape: Line | Circle | Polygon | Path) -> tuple[PlacedDot, ...]:
+    """Compute where the dots of a dotted shape stand; none if it is not dotted."""
+    if shape.dots is None:
+        return ()
+    least_mm = 2 * shape.dots.dot.radius_mm + shape.dots.separation_mm
+    if isinstance(shape, Circle):
+        return _on_circle(shape, least_mm)
+    if isinstance(shape, Polygon):
+        return _apart(_on_polygon(shape.vertices_mm, least_mm), least_mm)
+    if isinstance(shape, Line):
+        return _apart(_on_contour((shape.start_mm, shape.end_mm), False, least_mm), least_mm)
+    contours = (_on_contour(c, shape.closed, least_mm) for c in shape.contours_mm)
+    return _apart((dot for dots in contours for dot in dots), least_mm)
+
+
+def _on_circle(circle: Circle, least_mm: float) -> tuple[PlacedDot, ...]:
+    sine = least_mm / (2 * circle.radius_mm)
+    count = 1 if sine > 1.0 else math.floor(math.pi / math.asin(sine) + 1e-9)
+    x, y = circle.center_mm
+    angles = (math.tau * i / count for i in range(count))
+    radius = circle.radius_mm
+    return tuple(PlacedDot(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles)
+
+
+def _on_polygon(vertices: Sequence[Point], least_mm: float) -> Iterator[PlacedDot]:
+    count = len(vertices)
+    angles = [_turn(vertices[i - 1], vertices[i], vertices[(i + 1) % count]) for i in range(count)]
+    for i, (x, y) in enumerate(vertices):
+        end = vertices[(i + 1) % count]
+        widening = max(_widening(angles[i]), _widening(angles[(i + 1) % count]))
+        yield PlacedDot(x, y, vertex=True)
+        yield from _between((x, y), end, _spaces(math.dist((x, y), end), least_mm * widening))
+
+
+def _on_contour(points: Sequence[Point], closed: bool, least_mm: float) -> Iterator[PlacedDot]:
+    """Put dots on a contour: on its corners and ends, and evenly along it between those."""
+    count = len(points)
+    corners = {
+        i: turn
+        for i in (range(count) if closed else range(1, count - 1))
+        if (turn := _turn(points[i - 1], points[i], points[(i + 1) % count])) < math.pi - _CORNER
+    }
+    for run in _runs(count, closed, sorted(corners)):
+        first, last = run[0], run[-1]
+        widening = max(_widening(corners.get(i, math.pi)) for i in (first, last))
+        places = [points[i] for i in run]
+        yield PlacedDot(*places[0], vertex=first in corners)
+        yield from _along(places, least_mm * widening)
+    if not closed:
+        yield PlacedDot(*points[-1])
+
+
+def _runs(count: int, closed: bool, corners: list[int]) -> Iterator[list[int]]:
+    """Cut a contour at its corners, and at its ends."""
+    if not closed:
+        cuts = [0, *corners, count - 1]
+    else:
+        cuts = [*corners, corners[0] + count] if corners else [0, count]
+    for start, end in itertools.pairwise(cuts):
+        yield [i % count for i in range(start, end + 1)]
+
+
+def _along(places: Sequence[Point], least_mm: float) -> Iterator[PlacedDot]:
+    """Divide a line through places evenly, without a dot at its ends.
+
+    Where it is bent dots are nearer to each other than along it, so there may be fewer of them.
+    """
+    lengths = edge_lengths_mm(places, closed=False)
+    whole = sum(lengths)
+    spaces = _spaces(whole, least_mm)
+    while spaces > 1:
+        inner = list(_at(places, lengths, [whole * i / spaces for i in range(1, spaces)]))
+        chain = [places[0], *inner, places[-1]]
+        share = min(map(math.dist, chain, chain[1:])) / least_mm
+        # Where it turns back on itself no even spacing does, and dots are left out afterwards.
+        if share >= _TOLERANCE or share < 0.5:
+            yield from (PlacedDot(x, y) for x, y in inner)
+            return
+        spaces = min(spaces - 1, math.floor(spaces * share) + 1)
+
+
+def _at(
+    places: Sequence[Point], lengths: Sequence[float], wanted: Iterable[float]
+) -> Iterator[Point]:
+    """Find the points that are so far along a line through places, in growing order."""
+    edge, before = 0, 0.0
+    for distance in wanted:
+        while edge < len(lengths) - 1 and before + lengths[edge] < distance:
+            before += lengths[edge]
+            edge += 1
+        (ax, ay), (bx, by) = places[edge], places[edge + 1]
+        u = min(1.0, (distance - before) / lengths[edge])
+        yield ax + u * (bx - ax), ay + u * (by - ay)
+
+
+def _between(start: Point, end: Point, spaces: int) -> Iterator[PlacedDot]:
+    for i in range(1, spaces):
+        u = i / spaces
+        yield PlacedDot(start[0] + u * (end[0] - start[0]), start[1] + u * (end[1] - start[1]))
+
+
+def _spaces(length_mm: float, least_mm: float) -> int:
+    return math.floor(length_mm / least_mm + 1e-9)
+
+
+def _turn(before: Point, at: Point, after: Point) -> float:
+    """Angle θ between two edges at their joint, 0 to π."""
+    ux, uy = before[0] - at[0], before[1] - at[1]
+    vx, vy = after[0] - at[0], after[1] - at[1]
+    return math.atan2(abs(ux * vy - uy * vx), ux * vx + uy * vy)
+
+
+def _widening(angle: float) -> float:
+    """How much farther apart dots are at a corner sharper than 90°: 1 / sin θ."""
+    return 1.0 / max(math.sin(angle), 1e-6) if angle < math.pi / 2 else 1.0
+
+
+def _apart(dots: Iterable[PlacedDot], least_mm: float) -> tuple[PlacedDot, ...]:
+    """Leave out dots that are nearer than that to one that counts before them."""
+    numbered = list(enumerate(dots))
+    kept: list[tuple[int, PlacedDot]] = []
+    near: defaultdict[tuple[int, int], list[Point]] = defaultdict(list)
+    for number, dot in sorted(numbered, key=lambda item: not item[1].vertex):
+        column, row = math.floor(dot.x_mm / least_mm), math.floor(dot.y_mm / least_mm)
+        around = (
+            place
+            for i in (column - 1, column, column + 1)
+            for j in (row - 1, row, row + 1)
+            for place in near.get((i, j), ())
+        )
+        if all(math.dist(place, dot[:2]) >= least_mm * _TOLERANCE for place in around):
+            kept.append((number, dot))
+            near[column, row].append(dot[:2])
+    return tuple(dot for _, dot in sorted(kept))

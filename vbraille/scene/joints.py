@@ -1,0 +1,166 @@
+"""Corners of polygons: where strokes meet there, and how a texture along them goes round.
+
+Lévesque 2009, 8.4.3, figs. 8.18-8.20; the arithmetic is that of its author's later code.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import Polygon
+    from vbraille.scene.strokes import Markers
+
+
+class Joint(NamedTuple):
+    """A corner of a closed polygon, with the arc round which a texture along the stroke goes.
+
+    Parameters
+    ----------
+    vertex_mm
+        Place of the corner.
+    angle_rad
+        Angle θ between its two edges, 0 to π.
+    reach_mm
+        Distance s from the corner, along both edges, at which the arc begins and ends.
+    radius_mm
+        Radius R' of the arc, which touches both edges.
+    pivot_mm
+        Middle of the arc: the place where the inner edges of strokes meet whose half width is R'.
+    inward : tuple[float, float]
+        Direction from the corner to the pivot, of length 1.
+    onward : tuple[float, float]
+        Direction at right angles to it, of length 1, on the side of the edge after the corner.
+    """
+
+    vertex_mm: Point
+    angle_rad: float
+    reach_mm: float
+    radius_mm: float
+    pivot_mm: Point
+    inward: Point
+    onward: Point
+
+    @property
+    def arc_mm(self) -> float:
+        """Length of the arc, (π - θ) R'."""
+        return (math.pi - self.angle_rad) * self.radius_mm
+
+
+def joint(before_mm: Point, vertex_mm: Point, after_mm: Point, radius_mm: float) -> Joint:
+    """Compute the corner between two edges.
+
+    With θ the angle between the edges the arc begins s = R' / tan(θ/2) from the corner, and its
+    middle lies on the bisector √(s² + R'²) from it. Where an edge is too short for the arcs at its
+    two ends, R' is smaller, so that none reaches beyond the middle of an edge; this is ours.
+
+    Parameters
+    ----------
+    before_mm, vertex_mm, after_mm
+        The corner, and the corners before and after it; no two that follow are one place.
+    radius_mm
+        Radius R' that the arc would have if there were room: half of the stroke's width and the
+        rounding offset.
+    """
+    ux, uy, before = _towards(vertex_mm, before_mm)
+    vx, vy, after = _towards(vertex_mm, after_mm)
+    angle = math.atan2(abs(ux * vy - uy * vx), ux * vx + uy * vy)
+    inward, onward = _axes((ux, uy), (vx, vy))
+    room = min(before, after) / 2
+    tangent = math.tan(angle / 2)
+    if radius_mm < room * tangent:
+        reach = radius_mm / tangent
+    else:
+        reach, radius_mm = room, room * tangent
+    away = math.hypot(reach, radius_mm)
+    pivot = (vertex_mm[0] + away * inward[0], vertex_mm[1] + away * inward[1])
+    return Joint(vertex_mm, angle, reach, radius_mm, pivot, inward, onward)
+
+
+def joints(vertices_mm: Sequence[Point], radius_mm: float) -> tuple[Joint, ...]:
+    """Compute the corners of a closed polygon, in the order of its vertices."""
+    count = len(vertices_mm)
+    return tuple(
+        joint(vertices_mm[i - 1], vertices_mm[i], vertices_mm[(i + 1) % count], radius_mm)
+        for i in range(count)
+    )
+
+
+def rounding_radius_mm(polygon: Polygon) -> float:
+    """Radius R' of a polygon's rounded corners: half of its stroke's width, and the offset."""
+    width_mm = 0.0 if polygon.stroke is None else polygon.stroke.width_mm
+    return width_mm / 2 + polygon.rounding_offset_mm
+
+
+def edge_lengths_mm(points_mm: Sequence[Point], *, closed: bool) -> list[float]:
+    """Compute the lengths of the edges between points, the last one back to the first if closed."""
+    lengths = [math.dist(a, b) for a, b in itertools.pairwise(points_mm)]
+    return [*lengths, math.dist(points_mm[-1], points_mm[0])] if closed else lengths
+
+
+def places_along_mm(polygon: Polygon) -> tuple[float, ...]:
+    """Compute how far along a polygon's path each of its corners is, and the whole length last.
+
+    With straight joins the corners are places of the path. With rounded ones the path is shorter:
+    it goes along the arcs, whose middles these places are. The first is at 0.
+    """
+    lengths = edge_lengths_mm(polygon.vertices_mm, closed=True)
+    if polygon.join == "rounded":
+        corners = joints(polygon.vertices_mm, rounding_radius_mm(polygon))
+        saved = [corner.arc_mm / 2 - corner.reach_mm for corner in corners]
+        lengths = [
+            length + saved[i] + saved[(i + 1) % len(saved)] for i, length in enumerate(lengths)
+        ]
+    places = [0.0]
+    for length in lengths:
+        places.append(places[-1] + length)
+    return tuple(places)
+
+
+def marker_half_angle_rad(markers: Markers, angle_rad: float) -> float:
+    """Half of the angle that a marker spans, seen from the place where the inner edges meet.
+
+    Lévesque 2009, fig. 8.20, as angles in its author's later code: the angle given, but no more
+    than the larger of the next two; π - θ, square to the edges; θ, where the strokes' edges go on;
+    or the angle under which that place sees the ends of the round arc about the corner.
+    """
+    if markers.span == "square":
+        return (math.pi - angle_rad) / 2
+    if markers.span == "edges":
+        return angle_rad / 2
+    if markers.span == "arc":
+        sine, cosine = math.sin(angle_rad / 2), math.cos(angle_rad / 2)
+        return math.atan2(sine * cosine, 1 + sine * sine)
+    return min(math.radians(markers.angle_deg), max(angle_rad, math.pi - angle_rad)) / 2
+
+
+def _towards(start: Point, end: Point) -> tuple[float, float, float]:
+    """Direction from one place to another, of length 1, and their distance."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(dx, dy)
+    return dx / length, dy / length, length
+
+
+def _axes(u: Point, v: Point) -> tuple[Point, Point]:
+    """Compute the bisector of two directions, and the one at right angles, towards the second.
+
+    The longer of their sum and their difference gives the axes: the other may be hardly anything.
+    """
+    along = (u[0] + v[0], u[1] + v[1])
+    across = (v[0] - u[0], v[1] - u[1])
+    if math.hypot(*along) >= math.hypot(*across):
+        length = math.hypot(*along)
+        inward = (along[0] / length, along[1] / length)
+        onward = (-inward[1], inward[0])
+        sign = 1.0 if onward[0] * v[0] + onward[1] * v[1] >= 0 else -1.0
+        return inward, (sign * onward[0], sign * onward[1])
+    length = math.hypot(*across)
+    onward = (across[0] / length, across[1] / length)
+    inward = (-onward[1], onward[0])
+    sign = 1.0 if inward[0] * along[0] + inward[1] * along[1] >= 0 else -1.0
+    return (sign * inward[0], sign * inward[1]), onward
