@@ -130,6 +130,10 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
         Whether a dot has its blob's area, and not the radius of ``dot``.
     dot
         How the dots look.
+    cell_mm
+        Width and height of a cell: there is a dot in the middle of each cell of a grid over the
+        image instead, whose mean gray is its amplitude (5.3, with cells of 1.2 by 1.8 mm). No dot
+        is then larger than its cell. None for blobs.
 
     Raises
     ------
@@ -143,6 +147,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     height_mm: float | None = None
     threshold: float = 0.1
     by_area: bool = True
+    cell_mm: Point | None = None
     dot: DotStyle = DotStyle(plateau=0.25)
 
     def __post_init__(self) -> None:
@@ -151,6 +156,8 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)
         check_share("threshold", self.threshold)
+        for side in self.cell_mm or ():
+            check_length("cell", side, 0.1)
 
 
 class Fill(Table, frozen=True, kw_only=True):
@@ -505,7 +512,10 @@ def _check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed
         if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
     if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
-        raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
+        raise ValueError(
+            f"{what}, number {len(points_mm)} is the first place, to which the shape goes back "
+            "anyway; leave it out"
+        )
 
 
 def _check_drawn(shape: Shape, fill: Fill | None) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from msgspec.structs import replace
 
+from vbraille.errors import InputError
 from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.opened import Origins
 from vbraille.scene.patterns import Group, ImageDots, Use
@@ -128,7 +129,10 @@ class _Resolving:
         if isinstance(pattern, ImageDots):
             from vbraille.scene.blobs import dots_of  # loads the reading of images
 
-            return dots_of(pattern, self._folder)
+            try:
+                return dots_of(pattern, self._folder)
+            except InputError as error:
+                self._fail(steps, f": {error}")
         return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
 
     def _used(self, use: Use, steps: Steps) -> AnyPattern:

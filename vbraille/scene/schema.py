@@ -5,14 +5,12 @@ from __future__ import annotations
 import inspect
 import json
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
 from vbraille.scene.scenefile import SceneFile
-
-if TYPE_CHECKING:
-    from vbraille.toml.tomlfile import Table
+from vbraille.toml.tomlfile import Table
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=^\S[^\n]*\n-{3,}|\Z)", re.MULTILINE | re.DOTALL)
@@ -48,7 +46,7 @@ def tables_of(kind: type[Table]) -> list[type[Table]]:
     while left:
         one = left.pop()
         if isinstance(one, msgspec.inspect.StructType):
-            if one.cls in found:
+            if one.cls in found or not issubclass(one.cls, Table):
                 continue
             found.append(one.cls)
             left += [field.type for field in reversed(one.fields)]

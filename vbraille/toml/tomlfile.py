@@ -57,15 +57,17 @@ class TomlFile:
         Text of the file.
     where
         Name of the file, for messages.
+    several_lines
+        Whether its strings may have several lines.
 
     Raises
     ------
     InputError
-        If the text is not TOML, or has a string of several lines or a number that is far too
-        large.
+        If the text is not TOML, or has a string with control characters or a number that is far
+        too large.
     """
 
-    def __init__(self, text: str, where: str) -> None:
+    def __init__(self, text: str, where: str, *, several_lines: bool = False) -> None:
         self._text, self._where = text, where
         try:
             self._tree = tomllib.loads(text)
@@ -73,9 +75,11 @@ class TomlFile:
             raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
         except ValueError as error:
             raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+        spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
         for path, value in _leaves(self._tree):
-            if isinstance(value, str) and not value.translate(_SPACES).isprintable():
-                self._refuse(path, "one line without control characters")
+            if isinstance(value, str) and not value.translate(spaces).isprintable():
+                lines = "text" if several_lines else "one line"
+                self._refuse(path, f"{lines} without control characters")
             if isinstance(value, int) and abs(value) > _MOST_WHOLE:
                 self._refuse(path, "a smaller number")
 
