@@ -512,10 +512,7 @@ def _check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed
         if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
     if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
-        raise ValueError(
-            f"{what}, number {len(points_mm)} is the first place, to which the shape goes back "
-            "anyway; leave it out"
-        )
+        raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
 
 
 def _check_drawn(shape: Shape, fill: Fill | None) -> None:

@@ -11,7 +11,7 @@ from vbraille.render.scene import shapekernels as shapes
 from vbraille.render.scene import texturekernels as textures
 from vbraille.render.scene import words as w
 from vbraille.render.scene.curvekernels import compiled
-from vbraille.render.work import COLUMNS, ROWS, THETA, TIME, X, Y
+from vbraille.render.work import THETA, TIME, X, Y
 
 _NO_BLOCK = 0
 
