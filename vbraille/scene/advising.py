@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.moving import ONE
-from vbraille.scene.patterns import Circle, Group, Image, Path, Polygon, Shape, Tile
+from vbraille.scene.patterns import Circle, Group, Image, Label, Path, Polygon, Shape, Tile
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import each, with_children
 
@@ -104,6 +104,19 @@ def _nowhere(pattern: AnyPattern) -> AnyPattern:
         places = {name: (0.0, 0.0) for name in ONE if hasattr(pattern, name)}
         bare = replace(bare, **places)
     return with_children(bare, lambda _, part: _nowhere(part))
+
+
+def hiding(scene: Scene, boxes: Sequence[Box | None]) -> Iterator[tuple[int, str]]:
+    """Numbers from 0 of elements that hide all that is before them, with what is said of each."""
+    if scene.operation != "overwrite":
+        return
+    for number, (element, box) in enumerate(zip(scene.elements, boxes, strict=True)):
+        if number and box is None and not isinstance(element, Image | Label):
+            yield (
+                number,
+                "is everywhere, and hides all elements before it; write it first, or fill a shape "
+                "with it",
+            )
 
 
 def too_close(boxes: Sequence[Box | None]) -> tuple[list[tuple[int, int, float]], bool]:

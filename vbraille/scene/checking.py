@@ -146,6 +146,7 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
             advising.of_element(element, elements[number].box, scene.canvas)
         )
     ]
+    told += advising.hiding(scene, [element.box for element in elements])
     yield from _grouped(told, elements)
     textures = advising.textures_of(scene)
     if textures > advising.MOST_TEXTURES:

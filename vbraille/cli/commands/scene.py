@@ -8,15 +8,13 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from vbraille.cli.terminal import say_line
+from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Mapping
 
-    from vbraille.scene.bounds import Box
+    from vbraille.feeling.loading import LoadedScene
     from vbraille.scene.checking import ElementReport, SceneReport
-    from vbraille.scene.opened import OpenedScene
-    from vbraille.scene.patterns import Image, Label
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,45 +32,22 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> int:
+    from vbraille.feeling.loading import load_scene
+    from vbraille.render import MODELS
     from vbraille.scene.checking import check_scene
-    from vbraille.scene.reading import open_scene
 
-    opened = open_scene(arguments.file)
-    known, labels = _known(opened)
-    report = check_scene(opened, known)
+    loaded = load_scene(arguments.file, MODELS["stress2"].style)
+    report = check_scene(loaded.opened, loaded.boxes())
     if arguments.json:
-        print(json.dumps(_as_json(opened, report, labels), ensure_ascii=False, indent=2))
-        return 0
-    _say(opened, report, labels)
+        print(json.dumps(_as_json(loaded, report), ensure_ascii=False, indent=2))
+    else:
+        _say(loaded, report)
     return 0
 
 
-def _known(opened: OpenedScene) -> tuple[Mapping[Image | Label, Box], list[str]]:
-    """Boxes of images and labels, which are made as they will be felt; what is said of labels."""
-    from vbraille.scene.images import load_bitmaps
-    from vbraille.scene.patterns import Label
-    from vbraille.scene.walking import each
-
-    scene = opened.resolved
-    boxes: dict[Image | Label, Box] = {}
-    for image, bitmap in load_bitmaps(scene, opened.folder).items():
-        left, top = bitmap.place_mm
-        if not bitmap.outside:
-            boxes[image] = Box(left, top, left + bitmap.width_mm, top + bitmap.height_mm)
-    if not any(isinstance(pattern, Label) for pattern in each(*scene.elements)):
-        return boxes, []
-    from vbraille.labelling import label_warnings, write_labels  # loads liblouis
-    from vbraille.render import MODELS
-    from vbraille.render.scene.brailleplaces import box_of
-
-    written = write_labels(scene, MODELS["stress2"].style, opened.places)
-    boxes |= {label: box_of(label, cells) for label, cells in written.items()}
-    return boxes, label_warnings(scene, written, opened.places)
-
-
-def _say(opened: OpenedScene, report: SceneReport, labels: list[str]) -> None:
+def _say(loaded: LoadedScene, report: SceneReport) -> None:
     """Print the report, a line for each thing."""
-    scene = opened.written
+    scene = loaded.opened.written
     for what, value in (("title", scene.title), ("description", scene.description)):
         if value:
             say_line(f"{what}: {' '.join(value.split())}")
@@ -84,16 +59,14 @@ def _say(opened: OpenedScene, report: SceneReport, labels: list[str]) -> None:
     say_line(f"different textures: {report.textures}")
     for element in report.elements:
         say_line(_said(element))
-    for heading, sentences in (
-        ("ignored or changed", opened.warnings),
-        ("vibration", report.vibrations),
-        ("label", labels),
-        ("advice", report.advice),
-    ):
-        for sentence in sentences:
-            say_line(f"{heading}: {sentence}")
-    said = len(opened.warnings) + len(report.vibrations) + len(labels) + len(report.advice)
-    say_line(f"remarks: {said}" if said else "remarks: none, it is as it should be")
+    remarks = (
+        *(f"file: {sentence}" for sentence in loaded.notes),
+        *(f"vibration: {sentence}" for sentence in report.vibrations),
+        *(f"advice: {sentence}" for sentence in report.advice),
+    )
+    for remark in remarks:
+        say_line(spelled(remark))
+    say_line(f"remarks: {len(remarks) or 'none'}")
 
 
 def _said(element: ElementReport) -> str:
@@ -112,8 +85,8 @@ def _said(element: ElementReport) -> str:
     return f"{element.said()}: {where}{vibrates}, {element.place}"
 
 
-def _as_json(opened: OpenedScene, report: SceneReport, labels: list[str]) -> dict[str, object]:
-    scene = opened.written
+def _as_json(loaded: LoadedScene, report: SceneReport) -> dict[str, object]:
+    scene = loaded.opened.written
     elements = [
         {**asdict(one), "box": None if one.box is None or one.box.is_empty else one.box._asdict()}
         for one in report.elements
@@ -126,6 +99,5 @@ def _as_json(opened: OpenedScene, report: SceneReport, labels: list[str]) -> dic
         "operation": scene.operation,
         **asdict(report),
         "elements": elements,
-        "ignored": opened.warnings,
-        "labels": labels,
+        "file": loaded.notes,
     }
