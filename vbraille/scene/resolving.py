@@ -146,10 +146,10 @@ class _Resolving:
         title = use.title or pattern.title
         description = use.description or pattern.description
         if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
-            return replace(pattern, id=use.id, title=title, description=description)
+            return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
-            parts=(replace(pattern, title="", description=""),),
+            parts=(_called(pattern, "", "", ""),),
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,
@@ -203,7 +203,14 @@ def points_of(pattern: AnyPattern) -> int:
 def _nameless(pattern: AnyPattern) -> AnyPattern:
     """Pattern without ids, since each is the name of one thing."""
     inside = with_children(pattern, lambda _, part: _nameless(part))
-    return replace(inside, id="") if inside.id else inside
+    return _called(inside, "", inside.title, inside.description)
+
+
+def _called(pattern: AnyPattern, name: str, title: str, description: str) -> AnyPattern:
+    """Pattern with another id, title and description; made anew, and checked, only if need be."""
+    if (pattern.id, pattern.title, pattern.description) == (name, title, description):
+        return pattern
+    return replace(pattern, id=name, title=title, description=description)
 
 
 def _measured(pattern: AnyPattern) -> _Body:
