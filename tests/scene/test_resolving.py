@@ -6,6 +6,7 @@ import typing
 import msgspec
 import pytest
 
+from tests.tiers import heavy
 from vbraille.errors import InputError
 from vbraille.scene import moving, naming, walking
 from vbraille.scene.moving import LISTS, ONE, SEVERAL, moved
@@ -192,11 +193,16 @@ def test_what_nests_too_deep_is_refused_before_it_is_gone_through():
     assert "deep by what it uses" in refusal(**long, t30=Uniform())
 
 
+@heavy
 def test_uses_that_multiply_are_refused_before_they_fill_the_memory():
     many = {f"t{n}": Group(parts=(Use(name=f"t{n + 1}"),) * 10) for n in range(20)}
     assert "makes it more than 200000 patterns; use fewer" in refusal(**many, t20=Uniform())
-    many["t20"] = Dots(centers_mm=tuple((x / 100, 1.0) for x in range(100_000)))
-    assert "makes it more than 4000000 points; use fewer" in refusal(**many)
+
+
+def test_more_points_than_there_may_be_are_refused():
+    many = Dots(centers_mm=tuple((x / 1000, 1.0) for x in range(50_000)), id="many")
+    sentence = refusal(many, *(Use(name="many") for _ in range(90)))
+    assert sentence == "elements, number 81 makes it more than 4000000 points; use fewer"
 
 
 def test_what_is_moved_too_far_is_refused():

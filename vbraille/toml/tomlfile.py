@@ -36,6 +36,7 @@ _WANTED = {
     "object": "a table",
 }
 _EXPECTED = re.compile(r"Expected `([^`]*)`(?: of .*length (\d+))?, got")
+_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz)$")
 _STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
 _ABOUT = re.compile(r"(?:\[{1,2}(\w+)\]{1,2} )?(?:number (\d+) )?(.*)", re.DOTALL)
 
@@ -331,7 +332,7 @@ def _steps_of(problem: str, table: dict[str, Any]) -> Path:
     """Path to the key of a table, or item of it, whose words begin a problem; empty if none."""
     said = problem.lstrip("'\"").replace("_", " ")
     for key in sorted(table, key=len, reverse=True):
-        words = re.escape(key.removesuffix("_mm").replace("_", " "))
+        words = re.escape(_UNIT.sub("", key).replace("_", " "))
         named = re.match(rf"{words}(?!\w)(?:, number (\d+))?", said)
         if named:
             return (key, int(named[1]) - 1) if named[1] else (key,)
