@@ -26,7 +26,7 @@ LEAST_STROKE_MM, MOST_STROKE_MM = 2.0, 10.0
 # Size of the 8 × 8 array of the source (6.2), which reaches beyond its centre's travel.
 _ARRAY_MM = (9.0, 11.0)
 # Pairs of elements that stand side by side, and are looked at.
-_MOST_PAIRS = 200_000
+_MOST_PAIRS = 50_000
 
 
 def of_canvas(canvas: Canvas) -> Iterator[str]:

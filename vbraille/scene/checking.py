@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern, Image, Label
     from vbraille.scene.scene import Scene
 
+_MOST_PAIRS_SAID = 20
+
 
 @dataclass(frozen=True, slots=True)
 class ElementReport:
@@ -162,16 +164,13 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
             f"{blank:.1f} mm of blank"
             + (", which a vibration fills" if _vibrates(elements, first, second) else ""),
         )
-        for first, second, blank in pairs
+        for first, second, blank in pairs[:_MOST_PAIRS_SAID]
     ]
-    yield from _grouped(close[:_MOST_PAIRS_SAID], elements)
-    if len(close) > _MOST_PAIRS_SAID:
-        yield f"so do {len(close) - _MOST_PAIRS_SAID} pairs of elements more"
+    yield from _grouped(close, elements)
+    if len(pairs) > _MOST_PAIRS_SAID:
+        yield f"so do {len(pairs) - _MOST_PAIRS_SAID} pairs of elements more"
     if not is_all:
         yield "there are too many elements side by side to look at the blank between all of them"
-
-
-_MOST_PAIRS_SAID = 20
 
 
 def _vibrates(elements: Sequence[ElementReport], *numbers: int) -> bool:

@@ -130,6 +130,6 @@ class OpenedScene:
     def place(self, number: int) -> str:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
         steps: Steps = ("elements", number)
-        if self.origins.of(steps) is None:  # a group of what another file has
-            steps = (*steps, "parts", 0)
-        return self.origins.place(steps)
+        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
+        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
+        return self.origins.place(first if made_here else steps)
