@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading, scene
+from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading, scenes
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -128,13 +128,13 @@ SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
     "check": (
         "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
         "what, and what is hard to feel.",
-        scene.check,
+        scenes.check,
         "vbraille scene check texts/scenes/house.scene",
     ),
     "convert": (
-        "Make a scene file of a drawing or of a file of OpenLatero's, and say what differs.",
-        scene.convert,
-        "vbraille scene convert old.gen --out new.scene",
+        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
+        scenes.convert,
+        "vbraille scene convert umbrella.gen --out umbrella.scene",
     ),
     "schema": (
         "Print the form of scene files as a JSON Schema, for editors that complete and check.",

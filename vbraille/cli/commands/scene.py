@@ -25,9 +25,9 @@ def run(arguments: argparse.Namespace) -> int:
         sys.stdout.write(schema_text())
         return 0
     if arguments.action == "convert":
-        from vbraille.cli.commands import scene_convert
+        from vbraille.cli.commands.scene_convert import convert
 
-        return scene_convert.run(arguments)
+        return convert(arguments)
     return _check(arguments)
 
 
