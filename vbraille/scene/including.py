@@ -131,7 +131,7 @@ class _Gathering:
         form = form_of(name)
         if form != "toml":
             return _foreign(name, form)
-        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name))
+        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name), several_lines=True)
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
