@@ -131,6 +131,7 @@ class SvgDrawing:
     _notes: dict[str, list[tuple[int, str]]] = field(default_factory=lambda: defaultdict(list))
     _named: set[str] = field(default_factory=set)
     _used: list[str] = field(default_factory=list)
+    _met: set[str] = field(default_factory=set)  # the names that the scene says something of
     _elements: int = 0
     _points: int = 0
 
@@ -151,6 +152,11 @@ class SvgDrawing:
                 sentence += ", ".join(lines[:_NAMED_LINES])
                 sentence += " and others" * (len(lines) > _NAMED_LINES)
             said.append(sentence)
+        said += [
+            f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
+            for name in self.looks
+            if name not in self._met
+        ]
         return tuple(said)
 
     def inside(self, element: Element, place: _Place) -> list[DrawnNode]:
@@ -345,7 +351,9 @@ class SvgDrawing:
         if not self.looks:
             return None
         names = (*classes_of(element), element.get(f"{INKSCAPE}label"), element.get("id"))
-        return next((self.looks[name] for name in names if name and name in self.looks), None)
+        known = [name for name in names if name and name in self.looks]
+        self._met.update(known)
+        return self.looks[known[0]] if known else None
 
     def _count(self, element: Element) -> None:
         self._elements += 1
