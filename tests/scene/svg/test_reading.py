@@ -23,11 +23,14 @@ from vbraille.scene.patterns import (
 )
 from vbraille.scene.patterns import Path as Lines
 from vbraille.scene.reading import open_scene
+from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Dotting, Stroke
+from vbraille.scene.svg.colors import color_of, hue_of
 from vbraille.scene.svg.looks import BY_HUE, ClassLook
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
+from vbraille.toml.tomlfile import TomlFile
 
 FILES = Path(__file__).parent / "files"
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
@@ -435,3 +438,19 @@ def test_damaged_drawings_are_read_or_refused_in_one_sentence(tmp_path_factory, 
     assert "\n" not in said
     assert len(found) < 30
     assert not any(re.search(r"[=(, ]-?(nan|inf)[,)]", one) for one in found)
+
+
+def test_scenes_in_the_documentation_are_scenes():
+    page = Path(__file__).parents[3] / "docs" / "drawings.md"
+    texts = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    assert len(texts) == 4
+    for text in texts:
+        assert TomlFile(text, page.name).read(SceneFile)
+
+
+def test_the_table_of_colours_in_the_documentation_is_the_one_that_counts():
+    page = (Path(__file__).parents[3] / "docs" / "drawings.md").read_text("utf-8")
+    rows = dict(re.findall(r"^\| ([\w, ]+) \| `(stock:[\w-]+)`", page, re.MULTILINE))
+    told = {hue: texture for hues, texture in rows.items() for hue in hues.split(", ")}
+    for word, texture in told.items():
+        assert BY_HUE[hue_of(color_of(word))] == texture, word
