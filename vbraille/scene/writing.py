@@ -99,8 +99,17 @@ def _said(table: Table) -> list[tuple[str, object]]:
     first = [key for key in _FIRST if key in said]
     last = [key for key in _LAST if key in said and isinstance(table, Pattern)]
     middle = [key for key in said if key not in (*first, *last)]
-    middle.sort(key=lambda key: isinstance(said[key], Table))  # the place, and then the looks
+    middle.sort(key=lambda key: _depth(said[key]))
     return [(key, said[key]) for key in (*first, *middle, *last)]
+
+
+def _depth(value: object) -> int:
+    """How far down a value stands in its table: what a thing is, its looks, what is in it."""
+    if isinstance(value, Table):
+        return 1
+    if isinstance(value, Mapping):
+        return 2
+    return 3 if isinstance(value, tuple) and any(isinstance(v, Table) for v in value) else 0
 
 
 def _nothing(table: Table, name: str) -> object:
