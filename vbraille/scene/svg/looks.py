@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 # Textures of the bank by hue; white surfaces are smooth, and hide what they lie on.
 BY_HUE = {
-    "gray": "stock:horizontal",
-    "blue": "stock:vertical",
+    "gray": "stock:linear-0",
+    "blue": "stock:linear-90",
     "green": "stock:dots",
-    "yellow": "stock:diagonal",
+    "yellow": "stock:linear-45",
     "purple": "stock:grid",
     "red": "stock:vibration",
 }
@@ -126,7 +126,7 @@ def _stroke(style: Mapping[str, str], scale_mm: float, notes: list[str]) -> Stro
         return None
     width_mm = width * scale_mm
     if width_mm < LEAST_STROKE_MM:
-        notes.append(f"a line of {width_mm:.2g} mm is drawn {LEAST_STROKE_MM:g} mm wide")
+        notes.append(f"its line is drawn {LEAST_STROKE_MM:g} mm wide, not to be missed")
         width_mm = LEAST_STROKE_MM
     width_mm = round(min(width_mm, _MOST_STROKE_MM), 4)
     hue, amount = paint

@@ -7,8 +7,10 @@ import re
 from dataclasses import dataclass
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_LENGTH = re.compile(rf"\s*({_NUMBER})\s*(px|pt|pc|mm|cm|in|em|ex|q|%)?\s*", re.IGNORECASE)
-_NUMBERS = re.compile(rf"{_NUMBER}")
+_LENGTH = re.compile(
+    rf"\s*({_NUMBER})\s*(px|pt|pc|mm|cm|in|em|ex|q|%)?\s*", re.IGNORECASE | re.ASCII
+)
+_NUMBERS = re.compile(_NUMBER, re.ASCII)
 _TRANSFORM = re.compile(r"\s*,?\s*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)\s*")
 # Pixels of CSS, 96 to the inch.
 PX_MM = 25.4 / 96

@@ -166,11 +166,7 @@ def styled(element: Element, above: Mapping[str, str], sheet: Sheet) -> dict[str
     sheet
         The drawing's style sheets.
     """
-    own: dict[str, str] = {}
-    for name in (*INHERITED, *OWN):
-        value = element.get(name)
-        if value is not None:
-            own[name] = value.strip()
+    own = {str(k): str(v).strip() for k, v in element.items() if k in INHERITED or k in OWN}
     own |= sheet.said_of(element)
     if style := element.get("style"):
         own |= declarations(style)
