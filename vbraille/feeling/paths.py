@@ -65,6 +65,11 @@ class PosedPath:
     y_mm: NDArray[np.float64]
     theta_rad: NDArray[np.float64]
 
+    def only(self, chosen: NDArray[np.bool_]) -> PosedPath:
+        """Make the path of chosen poses, bool[n]."""
+        arrays = (self.t_s, self.x_mm, self.y_mm, self.theta_rad)
+        return PosedPath(*(array[chosen] for array in arrays))
+
 
 _SPOT = ("at", "radius", "seconds")
 _WIDE = ("spacing", "sway", "unsteady", "back")
