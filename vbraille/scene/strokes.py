@@ -169,6 +169,12 @@ class Stroke(Table, frozen=True, kw_only=True):
         return half if self.edge_mm is None else min(self.edge_mm, half)
 
 
+def _check_high(vibration: Vibration | None, what: str) -> None:
+    """Refuse a vibration of what is down in something that is up throughout."""
+    if vibration is not None and vibration.of == "low":
+        raise ValueError(f'vibration of = "low" is not for {what}, which are up; write "high"')
+
+
 class DotStyle(Table, frozen=True, kw_only=True):
     """How dots look: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
 
@@ -190,7 +196,7 @@ class DotStyle(Table, frozen=True, kw_only=True):
     Raises
     ------
     ValueError
-        If a number is out of range, or both an edge and a plateau are given.
+        If a number is out of range, both an edge and a plateau are given, or what is down vibrates.
     """
 
     radius_mm: float = 1.0
@@ -207,6 +213,7 @@ class DotStyle(Table, frozen=True, kw_only=True):
         check_share("amplitude", self.amplitude)
         if self.edge_mm is not None and self.plateau is not None:
             raise ValueError("plateau cannot be given beside edge_mm; leave one of them out")
+        _check_high(self.vibration, "dots")
 
     @property
     def edge(self) -> float:
@@ -231,7 +238,7 @@ class Dotting(Table, frozen=True, kw_only=True):
     Raises
     ------
     ValueError
-        If the separation is out of range.
+        If the separation is out of range, or what is down vibrates.
     """
 
     dot: DotStyle = DotStyle()
@@ -240,6 +247,7 @@ class Dotting(Table, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         check_length("separation", self.separation_mm, 0.0)
+        _check_high(self.vertex_vibration, "dots")
 
 
 class Markers(Table, frozen=True, kw_only=True):
@@ -260,7 +268,7 @@ class Markers(Table, frozen=True, kw_only=True):
     Raises
     ------
     ValueError
-        If a number is out of range.
+        If a number is out of range, or what is down vibrates.
     """
 
     span: Literal["angle", "square", "edges", "arc"] = "edges"
@@ -272,3 +280,4 @@ class Markers(Table, frozen=True, kw_only=True):
         check_angle("angle", self.angle_deg)
         check_range("angle", self.angle_deg, 1.0, 180.0, "°")
         check_length("blend", self.blend_mm)
+        _check_high(self.vibration, "markers")

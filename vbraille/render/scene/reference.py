@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.render.scene.referencebraille import label_deflections, label_opacity
 from vbraille.render.scene.referencestrokes import (
     coordinates,
     dots_deflection,
@@ -156,7 +157,7 @@ def plain(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
         case Dots():
             return dots_deflection(_placed(pattern), pattern.dot, at)
         case Label():
-            return np.zeros(at.x_mm.shape)
+            return label_deflections(pattern, assets.written[pattern], at.x_mm, at.y_mm)
         case Group():
             return group(pattern, assets, at)
     raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
@@ -237,7 +238,7 @@ def mask(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
         case Dots():
             return dots_mask(_placed(pattern), pattern.dot, at)
         case Label():
-            return np.zeros(at.x_mm.shape)
+            return label_opacity(pattern, assets.written[pattern], at.x_mm, at.y_mm)
         case Group():
             return _group_mask(pattern, assets, at)
     return everywhere
