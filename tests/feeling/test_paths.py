@@ -15,13 +15,17 @@ def lengths(course):
     return np.hypot(np.diff(course.x_mm), np.diff(course.y_mm))
 
 
-def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out():
-    x, y = spiral(100, 60, 10)
-    assert list(zip(x[:5], y[:5], strict=True)) == [(0, 0), (100, 0), (100, 60), (0, 60), (0, 0)]
-    course = wide(100, 60, spacing_mm=10)
+@pytest.mark.parametrize("size", [(100, 60), (60, 100), (60, 60), (97, 55), (30, 8)])
+def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
+    width, height = size
+    x, y = spiral(*size, 10)
+    corners = [(0, 0), (width, 0), size, (0, height), (0, 0)]
+    assert list(zip(x[:5], y[:5], strict=True)) == corners
+    assert (x.min(), x.max(), y.min(), y.max()) == (0, width, 0, height)
+    course = wide(*size, spacing_mm=10)
     t_s = np.arange(0, course.duration_s, 0.005)
     gone = np.interp(t_s, course.t_s, course.x_mm), np.interp(t_s, course.t_s, course.y_mm)
-    for place in np.random.default_rng(1).uniform((0, 0), (100, 60), (200, 2)):
+    for place in np.random.default_rng(1).uniform((0, 0), size, (200, 2)):
         assert np.hypot(gone[0] - place[0], gone[1] - place[1]).min() <= 10 / np.sqrt(2) + 0.2
     np.testing.assert_allclose(lengths(course) / np.diff(course.t_s), 60)
 
