@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import forecast, lab, live, pictures, reading
+from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -22,6 +22,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Read a text on a device, line after line.",
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
+    ),
+    "feel": (
+        "Feel a tactile picture on a device, or with a simulated hand.",
+        feeling.feel,
+        "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
         "List the books that were read, and where reading goes on.",
@@ -57,6 +62,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Write every frame of a reading to an HDF5 file.",
         reading.render,
         "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
+    ),
+    "profile": (
+        "Say what a frame of a tactile picture costs, place by place.",
+        feeling.profile,
+        "vbraille profile house.scene --path wide --out cost.csv",
     ),
     "monitor": (
         "Play back a recording or a session in a browser, until Ctrl-C.",
@@ -197,7 +207,7 @@ class _Parser(argparse.ArgumentParser):
 
     def format_help(self) -> str:
         """Help as argparse has it, followed for reading by help on the keys."""
-        return super().format_help() + (_keys() if self.prog == "vbraille read" else "")
+        return super().format_help() + _keys(self.prog)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} ({self.prog} --help says what there is)")
@@ -260,10 +270,14 @@ def _add_log(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _keys() -> str:
-    """Lines on what the keys do at a terminal, one for each key."""
-    from vbraille.reading.commands.table import COMMANDS as KEYS
-
+def _keys(program: str) -> str:
+    """Lines on what the keys of a command do at a terminal, one for each key; none without keys."""
+    if program == "vbraille read":
+        from vbraille.reading.commands.table import COMMANDS as KEYS
+    elif program == "vbraille feel":
+        from vbraille.feeling.commands import COMMANDS as KEYS
+    else:
+        return ""
     width = max(len(command.spoken_keys) for command in KEYS)
     lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in KEYS]
     return "\nkeys at a terminal:\n" + "".join(lines)

@@ -172,9 +172,9 @@ def _laid_out(
     tile_mm = max(_TILE_MM, math.sqrt(width_mm * height_mm / 200_000))
     while True:
         columns, rows = math.ceil(width_mm / tile_mm), math.ceil(height_mm / tile_mm)
-        last = np.array([columns, rows, columns, rows]) - 1
+        most = np.array([columns, rows, columns - 1, rows - 1])
         # What is beyond the canvas lies in no tile, and not in those at its edge.
-        spans = np.clip(np.floor(edges / tile_mm), [0, 0, -1, -1], last + [1, 1, 0, 0]).astype(int)
+        spans = np.clip(np.floor(edges / tile_mm), [0, 0, -1, -1], most).astype(int)
         wide = np.where(inside, np.maximum(spans[:, 2] - spans[:, 0] + 1, 0), 0)
         high = np.where(inside, np.maximum(spans[:, 3] - spans[:, 1] + 1, 0), 0)
         counts = wide * high

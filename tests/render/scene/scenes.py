@@ -10,12 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
 from vbraille.render.scene import reference
 from vbraille.render.scene.assets import Assets, Written
+from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.opaque import bitmap_box
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -319,6 +322,13 @@ def assets_of(*parts):
     )
 
 
+def known_boxes(assets):
+    """Boxes of the images and labels in assets."""
+    boxes = {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
+    boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
+    return {pattern: box for pattern, box in boxes.items() if box is not None}
+
+
 # All together
 
 
@@ -395,12 +405,23 @@ KINDS = {
 patterns = st.recursive(
     st.one_of(*(kind for name, kind in KINDS.items() if name not in ("tile", "group"))),
     lambda parts: st.one_of(groups(parts), tiles(parts)),
-    max_leaves=8,
+    max_leaves=5,
 )
 
 
+def _calm(pattern):
+    """The pattern without what would bring it up where there is nothing of it."""
+    low = pattern.vibration is not None and pattern.vibration.of == "low"
+    calm = replace(pattern, inverted=False, vibration=None if low else pattern.vibration)
+    return replace(calm, outside=0.0) if isinstance(calm, Image) else calm
+
+
+# Patterns that end somewhere.
+bounded = st.one_of(*simple(textures).values()).map(_calm)
+
+
 @st.composite
-def scenes(draw, parts=patterns, most=5):
+def scenes(draw, parts=patterns, most=4):
     """Scenes of some patterns."""
     return Scene(
         canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM),
@@ -456,3 +477,8 @@ def twin(scene, display, pose, assets=None):
     x, y, parity = actuators(display, pose)
     assets = assets_of(*scene.elements) if assets is None else assets
     return reference.deflections(scene, assets, x, y, parity, pose.time_s).reshape(display.shape)
+
+
+def shown(scene, display, pose):
+    """The frame of a scene."""
+    return twin(scene, display, pose)

@@ -40,7 +40,9 @@ def _of_function(parts: list[str], *, hues: bool) -> Color | None:
         return None
     if hues:
         hue, saturation, lightness = numbers
-        return colorsys.hls_to_rgb(hue / 360 % 1.0, _share(lightness / 100), _share(saturation / 100))
+        return colorsys.hls_to_rgb(
+            hue / 360 % 1.0, _share(lightness / 100), _share(saturation / 100)
+        )
     wholes = [100 if part.endswith("%") else 255 for part in parts[:3]]
     red, green, blue = (_share(n / whole) for n, whole in zip(numbers, wholes, strict=True))
     return red, green, blue

@@ -117,7 +117,10 @@ def _chords(segment: Any, matrix: Matrix) -> list[complex]:
         one, two = matrix.put(segment.control1), matrix.put(segment.control2)
         bend = 6 * max(abs(start - 2 * one + two), abs(one - 2 * two + end))
         return [
-            start * (1 - t) ** 3 + 3 * one * t * (1 - t) ** 2 + 3 * two * t * t * (1 - t) + end * t**3
+            start * (1 - t) ** 3
+            + 3 * one * t * (1 - t) ** 2
+            + 3 * two * t * t * (1 - t)
+            + end * t**3
             for t in _shares(bend)
         ]
     if isinstance(segment, QuadraticBezier):

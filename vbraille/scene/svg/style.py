@@ -96,7 +96,9 @@ class Sheet:
             self.ignored.append(f"the style sheet's selector {selector[:40]!r} is ignored")
             return
         if self._count == _MOST_RULES:
-            self.ignored.append(f"the style sheet's rules after the first {_MOST_RULES} are ignored")
+            self.ignored.append(
+                f"the style sheet's rules after the first {_MOST_RULES} are ignored"
+            )
         if self._count >= _MOST_RULES:
             self._count += 1
             return

@@ -180,7 +180,7 @@ def _parsed(text: str, path: Path) -> Element:
             raise InputError(
                 f"{path} has elements more than {MOST_DEPTH} deep; ungroup some of them"
             ) from None
-        raise InputError(f"{path} is not well-formed XML: {_short(error.msg or "", 150)}") from None
+        raise InputError(f"{path} is not well-formed XML: {_short(error.msg or '', 150)}") from None
 
 
 def name_of(element: Element) -> str:

@@ -1,0 +1,91 @@
+"""Programs of scenes, and how they look from above."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille.render import work
+from vbraille.render.program import Program
+from vbraille.render.scene.compiling import compile_scene
+from vbraille.scene.patterns import Group
+from vbraille.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from vbraille.display import Display
+    from vbraille.feeling.loading import LoadedScene
+
+_MOST_PIXELS: Final = 300_000
+_FINEST_MM: Final = 0.25
+_MOST_BYTES: Final = 120_000
+
+
+def compose(
+    loaded: LoadedScene,
+    display: Display,
+    *,
+    rate_hz: float = 1000.0,
+    contrast: float = 1.0,
+    own_y_mm: float | None = None,
+) -> Program:
+    """Compile a scene for a display.
+
+    Parameters
+    ----------
+    loaded
+        The scene.
+    display
+        Display that it is felt on.
+    rate_hz
+        Frames a second.
+    contrast
+        Factor of all its deflections, from 0 to 1.
+    own_y_mm
+        Height of the canvas that an array is at whose carriage measures no y; None for the middle.
+
+    Raises
+    ------
+    InputError
+        If the scene cannot be shown at this rate.
+    """
+    scene = loaded.scene
+    if contrast < 1.0:
+        whole = Group(operation=scene.operation, parts=scene.elements, amplitude=contrast)
+        elements = (whole,) if scene.elements else ()
+        scene = Scene(canvas=scene.canvas, operation="maximum", elements=elements)
+    program = compile_scene(scene, display, loaded.assets, rate_hz=rate_hz)
+    return at_height(program, scene.canvas.height_mm / 2 if own_y_mm is None else own_y_mm)
+
+
+def at_height(program: Program, y_mm: float) -> Program:
+    """Make the same program for an array that is at another height where it measures none."""
+    numbers = program.numbers.copy()
+    numbers[work.OWN_Y] = y_mm
+    return Program(numbers, program.table)
+
+
+def seen_from_above(loaded: LoadedScene) -> bytes:
+    """Draw the deflection map of a scene as a PNG of some 100 kB: black is full deflection.
+
+    Lévesque 2009, 8.3.3; what vibrates is drawn as it is at the beginning.
+    """
+    # Only a live view needs these.
+    from PIL import Image
+
+    from vbraille.render.scene.canvas import SceneMap
+
+    canvas = loaded.scene.canvas
+    step_mm = max(_FINEST_MM, math.sqrt(canvas.width_mm * canvas.height_mm / _MOST_PIXELS))
+    scene_map = SceneMap(loaded.scene, loaded.assets)
+    while True:
+        x_mm = np.arange(step_mm / 2, max(canvas.width_mm, step_mm), step_mm)
+        y_mm = np.arange(step_mm / 2, max(canvas.height_mm, step_mm), step_mm)
+        inked = np.rint(255 * scene_map.deflections(x_mm, y_mm))
+        file = io.BytesIO()
+        Image.fromarray((255 - inked).astype(np.uint8)).save(file, "PNG")
+        if file.tell() <= _MOST_BYTES:
+            return file.getvalue()
+        step_mm *= 1.5

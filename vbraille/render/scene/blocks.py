@@ -1,0 +1,92 @@
+"""Blocks: the words of one pattern, with their constants, in the form that the kernels read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from vbraille.render.scene import words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+_EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
+
+
+class Placed(NamedTuple):
+    """Something of a block that must be put elsewhere: pixels, which belong into the table.
+
+    Parameters
+    ----------
+    at
+        Place among the block's numbers where that of the pixels belongs.
+    pixels : uint16[n]
+        What is put into the table.
+    """
+
+    at: int
+    pixels: NDArray[np.uint16]
+
+
+class Block:
+    """Words and constants of one pattern, gathered bit by bit.
+
+    The words are said in the order in which the machine takes them. Each takes its constants from
+    a place that is counted from the block's beginning, so that a block can lie anywhere.
+    """
+
+    def __init__(self) -> None:
+        self._words: list[tuple[int, int]] = []
+        self._constants: list[float] = []
+        self._pixels: list[tuple[int, NDArray[np.uint16]]] = []
+        self._lists: list[tuple[int, int]] = []
+
+    def say(self, operation: int, *constants: float) -> None:
+        """Add a word with its constants."""
+        self._words.append((operation, len(self._constants)))
+        self._constants += constants
+
+    def say_image(self, *constants: float, pixels: NDArray[np.uint16]) -> None:
+        """Add the word of an image; the place of its pixels becomes the last of its constants."""
+        self.say(words.IMAGE, *constants, 0.0)
+        self._pixels.append((len(self._constants) - 1, pixels))
+
+    def keep(self, parts: Iterable[tuple[float, ...]]) -> list[int]:
+        """Add the numbers of parts, and return where each is among the constants."""
+        places = []
+        for part in parts:
+            places.append(len(self._constants))
+            self._constants += part
+        return places
+
+    def say_parts(self, places: list[int]) -> None:
+        """Add the word by which the following ones look at all of these parts."""
+        begin = len(self._constants)
+        self.say(words.PARTS, len(places), *places)
+        self._lists.append((begin + 1, begin + 1 + len(places)))
+
+    @property
+    def first_constant(self) -> int:
+        """Place of the first constant, from the block's beginning, once all words are said."""
+        return words.WORDS + len(self._words) + 1
+
+    def finish(
+        self, box: tuple[float, float, float, float] | None
+    ) -> tuple[NDArray[np.float64], list[Placed]]:
+        """Make the numbers of the block, and tell what of it belongs into the table.
+
+        Parameters
+        ----------
+        box
+            Left, top, right and bottom beyond which it is nothing; None for everywhere.
+        """
+        first = self.first_constant
+        constants = list(self._constants)
+        for begin, end in self._lists:
+            constants[begin:end] = [place + first for place in constants[begin:end]]
+        said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
+        numbers = np.array([*(box or _EVERYWHERE), *said, words.RETURN, *constants])
+        return numbers, [Placed(first + at, pixels) for at, pixels in self._pixels]

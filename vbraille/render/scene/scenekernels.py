@@ -1,0 +1,299 @@
+"""The machine that shows compiled scenes: `vbraille.render.scene.words` has what it can be told.
+
+A pattern's words stand in a block of their own, wherever that lies in the program: their arguments
+count from its beginning. The words of a tile call those patterns that its actuators can touch, and
+put them together; their arguments count from the program's beginning.
+"""
+
+import math
+
+from vbraille.render.scene import shapekernels as shapes
+from vbraille.render.scene import texturekernels as textures
+from vbraille.render.scene import words as w
+from vbraille.render.scene.curvekernels import compiled
+from vbraille.render.work import THETA, TIME, X, Y
+
+_NO_BLOCK = 0
+
+
+@compiled
+def evaluate(numbers, table, rows, start, count, time):
+    """Compute the deflections at ``count`` places, which are in the rows X and Y, by words.
+
+    The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
+    it has noise from -1 to 1 that stands for vibrations. The deflections go to the row `STACK`.
+    """
+    left, right = _span(rows, w.X_ROW, count)
+    top_mm, bottom_mm = _span(rows, w.Y_ROW, count)
+    at = start
+    block = _NO_BLOCK
+    back, join = 0, 0
+    first, parts = 0, 0
+    # The row above the uppermost.
+    top = w.STACK
+    while True:
+        word = int(numbers[at])
+        at += 1
+        operation, argument = word & (w.OPERATIONS - 1), word >> 6
+        place = block + argument
+        if operation == w.CALL or operation == w.CALL_PARTS:
+            block, join = argument >> 3, argument & (w.JOINS - 1)
+            if operation == w.CALL_PARTS:
+                parts, first = int(numbers[at]), at + 1
+                at = first + parts
+            if (
+                numbers[block + w.BOX_RIGHT] < left
+                or numbers[block + w.BOX_LEFT] > right
+                or numbers[block + w.BOX_BOTTOM] < top_mm
+                or numbers[block + w.BOX_TOP] > bottom_mm
+            ):
+                # What cannot be touched changes nothing, or is nothing.
+                block = _NO_BLOCK
+                if join == w.PUSHED or join == w.PUSHED_PAIR:
+                    _level(rows, top, 0.0, count)
+                    top += 1
+                    if join == w.PUSHED_PAIR:
+                        _level(rows, top, 0.0, count)
+                        top += 1
+                elif join == w.MULTIPLIED:
+                    _level(rows, top - 1, 0.0, count)
+            else:
+                back, at = at, block + w.WORDS
+        elif operation == w.RETURN:
+            at, block = back, _NO_BLOCK
+            if join == w.ADDED:
+                top -= 1
+                _add(rows, top, count)
+            elif join == w.LARGER:
+                top -= 1
+                _maximum(rows, top, count)
+            elif join == w.MULTIPLIED:
+                top -= 1
+                _multiply(rows, top, count)
+            elif join == w.LAID_PAIR:
+                top -= 2
+                _over(rows, top, top + 1, count)
+            elif join == w.LAID_ITSELF:
+                top -= 1
+                _over(rows, top, top, count)
+        elif operation == w.END:
+            return
+        elif operation == w.PARTS:
+            parts, first = int(numbers[place]), place + 1
+        elif operation == w.ZERO:
+            _level(rows, top, 0.0, count)
+            top += 1
+        elif operation == w.LEVEL:
+            _level(rows, top, numbers[place], count)
+            top += 1
+        elif operation == w.DROP:
+            top -= 1
+        elif operation == w.ADD:
+            top -= 1
+            _add(rows, top, count)
+        elif operation == w.MAXIMUM:
+            top -= 1
+            _maximum(rows, top, count)
+        elif operation == w.MULTIPLY:
+            top -= 1
+            _multiply(rows, top, count)
+        elif operation == w.OVER:
+            top -= 2
+            _over(rows, top, top + 1, count)
+        elif operation == w.OVER_ITSELF:
+            top -= 1
+            _over(rows, top, top, count)
+        elif operation == w.BLEND:
+            top -= 2
+            _blend(rows, top, count)
+        elif operation == w.BLEND_FIRST:
+            top -= 1
+            _blend_first(rows, top, count)
+        elif operation == w.SCALE:
+            _scale(rows, top - 1, numbers[place], count)
+        elif operation == w.INVERT:
+            _invert(rows, top - 1, count)
+        elif operation == w.VIBRATE_HIGH:
+            textures.vibrate_high(numbers, rows, place, time, top - 1, count)
+        elif operation == w.VIBRATE_LOW:
+            textures.vibrate_low(numbers, rows, place, time, top - 1, count)
+        elif operation == w.VIBRATION:
+            textures.vibrate(numbers, rows, place, time, top, count)
+            top += 1
+        elif operation == w.LINEAR:
+            textures.linear(numbers, rows, place, time, top, count)
+            top += 1
+        elif operation == w.RADIAL:
+            textures.radial(numbers, rows, place, time, top, count)
+            top += 1
+        elif operation == w.AXIAL:
+            textures.axial(numbers, rows, place, time, top, count)
+            top += 1
+        elif operation == w.IMAGE:
+            textures.image(numbers, table, rows, place, top, count)
+            top += 1
+        elif operation == w.DOTS:
+            shapes.dots(numbers, rows, place, time, block, first, parts, top, count)
+            top += 1
+        elif operation == w.CIRCLE:
+            shapes.circle(numbers, rows, place, count)
+        elif operation == w.SEGMENTS:
+            shapes.segments(numbers, rows, place, block, first, parts, count)
+        elif operation == w.INSIDE:
+            shapes.inside(numbers, rows, block, first, parts, count)
+        elif operation == w.STROKE:
+            shapes.stroke(numbers, rows, place, time, top, count)
+            top += 1
+        elif operation == w.PROFILE:
+            shapes.profile(numbers, rows, place, top, count)
+            top += 1
+        elif operation == w.FILL:
+            top -= 1
+            shapes.fill(numbers, rows, place, top, count)
+        elif operation == w.FILL_BLENDED:
+            top -= 1
+            shapes.fill_blended(numbers, rows, place, top, count)
+        elif operation == w.FILL_MASK:
+            shapes.fill_mask(rows, top - 1, count)
+        elif operation == w.WRAP:
+            _wrap(numbers, rows, place, top, count)
+            top += 2
+        elif operation == w.UNWRAP:
+            top -= 2
+            _unwrap(rows, top, count)
+
+
+@compiled
+def show(numbers, table, rows, at, out):
+    """Fill a frame with the deflections of a scene at a pose and a time."""
+    above, across = out.shape
+    x, y = at[X], at[Y]
+    column = math.floor((x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM])
+    row = math.floor((y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM])
+    columns = numbers[w.GRID_COLUMNS]
+    # Beyond the grid no actuator is on the canvas; NaN, too, is nowhere.
+    if not (0.0 <= column < columns and 0.0 <= row < numbers[w.GRID_ROWS]):
+        out[:] = 0.0
+        return
+    start = int(numbers[w.GRID + int(row * columns + column)])
+    if int(numbers[start]) == w.END:
+        out[:] = 0.0
+        return
+    lanes = above * across
+    cosine, sine = 1.0, 0.0
+    theta = at[THETA]
+    if theta != 0.0:
+        cosine, sine = math.cos(theta), math.sin(theta)
+    n = 0
+    for i in range(above):
+        down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
+        for j in range(across):
+            aside = (j - 0.5 * (across - 1)) * numbers[w.COLUMN_MM]
+            rows[w.X_ROW, n] = x + aside * cosine + down * sine
+            rows[w.Y_ROW, n] = y + down * cosine - aside * sine
+            rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
+            n += 1
+    evaluate(numbers, table, rows, start, lanes, at[TIME])
+    n = 0
+    left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
+    top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
+    for i in range(above):
+        for j in range(across):
+            px, py = rows[w.X_ROW, n], rows[w.Y_ROW, n]
+            on = left <= px <= right and top <= py <= bottom
+            value = rows[w.STACK, n]
+            value = value if value > 0.0 else 0.0
+            value = value if value < 1.0 else 1.0
+            out[i, j] = value if on else 0.0
+            n += 1
+
+
+@compiled
+def _span(rows, row, count):
+    least = most = rows[row, 0]
+    for n in range(1, count):
+        value = rows[row, n]
+        least = value if value < least else least
+        most = value if value > most else most
+    return least, most
+
+
+@compiled
+def _level(rows, top, level, count):
+    for n in range(count):
+        rows[top, n] = level
+
+
+@compiled
+def _add(rows, top, count):
+    for n in range(count):
+        value = rows[top - 1, n] + rows[top, n]
+        rows[top - 1, n] = value if value < 1.0 else 1.0
+
+
+@compiled
+def _maximum(rows, top, count):
+    for n in range(count):
+        value = rows[top, n]
+        rows[top - 1, n] = value if value > rows[top - 1, n] else rows[top - 1, n]
+
+
+@compiled
+def _multiply(rows, top, count):
+    for n in range(count):
+        rows[top - 1, n] *= rows[top, n]
+
+
+@compiled
+def _over(rows, top, mask, count):
+    """Lay what is in ``top`` on what is beneath it: Lévesque 2009, eq. 8.22."""
+    for n in range(count):
+        value = rows[top, n] + (1.0 - rows[mask, n]) * rows[top - 1, n]
+        rows[top - 1, n] = value if value < 1.0 else 1.0
+
+
+@compiled
+def _blend(rows, top, count):
+    """Blend two patterns, of which the second is in ``top``, by what is above: eq. 8.21."""
+    for n in range(count):
+        first = rows[top - 1, n]
+        rows[top - 1, n] = first + rows[top + 1, n] * (rows[top, n] - first)
+
+
+@compiled
+def _blend_first(rows, top, count):
+    for n in range(count):
+        rows[top - 1, n] *= 1.0 - rows[top, n]
+
+
+@compiled
+def _scale(rows, top, factor, count):
+    for n in range(count):
+        rows[top, n] *= factor
+
+
+@compiled
+def _invert(rows, top, count):
+    for n in range(count):
+        rows[top, n] = 1.0 - rows[top, n]
+
+
+@compiled
+def _wrap(numbers, rows, at, top, count):
+    """Keep the places in two rows and wrap them: constants origin, width and height of a tile."""
+    x0, y0, width, height = numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]
+    for n in range(count):
+        x, y = rows[w.X_ROW, n], rows[w.Y_ROW, n]
+        rows[top, n], rows[top + 1, n] = x, y
+        x -= x0
+        y -= y0
+        rows[w.X_ROW, n] = x - width * math.floor(x / width)
+        rows[w.Y_ROW, n] = y - height * math.floor(y / height)
+
+
+@compiled
+def _unwrap(rows, top, count):
+    """Take the places back, from under what was pushed since."""
+    for n in range(count):
+        rows[w.X_ROW, n], rows[w.Y_ROW, n] = rows[top - 1, n], rows[top, n]
+        rows[top - 1, n] = rows[top + 1, n]
