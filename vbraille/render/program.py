@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
+from vbraille.render.scene.words import SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class Program:
         self.numbers = numbers
         self.table = table
         self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
-        self._scratch = scratch_for(self.shape[1], _BLOCK)
+        self._scratch = scratch_for(self.shape, self.kind)
         self._at = np.zeros(6)
 
     @property
@@ -173,6 +174,7 @@ class Program:
         x_mm: NDArray[np.float64],
         y_mm: NDArray[np.float64],
         theta_rad: NDArray[np.float64] | float = 0.0,
+        time_s: NDArray[np.float64] | float = 0.0,
     ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Fill the frames of a way over the canvas.
 
@@ -180,6 +182,8 @@ class Program:
         ----------
         x_mm, y_mm, theta_rad : float64[n]
             Places of the array's centre, and angles by which the array is turned.
+        time_s : float64[n]
+            Times of a picture that moves by itself, since its start.
 
         Returns
         -------
@@ -191,6 +195,7 @@ class Program:
 
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
+        at[:, work.TIME] = time_s
         parts = np.zeros(x_mm.size, np.int64)
         out = np.empty((x_mm.size, *self.shape), np.float32)
         kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)
@@ -210,9 +215,21 @@ class Program:
         return Program(numbers, self.table)
 
 
-def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
-    """Make the scratch array that kernels need for a number of places at once."""
-    return np.zeros((2, places * columns))
+def scratch_for(shape: tuple[int, int], kind: ProgramKind | None = None) -> NDArray[np.float64]:
+    """Make the scratch array that kernels need for frames of a shape.
+
+    Parameters
+    ----------
+    shape
+        Rows and columns of the frames.
+    kind
+        Kind of the programs that are shown; None for any, but then of a path only one place fits
+        at a time.
+    """
+    rows, columns = shape
+    if kind is None or kind is ProgramKind.SCENE:
+        return np.zeros((SCRATCH_ROWS, rows * columns))
+    return np.zeros((2, _BLOCK * columns))
 
 
 def head(
