@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import feeling, forecast, lab, live, reading
+from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -77,6 +77,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Draw a picture of what the display does, or print its numbers.",
         reading.plot,
         "vbraille plot page book.txt --lines 1-4 --at 120 --out page.png",
+    ),
+    "map": (
+        "Draw a tactile picture: its deflections, what it is made of, or raised lines for paper.",
+        pictures.scene_map,
+        "vbraille map texts/scenes/gallery/layers.scene --array 22,16 --out layers.png",
     ),
     "simulate": (
         "Be a device, at a port that a program can read on, until Ctrl-C.",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from vbraille.errors import InputError
 from vbraille.scene.bitmap import WHOLE
+from vbraille.scene.filebytes import read_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from PIL import Image as Pillow
 
+_MOST_FILE_BYTES = 100 << 20
 # What Pillow may take a file for, whatever its name ends with.
 KINDS = ("PNG", "GIF", "BMP", "JPEG")
-MOST_FILE_BYTES = 100 << 20
 # More than the largest cameras have; a picture of four channels takes 240 MB then, for a moment.
 MOST_PIXELS = 60_000_000
 # Each scan of a progressive JPEG goes over all of it again; programs write about ten.
@@ -31,34 +32,6 @@ _MOST_SCANS = 100
 _SCAN = b"\xff\xda"
 
 Channel = Literal["gray", "alpha"]
-
-
-def read_bytes(path: Path, most: int = MOST_FILE_BYTES) -> bytes:
-    """Content of a file that somebody drew.
-
-    Raises
-    ------
-    InputError
-        If it is not there, no file, empty, larger than ``most`` bytes, or cannot be read.
-    """
-    try:
-        if path.is_dir():
-            raise InputError(f"{path} is a directory; give the name of a file in it")
-        if not path.exists():
-            raise InputError(f"{path} does not exist; check its name")
-        if not path.is_file():
-            raise InputError(f"{path} is no ordinary file; give one that is")
-        with path.open("rb") as file:
-            content = file.read(most + 1)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError:  # a name with a null character
-        raise InputError(f"{str(path)!r} is no name of a file; mend it") from None
-    if len(content) > most:
-        raise InputError(f"{path} is larger than {most >> 20} MB; make it smaller")
-    if not content:
-        raise InputError(f"{path} is empty; give another file")
-    return content
 
 
 def intensities_of(
@@ -94,7 +67,7 @@ def intensities_of(
     """
     from io import BytesIO
 
-    content = BytesIO(read_bytes(path))
+    content = BytesIO(read_bytes(path, _MOST_FILE_BYTES))
     with _refusing(path):
         from PIL import Image, ImageOps
 

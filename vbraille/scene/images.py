@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,8 @@ from vbraille.scene.patterns import Image
 from vbraille.scene.walking import each
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -88,6 +91,18 @@ def named(image: Image | ImageDots) -> str:
     return f"element {image.id}" if image.id else f"image {image.file}"
 
 
+@contextmanager
+def naming(image: Image | ImageDots) -> Iterator[None]:
+    """Put the name of an element before what is said of its file."""
+    try:
+        yield
+    except InputError as error:
+        message = str(error)
+        if message.startswith(named(image)):
+            raise
+        raise InputError(f"{named(image)}: {message}") from None
+
+
 def size_mm(image: Image | ImageDots, columns: int, rows: int) -> tuple[float, float]:
     """Width and height of an image on the canvas, of which one may follow from its pixels.
 
@@ -145,13 +160,8 @@ def _laid(image: Image, folder: Path) -> _Laid:
         most_columns, most_rows = shape_of(*size, per_mm)
         return min(columns, most_columns), min(rows, most_rows)
 
-    try:
+    with naming(image):
         intensities = intensities_of(Path(folder, image.file), image.channel, shape)
-    except InputError as error:
-        message = str(error)
-        if message.startswith(named(image)):
-            raise
-        raise InputError(f"{named(image)}: {message}") from None
     if image.inverted_source:
         intensities = WHOLE - intensities
     laid = _Laid(intensities, *size)

@@ -90,8 +90,8 @@ class Gathered:
         for name, texture in textures.items():
             origin, there = origins.places["textures", name]
             if name in self.textures:
-                first = self.origins.places["textures", name][0]
-                origin.fail(there, f"has a name that is in {first.where} too; take another")
+                first = self.origins.place(("textures", name))
+                origin.fail(there, f"is called {name}, as is {first}; give it another name")
             self.textures[name] = texture
             self.origins.places["textures", name] = (origin, there)
         start = len(self.elements)

@@ -74,6 +74,11 @@ class Origins:
                 return origin, (*there, *steps[depth:])
         return None
 
+    def place(self, steps: Steps) -> str:
+        """File and line of a place of the scene, or words for it if it comes from no file."""
+        found = self.of(steps)
+        return said(steps) if found is None else found[0].place(found[1])
+
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the scene for a problem at a place in it, with the file and the line.
 
@@ -120,8 +125,6 @@ class OpenedScene:
     def place(self, number: int) -> str:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
         steps: Steps = ("elements", number)
-        found = self.origins.of(steps) or self.origins.of((*steps, "parts", 0))
-        if found is None:
-            return str(self.path)
-        origin, there = found
-        return origin.place(there)
+        if self.origins.of(steps) is None:  # a group of what another file has
+            steps = (*steps, "parts", 0)
+        return self.origins.place(steps)

@@ -10,6 +10,7 @@ import math
 from typing import Literal
 
 from vbraille.errors import check_range
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
@@ -98,6 +99,10 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     A blob is a connected set of pixels above ``threshold``. Its dot stands at its centre of mass,
     has its largest gray as amplitude, and has its area where ``by_area`` says so, or else the
     radius of ``dot``. How a blob becomes a dot is not in the source; this is ours to choose.
+
+    With ``cell_mm``, the width and height of a cell, there is a dot in the middle of each cell of a
+    grid over the image instead, whose mean gray is its amplitude: Lévesque 2009, 5.3, with cells of
+    1.2 by 1.8 mm. No dot is then larger than its cell.
     """
 
     file: str
@@ -106,6 +111,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     height_mm: float | None = None
     threshold: float = 0.1
     by_area: bool = True
+    cell_mm: Point | None = None
     dot: DotStyle = DotStyle(plateau=0.25)
 
     def __post_init__(self) -> None:
@@ -114,6 +120,8 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)
         check_share("threshold", self.threshold)
+        for side in self.cell_mm or ():
+            check_length("cell", side, 0.1)
 
 
 class Fill(Table, frozen=True, kw_only=True):
@@ -234,6 +242,13 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_points("vertices", self.vertices_mm, 3, closed=True)
+        edges = meeting_edges(self.vertices_mm)
+        if edges is not None:
+            first, second = edges
+            raise ValueError(
+                f"vertices make edges that cross or touch, those after number {first} and number "
+                f"{second}; set them in order around the shape"
+            )
         check_length("rounding offset", self.rounding_offset_mm, 0.0)
         _check_drawn(self, self.fill)
 

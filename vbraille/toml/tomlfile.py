@@ -24,6 +24,8 @@ _Value = TypeVar("_Value")
 # TOML readers differ on larger numbers, and no number of a protocol is so large.
 _MOST_WHOLE = 2**63 - 1
 _LONGEST_QUOTE = 60
+# Spaces without a break, which French has before its marks and Python does not call printable.
+_SPACES = {0xA0: " ", 0x202F: " "}
 # Names that msgspec has for types, and what a file must have where such a type is wanted.
 _WANTED = {
     "int": "a whole number",
@@ -72,7 +74,7 @@ class TomlFile:
         except ValueError as error:
             raise InputError(f"{where} is not TOML: {error}; mend it there") from None
         for path, value in _leaves(self._tree):
-            if isinstance(value, str) and not value.isprintable():
+            if isinstance(value, str) and not value.translate(_SPACES).isprintable():
                 self._refuse(path, "one line without control characters")
             if isinstance(value, int) and abs(value) > _MOST_WHOLE:
                 self._refuse(path, "a smaller number")
@@ -101,6 +103,8 @@ class TomlFile:
         """
         try:
             return msgspec.convert(self._at(under), kind, dec_hook=dec_hook)
+        except RecursionError:
+            raise InputError(f"{self._where} nests its tables too deep; make it flatter") from None
         except msgspec.ValidationError as error:
             message, _, steps = str(error).rpartition(" - at `$")
             if not message:  # msgspec names no place if it is the value as a whole
@@ -188,7 +192,8 @@ class TomlFile:
             self._fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
             items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
-            self._fail(path, f"has {len(value)} items; give {expected[2]}: {', '.join(items)}")
+            which_items = f": {', '.join(items)}" if items else ""
+            self._fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
         if expected and any(map(_is_tables, types)):
             self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
