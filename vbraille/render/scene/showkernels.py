@@ -131,5 +131,3 @@ def show(numbers, table, rows, at, out):
             value = value if value < 1.0 else 1.0
             out[i, j] = value if on else 0.0
             n += 1
-
-
