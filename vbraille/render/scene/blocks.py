@@ -87,8 +87,6 @@ class Block:
         constants = list(self._constants)
         for begin, end in self._lists:
             constants[begin:end] = [place + first for place in constants[begin:end]]
-        said = [
-            operation + words.OPERATIONS * (place + first) for operation, place in self._words
-        ]
+        said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
         numbers = np.array([*(box or _EVERYWHERE), *said, words.RETURN, *constants])
         return numbers, [Placed(first + at, pixels) for at, pixels in self._pixels]
