@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading
+from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading, scenes
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -93,6 +93,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         lambda parser: _add(parser, "action", "ACTION", DEVICE_ACTIONS),
         "vbraille device check serial:/dev/ttyACM0",
     ),
+    "scene": (
+        "Convert tactile pictures of other programs.",
+        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
+        "vbraille scene convert umbrella.gen --out umbrella.scene",
+    ),
     "session": (
         "Run legibility sessions, and keep every answer.",
         lambda parser: _add(parser, "action", "ACTION", SESSION_ACTIONS),
@@ -141,6 +146,13 @@ DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
         "their gains; h says the keys.",
         reading.device_calibrate,
         "vbraille device calibrate serial:/dev/ttyACM0",
+    ),
+}
+SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
+    "convert": (
+        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
+        scenes.convert,
+        "vbraille scene convert umbrella.gen --out umbrella.scene",
     ),
 }
 SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {

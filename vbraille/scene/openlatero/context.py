@@ -82,8 +82,18 @@ class Context:
         return self._found.get(id(pattern), (None, None))[1]
 
 
-def vibration(above: GenElement, context: Context) -> Vibration | None:
-    """Vibration in an element; None if there is none, or it is off."""
+def vibration(above: GenElement, context: Context, always_up: str = "") -> Vibration | None:
+    """Vibration in an element; None if there is none, or it is off.
+
+    Parameters
+    ----------
+    above
+        The element that it is in.
+    context
+        How the file is read.
+    always_up
+        What it is a vibration of, such as "dots", if that has nothing that is down.
+    """
     element = above.one("vibration")
     if element is None:
         return None
@@ -95,12 +105,16 @@ def vibration(above: GenElement, context: Context) -> Vibration | None:
     )
     amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
     low = element.word("blend_mode", ("high", "low"), "high") == "low"
-    if low and context.as_shown:
+    if low and always_up:
+        element.say(f"{always_up} have nothing down that could vibrate; what is up does")
+        low = False
+    elif low and context.as_shown:
         element.say("blend_mode low is ignored, as OpenLatero does")
+        low = False
     elif low:
         element.say("what is down vibrates, as the file says; OpenLatero ignores blend_mode low")
-    of = "low" if low and not context.as_shown else "high"
-    return Vibration(frequency_hz=timed(hertz, context), amplitude=amplitude, of=of)
+    shown_hz = timed(hertz, context)
+    return Vibration(frequency_hz=shown_hz, amplitude=amplitude, of="low" if low else "high")
 
 
 def timed(hertz: float, context: Context) -> float:

@@ -9,12 +9,13 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.scene.imagefiles import KINDS, MOST_PIXELS, read_bytes
+from vbraille.scene.filebytes import read_bytes
+from vbraille.scene.imagefiles import KINDS, MOST_PIXELS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_MOST_SVG_BYTES = 10 << 20
+_MOST_BYTES, _MOST_SVG_BYTES = 100 << 20, 10 << 20
 _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*(px|pt|pc|mm|cm|in)?\s*")
 _INCH = 96.0  # pixels
 _PIXELS = {
@@ -56,7 +57,7 @@ def measure(path: Path) -> Picture:
     """
     if path.suffix.lower() == ".svg":
         return _drawn(path)
-    content = read_bytes(path)
+    content = read_bytes(path, _MOST_BYTES)
     from PIL import Image
 
     try:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.scene.imagefiles import read_bytes
+from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.opened import FoundScene
 from vbraille.scene.openlatero.context import SURFACE_MM, Context
 from vbraille.scene.openlatero.groups import (

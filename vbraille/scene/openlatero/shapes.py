@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, vibration
 from vbraille.scene.openlatero.strokes import across_of, drawn, edge_of, filling
-from vbraille.scene.patterns import Circle, Dots, Line, Polygon
+from vbraille.scene.patterns import Circle, Dots, Line, Path, Polygon
 from vbraille.scene.strokes import DotStyle, Markers, Vibration
 
 if TYPE_CHECKING:
@@ -93,6 +94,8 @@ def read_polygon(element: GenElement, context: Context) -> AnyPattern | None:
     fill = _fill(element, context, look)
     if look.stroke is None and look.dots is None and fill is None:
         return _nothing(element)
+    if meeting_edges(vertices) is not None:
+        return _path(element, vertices, look, fill, markers)
     return Polygon(
         vertices_mm=vertices,
         join="straight" if straight else "rounded",
@@ -102,6 +105,26 @@ def read_polygon(element: GenElement, context: Context) -> AnyPattern | None:
         dots=look.dots,
         fill=fill,
         markers=markers,
+    )
+
+
+def _path(
+    element: GenElement,
+    vertices: tuple[Point, ...],
+    look: Drawn,
+    fill: Fill | None,
+    markers: Markers | None,
+) -> Path:
+    """Path for a polygon whose edges cross, which no polygon is here."""
+    lost = " and its markers are left out" if markers is not None else ""
+    element.say(f"its edges cross, so it is a path here; textures jump at its corners{lost}")
+    return Path(
+        contours_mm=(vertices,),
+        closed=True,
+        amplitude=look.intensity,
+        stroke=look.stroke,
+        dots=look.dots,
+        fill=fill,
     )
 
 
@@ -126,16 +149,12 @@ def read_dots(element: GenElement, context: Context) -> AnyPattern | None:
     height = element.number("height", 1.0, 0.0, 1.0, "share")
     ridge = element.part("ridge")
     ridge.skip("width")  # the radius counts
-    swing = vibration(element, context)
-    if swing is not None and swing.of == "low":
-        element.say("what is up in dots vibrates, not what is down")
-        swing = Vibration(frequency_hz=swing.frequency_hz, amplitude=swing.amplitude)
     dot = DotStyle(
         radius_mm=radius,
         edge_mm=edge_of(ridge, 0.2),
         amplitude=height,
         across=across_of(ridge),
-        vibration=swing,
+        vibration=vibration(element, context, "dots"),
     )
     operation = "add" if one else operation_of(element, "add")
     if len(centers) > 1 and operation not in ("add", "max"):
@@ -178,7 +197,7 @@ def _markers(corner: GenElement, context: Context, look: Drawn) -> Markers | Non
     if corner.word("blend", ("in", "out"), "out") == "in":
         corner.say("markers blend outwards here, not inwards")
     blend = corner.number("blend_size", 1.0, _LEAST_BLEND_MM, MOST_MM)
-    swing = vibration(corner, context)
+    swing = vibration(corner, context, "markers")
     stroke = look.stroke
     if kind == "invert vib" and stroke is not None:
         if stroke.along is not None or stroke.outlined:

@@ -63,7 +63,7 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
     edge = edge_of(ridge, edge_of(beneath, 1.0))
     across = across_of(ridge) if ridge.children else across_of(beneath)
     fill = element.one("fill")
-    swing = vibration(fill, context) if fill is not None else vibration(row, context)
+    swing = vibration(row if fill is None else fill, context, "dots" if is_dotted else "")
     row.skip("vibration")
     width = _profiled(ridge, width)
     if width < LEAST_MM:
@@ -81,7 +81,7 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
             edge_mm=edge,
             amplitude=height,
             across=across,
-            vibration=_of_high(row, swing),
+            vibration=swing,
         )
         corners = _against(swing) if corners_swing else None
         dots = Dotting(dot=dot, separation_mm=spacing, vertex_vibration=corners)
@@ -241,14 +241,6 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
     if abs(speed) > most:
         element.say(f"its ridges would move at {speed:g} {unit}/s; {most:g} is taken")
     return max(-most, min(most, speed))
-
-
-def _of_high(element: GenElement, swing: Vibration | None) -> Vibration | None:
-    """Vibration of dots, of which only what is up swings."""
-    if swing is None or swing.of == "high":
-        return swing
-    element.say("what is up in dots vibrates, not what is down")
-    return replace(swing, of="high")
 
 
 def _against(swing: Vibration | None) -> Vibration:
