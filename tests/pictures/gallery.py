@@ -21,23 +21,21 @@ class Shown(NamedTuple):
     def name(self) -> str:
         return f"{self.scene}{self.more}.png"
 
-    def draw(self, folder: Path) -> Path:
-        """Draw it into a folder by the command."""
-        out = folder / self.name
-        scene = str(SCENES / f"{self.scene}.scene")
-        assert main(["map", scene, "--out", str(out), "--force", *self.options]) == 0
-        return out
+    def command(self, folder: Path) -> list[str]:
+        """Command that draws it into a folder."""
+        scene = SCENES / f"{self.scene}.scene"
+        return ["map", str(scene), "--out", str(folder / self.name), "--force", *self.options]
 
 
 COARSE = ("--resolution", "3")
-LARGE = {"distortions", "layers", "mixed"}  # which would be above 15 kB
+LARGE = {"distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
 GALLERY = [
     *(
-        Shown(path.stem, options=COARSE if path.stem in LARGE else ())
+        Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
         for path in sorted(SCENES.glob("*.scene"))
     ),
     Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE)),
-    Shown("pictured", "-array", ("--array", "14,27", "--resolution", "6", "--axes")),
+    Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
     Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
     Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
     Shown("labelled", "-raised", ("--raised", "--resolution", "5")),
@@ -46,4 +44,4 @@ GALLERY = [
 if __name__ == "__main__":
     PICTURES.mkdir(parents=True, exist_ok=True)
     for shown in GALLERY:
-        shown.draw(PICTURES)
+        assert main(shown.command(PICTURES)) == 0
