@@ -25,7 +25,7 @@ def main() -> None:
         line.frame(0.0, np.zeros(display.shape))
         ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
         frames = np.zeros((4, 1, *display.shape))
-        scratch = scratch_for(display.columns)
+        scratch = scratch_for(display.shape)
         output, held, target = frames[1:, 0]
         ticks.replay(
             line.numbers,

@@ -132,7 +132,7 @@ class LoopState:
         self._held = np.zeros(display.shape)
         self._target = np.zeros(display.shape)
         self._at = np.zeros(6)
-        self._scratch = scratch_for(display.columns)
+        self._scratch = scratch_for(display.shape)
         self._program = nothing(display)
         self._serials = 0
         self._exposures = 0  # that were told

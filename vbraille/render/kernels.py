@@ -4,7 +4,8 @@ Kernels fill ``out`` and allocate nothing. `vbraille.render.braille.style` compi
 into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
 `vbraille.render.braille.reference` has the same functions in plain numpy.
 
-``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
+``scratch`` is float64[2, n], and more rows for scenes
+(`vbraille.render.scene.words`): room for the swing under each column of a block of positions, and for
 the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
 with an empty cell before a line's first and one after its last. The table has a word for each slot
 of each line, whose bit r is set if actuator row r shows a dot there; a page has an empty line
@@ -17,6 +18,7 @@ the polynomials of `vbraille.render.waves` instead of the library's sine.
 
 import math
 
+from vbraille.render.scene.scenekernels import show as _show_scene
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.waves import cos_pi as _cos_pi
 from vbraille.render.waves import inlined as _inlined
@@ -40,6 +42,7 @@ from vbraille.render.work import (
     LINES,
     NO_PART,
     OVERLAP,
+    PATIENCE_S,
     PROFILE,
     ROW_PITCH,
     ROWS,
@@ -54,7 +57,7 @@ from vbraille.render.work import (
     Y,
 )
 
-VIBRATION = 2.0  # `ProgramKind.VIBRATION`; the other kinds are braille
+VIBRATION, SCENE = 2.0, 3.0  # of `ProgramKind`; the other kinds are braille
 _PAGE = 1.0
 _DOT_ROWS = 4
 # An array that was turned too far shows braille again once it is upright by so much more.
@@ -196,6 +199,15 @@ def seamless(numbers):
 
 
 @_compiled
+def patience(numbers):
+    """How long a picture is shown to a hand that does not move, s; infinite if that does not matter.
+
+    Vibration tires the skin (Lévesque 2009, 8.6), and a scene may have it anywhere.
+    """
+    return PATIENCE_S if numbers[KIND] == SCENE and numbers[FREQUENCY] > 0.0 else math.inf
+
+
+@_compiled
 def too_far(numbers, theta, before):
     """Tell whether an array is turned too far for a picture, where it was or was not ``before``."""
     limit = numbers[TILT]
@@ -287,6 +299,9 @@ def frame(numbers, table, scratch, part, at, out):
             for column in range(columns):
                 sign = 1.0 - 2.0 * ((row + column) & 1)
                 out[row, column] = numbers[AMPLITUDE] * (0.5 + 0.5 * sign * phase)
+        return
+    if numbers[KIND] == SCENE:
+        _show_scene(numbers, table, scratch, at, out)
         return
     if numbers[FREE] != 0.0:
         _free(numbers, table, at, out)

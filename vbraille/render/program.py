@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
+from vbraille.render.scene.words import SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class Program:
         self.numbers = numbers
         self.table = table
         self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
-        self._scratch = scratch_for(self.shape[1], _BLOCK)
+        self._scratch = scratch_for(self.shape, self.kind)
         self._at = np.zeros(6)
 
     @property
@@ -210,9 +211,21 @@ class Program:
         return Program(numbers, self.table)
 
 
-def scratch_for(columns: int, places: int = 1) -> NDArray[np.float64]:
-    """Make the scratch array that kernels need for a number of places at once."""
-    return np.zeros((2, places * columns))
+def scratch_for(shape: tuple[int, int], kind: ProgramKind | None = None) -> NDArray[np.float64]:
+    """Make the scratch array that kernels need for frames of a shape.
+
+    Parameters
+    ----------
+    shape
+        Rows and columns of the frames.
+    kind
+        Kind of the programs that are shown; None for any, but then of a path only one place fits
+        at a time.
+    """
+    rows, columns = shape
+    if kind is None or kind is ProgramKind.SCENE:
+        return np.zeros((SCRATCH_ROWS, rows * columns))
+    return np.zeros((2, _BLOCK * columns))
 
 
 def head(

@@ -13,6 +13,7 @@ class ProgramKind(IntEnum):
     LINE = 0
     PAGE = 1
     VIBRATION = 2
+    SCENE = 3
 
 
 # The head, which is alike for every kind; the engine reads it.
@@ -59,5 +60,7 @@ X, Y, THETA, TIME, VX, VY = range(6)
 
 # Rows of the kernels' scratch: the swing under each column, and the slot that the column is over.
 SWING, SLOT = range(2)
+# How long a scene that moves by itself is shown to a hand that does not, s.
+PATIENCE_S = 60.0
 # Value for no part: no line of a page was under the array yet.
 NO_PART = -2

@@ -13,22 +13,23 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
+_FAR = 1e30  # stands for infinity
+_EVERYWHERE = (-_FAR, -_FAR, _FAR, _FAR)
 
 
 class Placed(NamedTuple):
-    """Something of a block that must be put elsewhere: pixels, which belong into the table.
+    """Something of a block that belongs into the table: pixels, or words of braille.
 
     Parameters
     ----------
     at
-        Place among the block's numbers where that of the pixels belongs.
-    pixels : uint16[n]
+        Place among the block's numbers where that of the entries belongs.
+    entries : uint16[n]
         What is put into the table.
     """
 
     at: int
-    pixels: NDArray[np.uint16]
+    entries: NDArray[np.uint16]
 
 
 class Block:
@@ -41,7 +42,7 @@ class Block:
     def __init__(self) -> None:
         self._words: list[tuple[int, int]] = []
         self._constants: list[float] = []
-        self._pixels: list[tuple[int, NDArray[np.uint16]]] = []
+        self._entries: list[tuple[int, NDArray[np.uint16]]] = []
         self._lists: list[tuple[int, int]] = []
 
     def say(self, operation: int, *constants: float) -> None:
@@ -49,10 +50,12 @@ class Block:
         self._words.append((operation, len(self._constants)))
         self._constants += constants
 
-    def say_image(self, *constants: float, pixels: NDArray[np.uint16]) -> None:
-        """Add the word of an image; the place of its pixels becomes the last of its constants."""
-        self.say(words.IMAGE, *constants, 0.0)
-        self._pixels.append((len(self._constants) - 1, pixels))
+    def say_table(
+        self, operation: int, *constants: float, at: int, entries: NDArray[np.uint16]
+    ) -> None:
+        """Add a word of something in the table, whose place becomes the constant number ``at``."""
+        self._entries.append((len(self._constants) + at, entries))
+        self.say(operation, *constants)
 
     def keep(self, parts: Iterable[tuple[float, ...]]) -> list[int]:
         """Add the numbers of parts, and return where each is among the constants."""
@@ -87,8 +90,6 @@ class Block:
         constants = list(self._constants)
         for begin, end in self._lists:
             constants[begin:end] = [place + first for place in constants[begin:end]]
-        said = [
-            operation + words.OPERATIONS * (place + first) for operation, place in self._words
-        ]
+        said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
         numbers = np.array([*(box or _EVERYWHERE), *said, words.RETURN, *constants])
-        return numbers, [Placed(first + at, pixels) for at, pixels in self._pixels]
+        return numbers, [Placed(first + at, entries) for at, entries in self._entries]

@@ -2,12 +2,7 @@
 
 import math
 
-from numba import njit
-
-from vbraille.caching import keep_compiled
-
-compiled = njit(cache=keep_compiled(), error_model="numpy", fastmath={"contract"}, nogil=True)
-inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
+from vbraille.render.waves import inlined
 
 _C = [(-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(9)]
 _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8 = _C

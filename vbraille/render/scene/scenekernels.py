@@ -8,10 +8,12 @@ put them together; their arguments count from the program's beginning.
 import math
 
 from vbraille.render.scene import shapekernels as shapes
+from vbraille.render.scene import strokekernels as strokes
 from vbraille.render.scene import texturekernels as textures
 from vbraille.render.scene import words as w
-from vbraille.render.scene.curvekernels import compiled
-from vbraille.render.work import COLUMNS, ROWS, THETA, TIME, X, Y
+from vbraille.render.scene.braillekernel import label, label_opacity
+from vbraille.render.waves import compiled
+from vbraille.render.work import THETA, TIME, X, Y
 
 _NO_BLOCK = 0
 
@@ -132,29 +134,40 @@ def evaluate(numbers, table, rows, start, count, time):
         elif operation == w.IMAGE:
             textures.image(numbers, table, rows, place, top, count)
             top += 1
+        elif operation == w.LABEL:
+            label(numbers, place, table, rows[w.X_ROW], rows[w.Y_ROW], count, rows[top])
+            top += 1
+        elif operation == w.LABEL_MASK:
+            label_opacity(numbers, place, rows[w.X_ROW], rows[w.Y_ROW], count, rows[top])
+            top += 1
         elif operation == w.DOTS:
-            shapes.dots(numbers, rows, place, time, block, first, parts, top, count)
+            strokes.dots(numbers, rows, place, time, block, first, parts, top, count)
+            top += 1
+        elif operation == w.DOTS_MASK:
+            strokes.dots_mask(numbers, rows, place, block, first, parts, top, count)
             top += 1
         elif operation == w.CIRCLE:
             shapes.circle(numbers, rows, place, count)
         elif operation == w.SEGMENTS:
-            shapes.segments(numbers, rows, place, block, first, parts, count)
+            shapes.segments(numbers, rows, place, time, block, first, parts, count)
+        elif operation == w.MARKERS:
+            shapes.markers(numbers, rows, place, block, first, parts, count)
         elif operation == w.INSIDE:
             shapes.inside(numbers, rows, block, first, parts, count)
         elif operation == w.STROKE:
-            shapes.stroke(numbers, rows, place, time, top, count)
+            strokes.stroke(numbers, rows, place, time, top, count)
             top += 1
         elif operation == w.PROFILE:
-            shapes.profile(numbers, rows, place, top, count)
+            strokes.profile(numbers, rows, place, top, count)
             top += 1
         elif operation == w.FILL:
             top -= 1
-            shapes.fill(numbers, rows, place, top, count)
+            strokes.fill(numbers, rows, place, top, count)
         elif operation == w.FILL_BLENDED:
-            top -= 1
-            shapes.fill_blended(numbers, rows, place, top, count)
+            top -= 2
+            strokes.fill_blended(rows, top, count)
         elif operation == w.FILL_MASK:
-            shapes.fill_mask(rows, top - 1, count)
+            strokes.fill_mask(rows, top - 1, count)
         elif operation == w.WRAP:
             _wrap(numbers, rows, place, top, count)
             top += 2

@@ -1,31 +1,59 @@
-"""Shapes of scenes and their strokes: Lévesque 2009, 8.4.3 and 8.4.4.
+"""The places of shapes' paths, as kernels: Lévesque 2009, 8.4.3.
 
 A shape gives every place how far it is across its path, how far along it, and whether it is
-inside; a stroke makes a deflection of these. ``at`` is the first of a kernel's constants, whose
-order is that of `vbraille.render.scene.shapecode`.
+inside; `strokekernels` makes deflections of these. ``at`` is the first of a kernel's constants.
+Shapes of many parts are given only those in reach: ``numbers`` has at ``first`` the places of
+``parts`` parts, which count from ``block``.
 """
 
 import math
 
-from vbraille.render.scene.curvekernels import angle, compiled, fall, hump, wave
-from vbraille.render.scene.texturekernels import phase
+from vbraille.render.scene.curvekernels import angle
 from vbraille.render.scene.words import (
     ACROSS_ROW,
     ALONG_ROW,
     FREE_ROW,
     INSIDE_ROW,
-    SIGN_ROW,
-    SPARE_ROW,
+    MARKED_ROW,
+    PART_ROW,
     X_ROW,
     Y_ROW,
 )
+from vbraille.render.waves import compiled
 
 _FAR = 1e12  # mm²
-# Constants of a segment.
-SEGMENT = 8
-_ALONG = 1  # flags of `segments`
-_INSIDE = 2
-_OPEN_ENDS = 4
+_TURN = 2 * math.pi
+# What is asked of `segments`.
+ACROSS, ALONG = range(2)
+# Numbers of a segment: its start and direction, its length, and y of its end.
+(
+    START_X,
+    START_Y,
+    RIGHT,
+    DOWN,
+    LENGTH,
+    END_Y,
+    # How a corner is halved between the two segments that meet there: side of the bisector at the
+    # start, and at the end with what is added to it, by which an open end has no other side.
+    HALF_X,
+    HALF_Y,
+    END_HALF_X,
+    END_HALF_Y,
+    END_BIAS,
+    BEGIN,  # how far along the path its straight part begins, minus the place of that on it
+    RIDGE,  # of the texture along it; 0 for that of the stroke
+    CYCLE,
+    VELOCITY,
+    CORNER,  # the corner at its start, and then the one at its end
+) = range(16)
+# Numbers of a corner.
+REACH, PIVOT_X, PIVOT_Y, ONWARD_X, ONWARD_Y, INWARD_X, INWARD_Y, ARC_RADIUS, ARC_HALF, MIDDLE = (
+    range(10)
+)
+CORNER_NUMBERS = 10
+SEGMENT_NUMBERS = CORNER + 2 * CORNER_NUMBERS
+# Numbers of a marker, which follow those of its polygon's segment that begins there.
+MARK_X, MARK_Y, MARK_SINE, MARK_COSINE, MARK_PUSHED = range(SEGMENT_NUMBERS, SEGMENT_NUMBERS + 5)
 
 
 @compiled
@@ -39,180 +67,103 @@ def circle(numbers, rows, at, count):
         rows[INSIDE_ROW, n] = 1.0 if distance < radius else 0.0
     if numbers[at + 3] != 0.0:
         for n in range(count):
-            along = radius * angle(rows[X_ROW, n] - x, rows[Y_ROW, n] - y)
-            rows[ALONG_ROW, n] = along
+            turn = angle(rows[X_ROW, n] - x, rows[Y_ROW, n] - y)
+            rows[ALONG_ROW, n] = radius * (turn if turn >= 0.0 else turn + _TURN)
 
 
 @compiled
-def segments(numbers, rows, at, block, first, parts, count):
-    """Coordinates of lines through places, eqs. 8.15-8.17, from those parts that are in reach.
-
-    ``numbers`` has at ``first`` the places of ``parts`` parts, counted from ``block``. Constants
-    of a part: start, direction, length, and how far along the path it begins.
-    """
-    flags = int(numbers[at])
+def segments(numbers, rows, at, time, block, first, parts, count):
+    """Coordinates of lines through places, eqs. 8.15-8.17: constants what is asked for."""
     for n in range(count):
         rows[ACROSS_ROW, n] = _FAR
+    along = numbers[at] != ACROSS
+    if along:
+        for n in range(count):
+            rows[FREE_ROW, n] = 0.0
+            rows[PART_ROW, n] = block + numbers[first]
     for number in range(parts):
         part = block + int(numbers[first + number])
-        x, y, right, down = numbers[part], numbers[part + 1], numbers[part + 2], numbers[part + 3]
-        length, begin = numbers[part + 4], numbers[part + 5]
-        if flags & _ALONG:
+        x, y, length = numbers[part], numbers[part + START_Y], numbers[part + LENGTH]
+        right, down = numbers[part + RIGHT], numbers[part + DOWN]
+        if not along:
             for n in range(count):
                 dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
                 u = dx * right + dy * down
-                v = u if u > 0.0 else 0.0
-                v = v if v < length else length
-                dx -= v * right
-                dy -= v * down
-                q = dx * dx + dy * dy
-                nearer = q < rows[ACROSS_ROW, n]
-                rows[ACROSS_ROW, n] = q if nearer else rows[ACROSS_ROW, n]
-                rows[ALONG_ROW, n] = begin + u if nearer else rows[ALONG_ROW, n]
-        else:
-            for n in range(count):
-                dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
-                v = dx * right + dy * down
-                v = v if v > 0.0 else 0.0
-                v = v if v < length else length
-                dx -= v * right
-                dy -= v * down
+                u = u if u > 0.0 else 0.0
+                u = u if u < length else length
+                dx -= u * right
+                dy -= u * down
                 q = dx * dx + dy * dy
                 rows[ACROSS_ROW, n] = q if q < rows[ACROSS_ROW, n] else rows[ACROSS_ROW, n]
+            continue
+        half_x, half_y = numbers[part + HALF_X], numbers[part + HALF_Y]
+        end_half_x, end_half_y = numbers[part + END_HALF_X], numbers[part + END_HALF_Y]
+        bias = numbers[part + END_BIAS]
+        end_x, end_y = x + length * right, y + length * down
+        place = float(part)
+        for n in range(count):
+            px, py = rows[X_ROW, n], rows[Y_ROW, n]
+            dx, dy = px - x, py - y
+            u = dx * right + dy * down
+            v = u if u > 0.0 else 0.0
+            v = v if v < length else length
+            # Beyond a corner two segments are equally near; its bisector decides.
+            before = dx * half_x + dy * half_y < 0.0
+            after = (px - end_x) * end_half_x + (py - end_y) * end_half_y + bias >= 0.0
+            dx -= v * right
+            dy -= v * down
+            q = dx * dx + dy * dy
+            other = (u <= 0.0 and before) or (u >= length and after)
+            nearer = q < rows[ACROSS_ROW, n] and not other
+            rows[ACROSS_ROW, n] = q if nearer else rows[ACROSS_ROW, n]
+            rows[FREE_ROW, n] = u if nearer else rows[FREE_ROW, n]
+            rows[PART_ROW, n] = place if nearer else rows[PART_ROW, n]
     for n in range(count):
         rows[ACROSS_ROW, n] = math.sqrt(rows[ACROSS_ROW, n])
+    if along:
+        for n in range(count):
+            rows[ALONG_ROW, n] = _along(
+                numbers,
+                int(rows[PART_ROW, n]),
+                rows[FREE_ROW, n],
+                rows[X_ROW, n],
+                rows[Y_ROW, n],
+                time,
+            )
 
 
 @compiled
-def profile(numbers, rows, at, top, count):
-    """Profile of a stroke at full amplitude, eq. 8.7: constants w/2 - ε and 1/ε."""
-    flat, sharp = numbers[at], numbers[at + 1]
-    for n in range(count):
-        rows[top, n] = fall((rows[ACROSS_ROW, n] - flat) * sharp)
+def _along(numbers, part, u, x, y, time):
+    """How far along its path a place is, from how far it is along the part that is nearest.
 
-
-@compiled
-def stroke(numbers, rows, at, time, top, count):
-    """Deflection of a stroke, eqs. 8.7-8.14, at the coordinates of its shape.
-
-    Constants: those of `profile`; amplitude; 1 if outlined; k_t and n/w of the texture across;
-    then of the texture along 0 for none, 1 for cut and 2 for whole edges, cycle, ridge, its
-    amplitude and velocity; then of the vibration 0 for none, 1 for high and 2 for low, its
-    frequency and amplitude.
+    Near a corner that is rounded it follows an arc: fig. 8.18. Where contours have cycles of their
+    own, the place is one within the stroke's ridge, if it is in a ridge.
     """
-    flat, sharp, amplitude = numbers[at], numbers[at + 1], numbers[at + 2]
-    for n in range(count):
-        rows[top, n] = amplitude * fall((rows[ACROSS_ROW, n] - flat) * sharp)
-    if numbers[at + 3] != 0.0:
-        for n in range(count):
-            rows[top, n] *= 1.0 - fall((rows[ACROSS_ROW, n] - flat) * sharp + 1.0)
-    if numbers[at + 4] != 0.0:
-        weight, cycles = numbers[at + 4], numbers[at + 5]
-        half = 0.5 * amplitude
-        edge = flat + 1.0 / sharp
-        for n in range(count):
-            r = rows[ACROSS_ROW, n]
-            texture = half + half * wave(r * cycles)
-            texture = texture if r < edge else 0.0
-            rows[top, n] += weight * (texture - rows[top, n])
-    along, vibration = numbers[at + 6], numbers[at + 11]
-    if along != 0.0:
-        cycle, ridge, depth, velocity = (
-            numbers[at + 7],
-            numbers[at + 8],
-            numbers[at + 9],
-            numbers[at + 10],
-        )
-        shift = 0.0
-        if velocity != 0.0 and time == time:
-            shift = velocity * time / cycle
-            shift = cycle * (shift - math.floor(shift))
-        cycles, ridges = 1.0 / cycle, 1.0 / ridge
-        for n in range(count):
-            u = rows[ALONG_ROW, n] - shift
-            u -= cycle * math.floor(u * cycles)
-            rows[FREE_ROW, n] = depth * hump(u * ridges - 0.5)
-        if along == 2.0:
-            for n in range(count):
-                rows[FREE_ROW, n] *= fall((rows[ACROSS_ROW, n] - flat) * sharp + 1.0)
-        if vibration == 2.0:
-            share = numbers[at + 13]
-            swing = 0.5 * share * phase(numbers[at + 12], time)
-            least = 1.0 - 0.5 * share
-            for n in range(count):
-                rows[FREE_ROW, n] *= least + swing * rows[SIGN_ROW, n]
-        for n in range(count):
-            rows[top, n] *= 1.0 - rows[FREE_ROW, n]
-    if vibration == 1.0:
-        share = numbers[at + 13]
-        swing = 0.5 * share * phase(numbers[at + 12], time)
-        least = 1.0 - 0.5 * share
-        for n in range(count):
-            rows[top, n] *= least + swing * rows[SIGN_ROW, n]
+    first, last = part + CORNER, part + CORNER + CORNER_NUMBERS
+    if u < numbers[first + REACH]:
+        place = _round(numbers, first, x, y)
+    elif u > numbers[part + LENGTH] - numbers[last + REACH]:
+        place = _round(numbers, last, x, y)
+    else:
+        place = numbers[part + BEGIN] + u
+    ridge = numbers[part + RIDGE]
+    if ridge == 0.0:
+        return place
+    cycle, velocity = numbers[part + CYCLE], numbers[part + VELOCITY]
+    turns = (place - velocity * time) / cycle if time == time else place / cycle
+    turns -= math.floor(turns)
+    share = turns * cycle / ridge
+    return share if share < 1.0 else 1.0
 
 
 @compiled
-def dots(numbers, rows, at, time, block, first, parts, top, count):
-    """Dots, 8.4.4 and eq. 6.1: the constants of `stroke`, of which some do not count.
-
-    Constants of a part: its middle, and a factor of its amplitude.
-    """
-    for n in range(count):
-        rows[top, n] = 0.0
-    flat, sharp, amplitude = numbers[at], numbers[at + 1], numbers[at + 2]
-    weight, cycles = numbers[at + 4], numbers[at + 5]
-    edge = flat + 1.0 / sharp
-    for number in range(parts):
-        part = block + int(numbers[first + number])
-        x, y = numbers[part], numbers[part + 1]
-        height = amplitude * numbers[part + 2]
-        for n in range(count):
-            dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
-            rows[SPARE_ROW, n] = math.sqrt(dx * dx + dy * dy)
-            rows[FREE_ROW, n] = height * fall((rows[SPARE_ROW, n] - flat) * sharp)
-        if weight != 0.0:
-            half = 0.5 * height
-            for n in range(count):
-                r = rows[SPARE_ROW, n]
-                texture = half + half * wave(r * cycles)
-                texture = texture if r < edge else 0.0
-                rows[FREE_ROW, n] += weight * (texture - rows[FREE_ROW, n])
-        for n in range(count):
-            larger = rows[FREE_ROW, n]
-            rows[top, n] = larger if larger > rows[top, n] else rows[top, n]
-
-
-@compiled
-def fill(numbers, rows, at, top, count):
-    """Add a fill, in ``top - 1``, to the stroke in ``top``; the result is in ``top - 1``.
-
-    Constants: distance from the path at which the fill begins, and 1 over that of its fade.
-    """
-    begin, slope = numbers[at], numbers[at + 1]
-    for n in range(count):
-        share = (rows[ACROSS_ROW, n] - begin) * slope
-        share = share if share > 0.0 else 0.0
-        share = share if share < 1.0 else 1.0
-        value = rows[top, n] + share * rows[INSIDE_ROW, n] * rows[top - 1, n]
-        rows[top - 1, n] = value if value < 1.0 else 1.0
-
-
-@compiled
-def fill_blended(numbers, rows, at, top, count):
-    """Blend a stroke in ``top`` into a fill in ``top - 1``: eq. 8.20, constants of `profile`."""
-    flat, sharp = numbers[at], numbers[at + 1]
-    for n in range(count):
-        share = 1.0 - fall((rows[ACROSS_ROW, n] - flat) * sharp)
-        value = rows[top, n] + share * rows[INSIDE_ROW, n] * rows[top - 1, n]
-        rows[top - 1, n] = value if value < 1.0 else 1.0
-
-
-@compiled
-def fill_mask(rows, top, count):
-    """Raise the mask in ``top`` to 1 inside."""
-    for n in range(count):
-        inside = rows[INSIDE_ROW, n]
-        rows[top, n] = inside if inside > rows[top, n] else rows[top, n]
+def _round(numbers, corner, x, y):
+    dx, dy = x - numbers[corner + PIVOT_X], y - numbers[corner + PIVOT_Y]
+    onward = dx * numbers[corner + ONWARD_X] + dy * numbers[corner + ONWARD_Y]
+    outward = -(dx * numbers[corner + INWARD_X] + dy * numbers[corner + INWARD_Y])
+    half = numbers[corner + ARC_HALF]
+    turn = min(max(math.atan2(onward, outward), -half), half)
+    return numbers[corner + MIDDLE] + numbers[corner + ARC_RADIUS] * turn
 
 
 @compiled
@@ -222,13 +173,48 @@ def inside(numbers, rows, block, first, parts, count):
         rows[INSIDE_ROW, n] = 0.0
     for number in range(parts):
         part = block + int(numbers[first + number])
-        x, y = numbers[part], numbers[part + 1]
-        right, down, length = numbers[part + 2], numbers[part + 3], numbers[part + 4]
-        end = numbers[part + 6]
-        slope = right / down if down != 0.0 else 0.0
+        x, y, end = numbers[part], numbers[part + START_Y], numbers[part + END_Y]
+        right, down = numbers[part + RIGHT], numbers[part + DOWN]
+        if y == end:
+            continue
+        slope = right / down
         for n in range(count):
             py = rows[Y_ROW, n]
             crossed = (y > py) != (end > py)
-            left = x + (py - y) * slope < rows[X_ROW, n]
+            hit = crossed and rows[X_ROW, n] < x + (py - y) * slope
             was = rows[INSIDE_ROW, n]
-            rows[INSIDE_ROW, n] = 1.0 - was if crossed and left else was
+            rows[INSIDE_ROW, n] = 1.0 - was if hit else was
+
+
+@compiled
+def markers(numbers, rows, at, block, first, parts, count):
+    """Share of the markers in a polygon's stroke: figs. 8.19 and 8.20.
+
+    Constants: half of the stroke's width, and 1 over the distance of the blend. A place is asked
+    for the nearest corner alone, and only if one of its two segments is the nearest, too.
+    """
+    half, slope = numbers[at], numbers[at + 1]
+    for n in range(count):
+        x, y = rows[X_ROW, n], rows[Y_ROW, n]
+        rows[MARKED_ROW, n] = 0.0
+        if not rows[ACROSS_ROW, n] < half:
+            continue
+        nearest, least = 0, _FAR
+        for number in range(parts):
+            part = block + int(numbers[first + number])
+            dx, dy = x - numbers[part], y - numbers[part + START_Y]
+            q = dx * dx + dy * dy
+            if q < least:
+                nearest, least = number, q
+        own = int(rows[PART_ROW, n]) - block
+        before = numbers[first + (nearest - 1 if nearest > 0 else parts - 1)]
+        if own != numbers[first + nearest] and own != before:
+            continue
+        part = block + int(numbers[first + nearest])
+        corner = part + CORNER
+        dx, dy = x - numbers[part + MARK_X], y - numbers[part + MARK_Y]
+        onward = dx * numbers[corner + ONWARD_X] + dy * numbers[corner + ONWARD_Y]
+        outward = -(dx * numbers[corner + INWARD_X] + dy * numbers[corner + INWARD_Y])
+        within = numbers[part + MARK_SINE] * outward - numbers[part + MARK_COSINE] * abs(onward)
+        share = (within + numbers[part + MARK_PUSHED]) * slope
+        rows[MARKED_ROW, n] = min(max(share, 0.0), 1.0)

@@ -22,8 +22,7 @@ from vbraille.render.work import OWN
     GRID_COLUMNS,
     GRID_ROWS,
     GRID,  # place of the first of the numbers that say, for each tile, where its words begin
-    CONSTANTS,  # first of the numbers that the words of groups work with
-) = range(OWN, OWN + 13)
+) = range(OWN, OWN + 12)
 
 OPERATIONS = 64
 
@@ -53,6 +52,7 @@ OPERATIONS = 64
     AXIAL,
     IMAGE,
     DOTS,
+    DOTS_MASK,
     LABEL,
     LABEL_MASK,
     CIRCLE,  # coordinates of shapes: across, along, inside
@@ -61,12 +61,11 @@ OPERATIONS = 64
     STROKE,  # push the deflection of a stroke at these coordinates
     PROFILE,  # push its profile at full amplitude, which is its opacity mask
     FILL,  # fill, stroke -> both
-    FILL_BLENDED,
+    FILL_BLENDED,  # fill, stroke, profile -> both: eq. 8.20
     FILL_MASK,  # mask -> 1 inside
     WRAP,  # places are wrapped into a tile, until UNWRAP
     UNWRAP,
-    CORNERS,
-    MARKERS,
+    MARKERS,  # how much of each place is in a marker of a polygon
 ) = range(39)
 
 # How what a CALL pushes joins what is on the stack; PUSHED leaves it there, also if it is a pair.
@@ -77,6 +76,18 @@ JOINS = 8
 BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM, WORDS = range(5)
 
 # Rows of the scratch: places and signs, coordinates of shapes, room, and the stack.
-X_ROW, Y_ROW, SIGN_ROW, ACROSS_ROW, ALONG_ROW, INSIDE_ROW, FREE_ROW, SPARE_ROW, STACK = range(9)
+(
+    X_ROW,
+    Y_ROW,
+    SIGN_ROW,
+    ACROSS_ROW,
+    ALONG_ROW,
+    INSIDE_ROW,
+    MARKED_ROW,
+    PART_ROW,
+    FREE_ROW,
+    SPARE_ROW,
+    STACK,
+) = range(11)
 DEPTH = 32  # rows of the stack
 SCRATCH_ROWS = STACK + DEPTH

@@ -47,7 +47,7 @@ class Replay:
         self._nothing = nothing(display)
         self._shape = display.shape
         self._output, self._held, self._target = np.zeros((3, *display.shape))
-        self._scratch = scratch_for(display.columns)
+        self._scratch = scratch_for(display.shape)
         self._at = np.zeros(6)
         self._next = 0
 

@@ -1,0 +1,484 @@
+"""Tactile pictures drawn at random, what they need beside themselves, and what their twin shows.
+
+Numbers of scenes have two digits, so that what fails can be read and shrinks well. Poses have odd
+ones: a place that is as near to one edge as to another belongs to either.
+"""
+
+import math
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+from msgspec.structs import replace
+
+from vbraille.display import Display
+from vbraille.render import STRESS2_8X8
+from vbraille.render.scene import reference
+from vbraille.render.scene.assets import Assets, Written
+from vbraille.render.scene.brailleplaces import box_of
+from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.opaque import bitmap_box
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    Line,
+    Path,
+    Polygon,
+    Tile,
+)
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.textures import (
+    AxialGrating,
+    Gradual,
+    LinearGrating,
+    Peak,
+    RadialGrating,
+    TurnPeak,
+    Uniform,
+    UniformVibration,
+)
+from vbraille.scene.walking import each
+
+SIDE_MM = 60
+STRESS2_8X8_ARRAY = STRESS2_8X8.display
+DISPLAYS = (STRESS2_8X8_ARRAY, Display("wide", 6, 10, 1.2, 1.8))
+
+
+def numbers(least, most):
+    """Numbers with two digits after the point."""
+    return st.integers(math.ceil(least * 100), math.floor(most * 100)).map(lambda n: n / 100)
+
+
+shares = st.one_of(st.just(1.0), numbers(0, 1))
+points = st.tuples(numbers(0, SIDE_MM), numbers(0, SIDE_MM))
+vibrations = st.builds(
+    Vibration, frequency_hz=numbers(0.1, 50), amplitude=shares, of=st.sampled_from(["high", "low"])
+)
+high = st.builds(Vibration, frequency_hz=numbers(0.1, 50), amplitude=shares)
+velocities = st.one_of(st.just(0.0), numbers(-100, 100))
+gaps = st.one_of(st.just(0.0), numbers(0.1, 10))
+
+# What may change any pattern; mostly nothing does.
+changes = st.one_of(
+    st.just({}),
+    st.fixed_dictionaries(
+        {},
+        optional={"amplitude": shares, "inverted": st.booleans(), "vibration": vibrations},
+    ),
+)
+
+
+def patterns_of(kind, **fields):
+    """Patterns of a kind with fields drawn, and changed as any pattern may be."""
+    return st.builds(
+        lambda own, change: kind(**own, **change), st.fixed_dictionaries(fields), changes
+    )
+
+
+# Textures
+
+distortions = st.one_of(
+    st.builds(Gradual, factor=numbers(0.1, 8), start_mm=numbers(-20, 60), length_mm=numbers(1, 80)),
+    st.builds(Peak, factor=numbers(0.1, 8), center_mm=numbers(-20, 60), length_mm=numbers(1, 80)),
+)
+turn_peaks = st.builds(
+    TurnPeak, factor=numbers(0.1, 8), center_deg=numbers(0, 360), length_deg=numbers(1, 360)
+)
+
+
+def moving_or_distorted(distortion, velocity):
+    """A grating has a distortion, or ridges that move, or neither."""
+    return st.one_of(
+        st.just({}),
+        st.fixed_dictionaries({"distortion": distortion}),
+        st.fixed_dictionaries({velocity: numbers(-100, 100)}),
+    )
+
+
+uniforms = patterns_of(Uniform, level=shares)
+uniform_vibrations = patterns_of(UniformVibration, frequency_hz=numbers(0.1, 50))
+linear_gratings = st.builds(
+    lambda own, angle, more, change: LinearGrating(**own, **angle, **more, **change),
+    st.fixed_dictionaries({"ridge_mm": numbers(0.5, 12), "gap_mm": gaps, "start_mm": points}),
+    st.one_of(
+        st.just({}),
+        st.fixed_dictionaries({"wave_angle_deg": numbers(-180, 180)}),
+        st.fixed_dictionaries({"ridge_angle_deg": numbers(-180, 180)}),
+    ),
+    moving_or_distorted(distortions, "velocity_mm_s"),
+    changes,
+)
+radial_gratings = st.builds(
+    lambda own, more, change: RadialGrating(**own, **more, **change),
+    st.fixed_dictionaries({"ridge_mm": numbers(0.5, 12), "gap_mm": gaps, "center_mm": points}),
+    moving_or_distorted(distortions, "velocity_mm_s"),
+    changes,
+)
+axial_gratings = st.builds(
+    lambda own, more, change: AxialGrating(**own, **more, **change),
+    st.fixed_dictionaries(
+        {
+            "center_mm": points,
+            "ridge_deg": numbers(5, 180),
+            "gap_deg": st.one_of(st.just(0.0), numbers(0.5, 180)),
+            "start_deg": numbers(-360, 360),
+            "whole_cycles": st.booleans(),
+            "fade_mm": st.sampled_from([(0.5, 1.0), (0.0, 3.0)]),
+            "middle": shares,
+        }
+    ),
+    moving_or_distorted(turn_peaks, "velocity_deg_s"),
+    changes,
+)
+textures = st.one_of(uniforms, uniform_vibrations, linear_gratings, radial_gratings, axial_gratings)
+
+# Strokes and dots
+
+acrosses = st.builds(Across, amplitude=shares, cycles=st.sampled_from([1, 3, 7, 11]))
+alongs = st.builds(
+    Along,
+    ridge_mm=numbers(0.5, 8),
+    gap_mm=gaps,
+    amplitude=shares,
+    whole_edges=st.booleans(),
+    whole_cycles=st.booleans(),
+    velocity_mm_s=velocities,
+)
+
+
+@st.composite
+def strokes(draw):
+    """Strokes of any kind that a stroke can be."""
+    along = draw(st.one_of(st.none(), alongs))
+    outlined = along is None and draw(st.booleans())
+    width = draw(numbers(0.5, 15))
+    four = outlined or (along is not None and along.whole_edges)
+    edge = draw(numbers(0.05, max(0.06, width / 4)) if four else st.none() | numbers(0.05, 5))
+    if four:
+        width = max(width, 4 * edge)
+    return Stroke(
+        width_mm=width,
+        edge_mm=edge,
+        amplitude=draw(shares),
+        outlined=outlined,
+        across=draw(st.none() | acrosses),
+        along=along,
+        vibration=draw(st.none() | (high if along is None else vibrations)),
+    )
+
+
+@st.composite
+def dot_styles(draw):
+    """Dots of any kind."""
+    radius = draw(numbers(0.3, 4))
+    edge = draw(st.none() | numbers(0.05, 4))
+    return DotStyle(
+        radius_mm=radius,
+        edge_mm=edge,
+        plateau=draw(st.none() | numbers(0, 0.95)) if edge is None else None,
+        amplitude=draw(shares),
+        across=draw(st.none() | acrosses),
+        vibration=draw(st.none() | high),
+    )
+
+
+dottings = st.builds(
+    Dotting,
+    dot=dot_styles(),
+    separation_mm=numbers(0, 6),
+    vertex_vibration=st.none() | high,
+)
+# What a shape is drawn with; the last has nothing but a fill.
+drawn = st.one_of(
+    st.fixed_dictionaries({"stroke": strokes()}), st.fixed_dictionaries({"dots": dottings})
+)
+markers = st.builds(
+    Markers,
+    span=st.sampled_from(["angle", "square", "edges", "arc"]),
+    angle_deg=numbers(1, 180),
+    blend_mm=numbers(0.05, 4),
+    vibration=st.none() | high,
+)
+
+
+def shapes(kind, **fields):
+    """Shapes of a kind without a fill."""
+    return st.builds(
+        lambda own, look, change: kind(**own, **look, **change),
+        st.fixed_dictionaries(fields),
+        drawn,
+        changes,
+    )
+
+
+def filled(kind, texture, **fields):
+    """Shapes of a kind with a fill, whether they have a stroke, dots or neither."""
+    fills = st.builds(
+        Fill,
+        texture=texture,
+        gap_mm=st.just(0.0) | numbers(0, 3),
+        fade_mm=st.just(0.0) | numbers(0.05, 3),
+        blended=st.booleans(),
+    )
+    return st.builds(
+        lambda own, look, fill, change: kind(**own, **look, fill=fill, **change),
+        st.fixed_dictionaries(fields),
+        st.one_of(st.just({}), drawn),
+        fills,
+        changes,
+    )
+
+
+@st.composite
+def outlines(draw, most=7):
+    """Corners of a polygon whose edges do not cross: it can all be seen from one place."""
+    middle = draw(points)
+    turns = draw(st.lists(st.integers(0, 71), min_size=3, max_size=most, unique=True))
+    return tuple(
+        (
+            round(middle[0] + far * math.cos(math.radians(5 * turn)), 2),
+            round(middle[1] + far * math.sin(math.radians(5 * turn)), 2),
+        )
+        for turn in sorted(turns)
+        for far in [draw(numbers(2, 30))]
+    )
+
+
+def apart(places):
+    """Whether no two places that follow are the same, nor the last and the first."""
+    return all(
+        math.dist(a, b) > 0.01 for a, b in zip(places, [*places[1:], places[0]], strict=True)
+    )
+
+
+contours = st.lists(points, min_size=3, max_size=6).map(tuple).filter(apart)
+ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
+    lambda line: line["start_mm"] != line["end_mm"]
+)
+lines = st.builds(lambda own, look, change: Line(**own, **look, **change), ends, drawn, changes)
+round_fields = {"center_mm": points, "radius_mm": numbers(0.5, 30)}
+corner_fields = {
+    "vertices_mm": outlines().filter(apart),
+    "join": st.sampled_from(["straight", "rounded"]),
+    "rounding_offset_mm": st.just(0.0) | numbers(0, 6),
+    "markers": st.none() | markers,
+}
+path_fields = {"contours_mm": st.lists(contours, min_size=1, max_size=3).map(tuple)}
+open_or_closed = {**path_fields, "closed": st.booleans()}
+closed = {**path_fields, "closed": st.just(True)}
+
+dots = patterns_of(
+    Dots, centers_mm=st.lists(points, min_size=1, max_size=8).map(tuple), dot=dot_styles()
+)
+
+# What needs something beside itself
+
+image_fields = {
+    "file": st.sampled_from(["blank.png", "whole.png", "one.png", "gray.png", "sparse.png"]),
+    "place_mm": points,
+    "width_mm": numbers(0.5, 40),
+    "height_mm": numbers(0.5, 40),
+    "outside": st.just(0.0) | shares,
+}
+labels = patterns_of(
+    Label,
+    text=st.sampled_from(["a", "map", "north sea"]),
+    place_mm=points,
+    angle_deg=st.just(0.0) | numbers(-180, 180),
+)
+
+
+def bitmap_of(image):
+    """The picture that stands for a file in these tests: pixels by its name alone."""
+    rng = np.random.default_rng(zlib.crc32(image.file.encode()))
+    rows, columns = (1, 1) if image.file == "one.png" else (7, 11)
+    gray = {
+        "blank.png": np.zeros((rows, columns)),
+        "whole.png": np.ones((rows, columns)),
+        "sparse.png": rng.uniform(size=(rows, columns)) * (rng.uniform(size=(rows, columns)) > 0.8),
+    }.get(image.file, rng.uniform(size=(rows, columns)))
+    pixels = np.round(gray * WHOLE).astype(np.uint16)
+    return Bitmap(pixels, image.place_mm, image.width_mm, image.height_mm, image.outside)
+
+
+def written_of(label):
+    """Cells that stand for a label in these tests: a line for each of its words."""
+    words = (np.frombuffer(word.encode(), np.uint8) & 63 for word in label.text.split())
+    return Written(tuple(words), STRESS2_8X8.style)
+
+
+def assets_of(*parts):
+    """What patterns need beside themselves."""
+    found = list(each(*parts))
+    return Assets(
+        {part: bitmap_of(part) for part in found if isinstance(part, Image)},
+        {part: written_of(part) for part in found if isinstance(part, Label)},
+    )
+
+
+def known_boxes(assets):
+    """Boxes of the images and labels in assets."""
+    boxes = {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
+    boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
+    return {pattern: box for pattern, box in boxes.items() if box is not None}
+
+
+# All together
+
+
+def simple(texture):
+    """Patterns of every kind but groups and tiles, with such textures inside."""
+    return {
+        "line": lines,
+        "circle": shapes(Circle, **round_fields),
+        "filled circle": filled(Circle, texture, **round_fields),
+        "polygon": shapes(Polygon, **corner_fields),
+        "filled polygon": filled(Polygon, texture, **corner_fields),
+        "path": shapes(Path, **open_or_closed),
+        "filled path": filled(Path, texture, **closed),
+        "dots": dots,
+        "image": patterns_of(Image, **image_fields),
+        "image of a texture": patterns_of(Image, texture=texture, **image_fields),
+        "label": labels,
+    }
+
+
+def groups(parts):
+    """Groups of every operation."""
+    several = st.lists(parts, min_size=1, max_size=4).map(tuple)
+    return st.one_of(
+        patterns_of(
+            Group,
+            operation=st.sampled_from(["overwrite", "overwrite", "multiply", "add", "maximum"]),
+            parts=several,
+        ),
+        weighted(several),
+        patterns_of(
+            Group,
+            operation=st.just("blend"),
+            parts=st.tuples(parts, parts),
+            by=parts,
+        ),
+    )
+
+
+def weighted(several):
+    """Sums by weights that add up to 1."""
+    return st.builds(
+        lambda parts, share, change: Group(
+            operation="weighted", parts=parts, weights=_weights(len(parts), share), **change
+        ),
+        several,
+        numbers(0, 1),
+        changes,
+    )
+
+
+def _weights(count, share):
+    rest = (1 - share) / (count - 1) if count > 1 else 0.0
+    return (share, *[rest] * (count - 1)) if count > 1 else (1.0,)
+
+
+def tiles(parts):
+    """Tiles of any pattern."""
+    return patterns_of(
+        Tile, width_mm=numbers(0.5, 40), height_mm=numbers(0.5, 40), part=parts, origin_mm=points
+    )
+
+
+KINDS = {
+    "uniform": uniforms,
+    "vibration": uniform_vibrations,
+    "linear grating": linear_gratings,
+    "radial grating": radial_gratings,
+    "axial grating": axial_gratings,
+    **simple(textures),
+    "tile": tiles(st.one_of(textures, *simple(textures).values())),
+    "group": groups(st.one_of(textures, *simple(textures).values())),
+}
+patterns = st.recursive(
+    st.one_of(*(kind for name, kind in KINDS.items() if name not in ("tile", "group"))),
+    lambda parts: st.one_of(groups(parts), tiles(parts)),
+    max_leaves=5,
+)
+
+
+def _calm(pattern):
+    """The pattern without what would bring it up where there is nothing of it."""
+    low = pattern.vibration is not None and pattern.vibration.of == "low"
+    calm = replace(pattern, inverted=False, vibration=None if low else pattern.vibration)
+    return replace(calm, outside=0.0) if isinstance(calm, Image) else calm
+
+
+# Patterns that end somewhere.
+bounded = st.one_of(*simple(textures).values()).map(_calm)
+
+
+@st.composite
+def scenes(draw, parts=patterns, most=4):
+    """Scenes of some patterns."""
+    return Scene(
+        canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM),
+        operation=draw(st.sampled_from(["overwrite", "maximum", "add", "multiply"])),
+        elements=tuple(draw(st.lists(parts, min_size=1, max_size=most))),
+    )
+
+
+def scene_of(*elements, operation="overwrite"):
+    """A scene of these elements."""
+    return Scene(
+        canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM), operation=operation, elements=elements
+    )
+
+
+# Poses
+
+
+@dataclass(frozen=True)
+class At:
+    """Where the array is, when."""
+
+    x_mm: float
+    y_mm: float
+    theta_rad: float
+    time_s: float
+
+
+def poses(rng, count):
+    """Places all over the canvas and beside it, at any angle and any time up to hours."""
+    x, y = rng.uniform(-12, SIDE_MM + 12, (2, count))
+    theta = rng.uniform(-math.pi, math.pi, count) * (rng.uniform(size=count) > 0.3)
+    time = rng.uniform(0, 1, count) * rng.choice([0.0, 1.0, 1e4], count)
+    return [At(*map(float, pose)) for pose in zip(x, y, theta, time, strict=True)]
+
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def actuators(display, pose):
+    """Places of the actuators, and their parities, as `vbraille.pose` says; row by row."""
+    right, down = np.meshgrid(display.column_offsets_mm(), display.row_offsets_mm())
+    right, down = right - right.mean(), down - down.mean()
+    cosine, sine = math.cos(pose.theta_rad), math.sin(pose.theta_rad)
+    x = pose.x_mm + right * cosine + down * sine
+    y = pose.y_mm + down * cosine - right * sine
+    row, column = np.indices(display.shape)
+    return x.ravel(), y.ravel(), ((row + column) % 2).ravel()
+
+
+def twin(scene, display, pose, assets=None):
+    """The frame of a scene in plain numpy."""
+    x, y, parity = actuators(display, pose)
+    assets = assets_of(*scene.elements) if assets is None else assets
+    return reference.deflections(scene, assets, x, y, parity, pose.time_s).reshape(display.shape)
+
+
+def shown(scene, display, pose):
+    """The frame of a scene."""
+    return twin(scene, display, pose)

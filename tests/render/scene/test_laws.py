@@ -1,0 +1,288 @@
+"""What holds for every tactile picture, wherever the array is and whenever.
+
+Each frame is the kernel's, and it is compared with the twin's on the way.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from msgspec.structs import replace
+
+from tests.render.scene.scenes import (
+    DISPLAYS,
+    KINDS,
+    STRESS2_8X8_ARRAY,
+    At,
+    actuators,
+    assets_of,
+    bounded,
+    known_boxes,
+    numbers,
+    patterns,
+    poses,
+    scene_of,
+    scenes,
+    seeds,
+    shown,
+)
+from tests.tiers import examples
+from vbraille.render.scene import reference
+from vbraille.scene.bounds import bounds
+from vbraille.scene.fitting import axial_cycle
+from vbraille.scene.moving import moved
+from vbraille.scene.patterns import Circle, Fill, Group, Line, Path, Polygon
+from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
+from vbraille.scene.walking import with_children
+
+EXACT = 1e-6  # frames are of float32
+displays = st.sampled_from(DISPLAYS)
+
+
+def some_poses(seed, count=2):
+    return poses(np.random.default_rng(seed), count)
+
+
+def same(one, other, atol=EXACT):
+    np.testing.assert_allclose(one, other, rtol=0, atol=atol)
+
+
+# Kernel equals twin; values are deflections
+
+
+@examples(60)
+@given(scenes(), seeds, displays)
+def test_frames_are_deflections_and_equal_their_twin(scene, seed, display):
+    for pose in some_poses(seed, 4):
+        frame = shown(scene, display, pose)
+        assert np.isfinite(frame).all()
+        assert frame.min() >= 0
+        assert frame.max() <= 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_pattern_equals_its_twin(kind):
+    @examples(30)
+    @given(KINDS[kind], seeds, displays)
+    def each(pattern, seed, display):
+        scene = scene_of(pattern)
+        for pose in some_poses(seed, 4):
+            shown(scene, display, pose)
+
+    each()
+
+
+# Opacity
+
+
+@examples(60)
+@given(patterns, seeds)
+def test_a_pattern_is_nowhere_above_its_opacity_mask(pattern, seed):
+    rng = np.random.default_rng(seed)
+    assets = assets_of(pattern)
+    x, y = rng.uniform(-5, 65, (2, 400))
+    time_s = rng.uniform(0, 10)
+    parity = rng.integers(0, 2, 400)
+    up = reference.deflection(pattern, assets, reference.places(x, y, parity, time_s))
+    over = reference.opacity(pattern, assets, x, y, parity, time_s)
+    assert (up <= over + 1e-9).all()
+    assert (over >= 0).all()
+    assert (over <= 1).all()
+
+
+@examples(25)
+@given(patterns, patterns, seeds, displays)
+def test_a_texture_on_top_hides_all_below(below, other, seed, display):
+    top = LinearGrating(ridge_mm=3, gap_mm=1, wave_angle_deg=20)
+    covered, alone = scene_of(below, other, top), scene_of(top)
+    for pose in some_poses(seed):
+        same(shown(covered, display, pose), shown(alone, display, pose))
+
+
+@examples(25)
+@given(patterns, seeds)
+def test_a_filled_shape_hides_what_is_under_its_inside(below, seed):
+    disc = Circle(
+        center_mm=(30, 30), radius_mm=25, fill=Fill(texture=Uniform(level=0.3), fade_mm=0)
+    )
+    rng = np.random.default_rng(seed)
+    for theta, time_s in rng.uniform(0, 3, (3, 2)):
+        frame = shown(scene_of(below, disc), STRESS2_8X8_ARRAY, At(31.3, 29.1, theta, time_s))
+        same(frame, 0.3)
+
+
+# Pruning
+
+
+@examples(25)
+@given(st.lists(patterns, min_size=1, max_size=2), seeds, displays)
+def test_shapes_elsewhere_change_nothing(near, seed, display):
+    rng = np.random.default_rng(seed)
+    far = [
+        Circle(
+            center_mm=(float(x), float(y)),
+            radius_mm=float(r),
+            fill=Fill(texture=Uniform(level=0.5)),
+        )
+        for x, y, r in rng.uniform((100, -50, 1), (300, 200, 9), (40, 3))
+    ]
+    pose = At(*rng.uniform(0, 60, 2), rng.uniform(0, 3), 0.7)
+    alone = shown(scene_of(*near, operation="maximum"), display, pose)
+    same(shown(scene_of(*far[:20], *near, *far[20:], operation="maximum"), display, pose), alone)
+
+
+# Composition
+
+
+@examples(25)
+@given(bounded, bounded, seeds)
+def test_a_sum_is_the_maximum_where_nothing_overlaps(one, other, seed):
+    assets = assets_of(one, other)
+    first = bounds(one, known_boxes(assets))
+    second = bounds(other, known_boxes(assets))
+    assert first is not None
+    assert second is not None
+    assume(not first.is_empty and not second.is_empty)
+    other = moved(other, (first.right - second.left + 0.001, 0.0))
+    rng = np.random.default_rng(seed)
+    for _ in range(2):
+        x, y = rng.uniform(first.right - 4, first.right + 4), rng.uniform(first.top, first.bottom)
+        pose = At(x, y, rng.uniform(0, 6), rng.uniform(0, 5))
+        added = shown(scene_of(one, other, operation="add"), STRESS2_8X8_ARRAY, pose)
+        same(shown(scene_of(one, other, operation="maximum"), STRESS2_8X8_ARRAY, pose), added)
+
+
+@examples(25)
+@given(patterns, patterns, seeds, st.booleans())
+def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second):
+    by = Uniform(level=float(second))
+    blend = scene_of(Group(operation="blend", parts=(one, other), by=by))
+    alone = scene_of(other if second else one)
+    for pose in some_poses(seed):
+        same(shown(blend, STRESS2_8X8_ARRAY, pose), shown(alone, STRESS2_8X8_ARRAY, pose))
+
+
+@examples(25)
+@given(patterns, seeds)
+def test_what_is_inverted_twice_is_as_it_was(pattern, seed):
+    once = Group(operation="maximum", parts=(pattern,), inverted=True)
+    twice = Group(operation="multiply", parts=(once,), inverted=True)
+    for pose in some_poses(seed):
+        same(
+            shown(scene_of(twice), STRESS2_8X8_ARRAY, pose),
+            shown(scene_of(pattern), STRESS2_8X8_ARRAY, pose),
+        )
+
+
+@examples(25)
+@given(st.lists(patterns, min_size=2, max_size=4), seeds, numbers(0, 1))
+def test_operations_are_what_they_say_of_their_parts(parts, seed, share):
+    weights = (share, *[(1 - share) / (len(parts) - 1)] * (len(parts) - 1))
+    for pose in some_poses(seed, 1):
+        single = np.array([shown(scene_of(part), STRESS2_8X8_ARRAY, pose) for part in parts])
+
+        def together(operation, pose=pose, **more):
+            group = Group(operation=operation, parts=tuple(parts), **more)
+            return shown(scene_of(group), STRESS2_8X8_ARRAY, pose)
+
+        same(together("multiply"), np.prod(single, axis=0))
+        same(together("add"), np.minimum(1, single.sum(axis=0)))
+        same(together("maximum"), single.max(axis=0))
+        same(together("weighted", weights=weights), np.tensordot(weights, single, 1))
+        blend = Group(operation="blend", parts=(parts[0], parts[1]), by=parts[-1])
+        want = (1 - single[-1]) * single[0] + single[-1] * single[1]
+        same(shown(scene_of(blend), STRESS2_8X8_ARRAY, pose), want)
+
+
+# Time and place
+
+
+def regular(pattern):
+    """The pattern with every vibration and movement at a whole number of periods a second."""
+    pattern = with_children(pattern, lambda _, part: regular(part))
+    pattern = replace(pattern, vibration=_whole(pattern.vibration))
+    if isinstance(pattern, LinearGrating | RadialGrating) and pattern.velocity_mm_s:
+        times = math.ceil(abs(pattern.velocity_mm_s) / 10)
+        pattern = replace(pattern, velocity_mm_s=times * (pattern.ridge_mm + pattern.gap_mm))
+    if isinstance(pattern, AxialGrating) and pattern.velocity_deg_s:
+        pattern = replace(pattern, velocity_deg_s=axial_cycle(pattern).length)
+    if hasattr(pattern, "frequency_hz"):
+        pattern = replace(pattern, frequency_hz=float(math.ceil(pattern.frequency_hz)))
+    if isinstance(pattern, Line | Circle | Polygon | Path):
+        pattern = _regular_shape(pattern)
+    if isinstance(pattern, Polygon) and pattern.markers is not None:
+        swing = _whole(pattern.markers.vibration)
+        pattern = replace(pattern, markers=replace(pattern.markers, vibration=swing))
+    if hasattr(pattern, "dot"):
+        pattern = replace(pattern, dot=_regular_dot(pattern.dot))
+    return pattern
+
+
+def _whole(swing):
+    if swing is None:
+        return None
+    return replace(swing, frequency_hz=float(math.ceil(swing.frequency_hz)))
+
+
+def _regular_dot(dot):
+    return replace(dot, vibration=_whole(dot.vibration))
+
+
+def _regular_shape(shape):
+    if shape.stroke is not None:
+        stroke = replace(shape.stroke, vibration=_whole(shape.stroke.vibration))
+        if stroke.along is not None:
+            along = stroke.along
+            speed = along.ridge_mm + along.gap_mm if along.velocity_mm_s else 0.0
+            along = replace(along, whole_cycles=False, velocity_mm_s=speed)
+            stroke = replace(stroke, along=along)
+        return replace(shape, stroke=stroke)
+    if shape.dots is not None:
+        swing = _whole(shape.dots.vertex_vibration)
+        dots = replace(shape.dots, dot=_regular_dot(shape.dots.dot), vertex_vibration=swing)
+        return replace(shape, dots=dots)
+    return shape
+
+
+@examples(25)
+@given(st.lists(patterns, min_size=1, max_size=2), seeds)
+def test_a_period_later_it_is_the_same(parts, seed):
+    scene = scene_of(*map(regular, parts), operation="maximum")
+    for pose in some_poses(seed):
+        early = At(pose.x_mm, pose.y_mm, pose.theta_rad, pose.time_s % 10)
+        later = At(pose.x_mm, pose.y_mm, pose.theta_rad, early.time_s + 1)
+        same(shown(scene, STRESS2_8X8_ARRAY, early), shown(scene, STRESS2_8X8_ARRAY, later), 1e-5)
+
+
+@examples(25)
+@given(patterns, st.tuples(numbers(-300, 300), numbers(-300, 300)), seeds, displays)
+def test_moving_the_picture_and_the_array_together_changes_nothing(pattern, move, seed, display):
+    there = moved(pattern, move)
+    for pose in some_poses(seed):
+        moved_pose = At(pose.x_mm + move[0], pose.y_mm + move[1], pose.theta_rad, pose.time_s)
+        before = shown(scene_of(pattern), display, pose)
+        same(shown(scene_of(there), display, moved_pose), before, 1e-5)
+
+
+@examples(25)
+@given(patterns, seeds)
+def test_the_same_place_gives_the_same_frame(pattern, seed):
+    scene = scene_of(pattern)
+    first, other = some_poses(seed)
+    before = shown(scene, STRESS2_8X8_ARRAY, first)
+    shown(scene, STRESS2_8X8_ARRAY, other)
+    np.testing.assert_array_equal(shown(scene, STRESS2_8X8_ARRAY, first), before)
+
+
+def test_a_scene_of_nothing_is_at_rest():
+    assert not shown(scene_of(), STRESS2_8X8_ARRAY, At(10, 10, 0, 1)).any()
+
+
+def test_actuators_lie_where_the_pose_says():
+    x, y, parity = actuators(STRESS2_8X8_ARRAY, At(20, 10, math.pi / 2, 0))
+    # Turned by a quarter against the clock, the right end of a row lies far from the reader.
+    assert (x[7], y[7]) == pytest.approx((20 - 4.9, 10 - 4.2))
+    assert parity[:3].tolist() == [0, 1, 0]
+    assert parity[8] == 1

@@ -1,0 +1,144 @@
+"""Where the dots of dotted shapes stand."""
+
+import math
+from itertools import combinations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tiers import examples
+from vbraille.scene.dotting import dots_of
+from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.strokes import DotStyle, Dotting, Stroke
+
+DOTTING = Dotting()  # a radius of 1 mm, and 1 mm between: m = 3 mm
+
+
+def apart(dots):
+    return min((math.dist(a[:2], b[:2]) for a, b in combinations(dots, 2)), default=math.inf)
+
+
+coordinates = st.integers(-2000, 2000).map(lambda n: n / 100)
+points = st.tuples(coordinates, coordinates)
+
+
+def follow(places):
+    return all(
+        math.dist(a, b) > 0.01 for a, b in zip(places, [*places[1:], places[0]], strict=True)
+    )
+
+
+rings = st.lists(points, min_size=3, max_size=7).map(tuple).filter(follow)
+dottings = st.builds(
+    Dotting, dot=st.builds(DotStyle, radius_mm=st.floats(0.1, 3)), separation_mm=st.floats(0, 5)
+)
+shapes = st.one_of(
+    st.builds(Polygon, vertices_mm=rings, dots=dottings),
+    st.builds(
+        Path,
+        contours_mm=st.lists(rings, min_size=1, max_size=2).map(tuple),
+        closed=st.booleans(),
+        dots=dottings,
+    ),
+    st.builds(Circle, center_mm=points, radius_mm=st.floats(0.1, 20), dots=dottings),
+    st.builds(Line, start_mm=points, end_mm=st.just((50, 0)), dots=dottings),
+)
+
+
+@examples(120)
+@given(shapes)
+def test_no_dots_are_nearer_than_the_separation_also_across_joints(shape):
+    dots = dots_of(shape)
+    least = 2 * shape.dots.dot.radius_mm + shape.dots.separation_mm
+    assert dots
+    assert apart(dots) >= least * (1 - 1e-6)
+
+
+def test_a_line_has_dots_at_its_ends_and_evenly_between():
+    dots = dots_of(Line(start_mm=(0, 0), end_mm=(10, 0), dots=DOTTING))
+    assert [dot.x_mm for dot in dots] == pytest.approx([0, 10 / 3, 20 / 3, 10])  # ⌊10/3⌋ + 1
+    assert not any(dot.vertex for dot in dots)
+    # A length that is a whole number of separations is not one dot short by rounding.
+    assert len(dots_of(Line(start_mm=(0, 0), end_mm=(0.9, 0), dots=dotting(0.1, 0.1)))) == 4
+
+
+def dotting(radius, separation):
+    return Dotting(dot=DotStyle(radius_mm=radius), separation_mm=separation)
+
+
+def test_a_line_too_short_for_two_has_one():
+    dots = dots_of(Line(start_mm=(1, 1), end_mm=(3, 1), dots=DOTTING))
+    assert [dot[:2] for dot in dots] == [(1, 1)]
+
+
+@pytest.mark.parametrize("radius", [1.6, 2, 5, 10, 33.3])
+def test_a_circle_has_as_many_dots_as_there_is_room_for(radius):
+    dots = dots_of(Circle(center_mm=(5, 6), radius_mm=radius, dots=DOTTING))
+    assert len(dots) == math.floor(math.pi / math.asin(3 / (2 * radius)))
+    assert dots[0][:2] == (5 + radius, 6)
+    turn = math.tau / len(dots)
+    for n, dot in enumerate(dots):
+        assert math.dist(dot[:2], (5, 6)) == pytest.approx(radius)
+        assert math.cos(math.atan2(dot.y_mm - 6, dot.x_mm - 5) - n * turn) == pytest.approx(1)
+
+
+def test_a_circle_smaller_than_a_dot_has_one():
+    dots = dots_of(Circle(center_mm=(0, 0), radius_mm=1, dots=DOTTING))
+    assert [dot[:2] for dot in dots] == [(1, 0)]
+
+
+def test_a_polygon_has_dots_on_its_vertices_and_says_so():
+    square = Polygon(vertices_mm=((0, 0), (10, 0), (10, 10), (0, 10)), dots=DOTTING)
+    dots = dots_of(square)
+    assert len(dots) == 4 * 3
+    assert [dot[:2] for dot in dots if dot.vertex] == list(square.vertices_mm)
+
+
+def test_dots_beside_a_sharp_corner_are_farther_apart():
+    triangle = Polygon(vertices_mm=((0, 0), (30, 0), (30, 30)), dots=DOTTING)
+    dots = dots_of(triangle)
+    # 3 / sin 45° along every edge: ⌊30/4.24⌋, ⌊30/4.24⌋ and ⌊42.4/4.24⌋ spaces.
+    assert len(dots) == 7 + 7 + 10
+    assert dots[1].x_mm == pytest.approx(30 / 7)
+
+
+def test_of_vertices_too_near_the_later_has_no_dot():
+    sliver = Polygon(vertices_mm=((0, 0), (20, 0), (20, 1), (0, 1)), dots=DOTTING)
+    dots = dots_of(sliver)
+    assert [dot[:2] for dot in dots if dot.vertex] == [(0, 0), (20, 0)]
+    assert apart(dots) >= 3 - 1e-9
+
+
+def test_a_curve_of_many_edges_is_dotted_evenly_along_it():
+    turns = [math.tau * n / 400 for n in range(400)]
+    curve = tuple((10 * math.cos(a), 10 * math.sin(a)) for a in turns)
+    path = Path(contours_mm=(curve,), closed=True, dots=DOTTING)
+    dots = dots_of(path)
+    assert len(dots) == len(dots_of(Circle(center_mm=(0, 0), radius_mm=10, dots=DOTTING)))
+    assert not any(dot.vertex for dot in dots)
+    steps = [math.dist(a[:2], b[:2]) for a, b in zip(dots, [*dots[1:], dots[0]], strict=True)]
+    assert max(steps) - min(steps) < 0.01
+
+
+def test_a_path_has_dots_on_its_ends_and_where_it_turns():
+    bent = Path(contours_mm=(((0, 0), (10, 0), (20, 1), (20, 12)),), dots=DOTTING)
+    dots = dots_of(bent)
+    assert dots[0][:2] == (0, 0)
+    assert dots[-1][:2] == (20, 12)
+    assert [dot[:2] for dot in dots if dot.vertex] == [(20, 1)]
+
+
+def test_a_path_that_goes_back_on_itself_is_not_dotted_twice():
+    there_and_back = Path(contours_mm=(((0, 0), (20, 0), (0, 0.001)),), dots=DOTTING)
+    assert apart(dots_of(there_and_back)) >= 3 - 1e-6
+
+
+def test_a_long_path_is_dotted_at_once():
+    wave = tuple((n * 0.05, 3 * math.sin(n * 0.02)) for n in range(20_000))
+    dots = dots_of(Path(contours_mm=(wave,), dots=DOTTING))
+    assert len(dots) > 300
+
+
+def test_what_is_not_dotted_has_no_dots():
+    assert dots_of(Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke())) == ()

@@ -1,0 +1,233 @@
+"""Strokes, fills and dots of shapes, as kernels: Lévesque 2009, eqs. 8.7-8.14, 8.20 and 8.4.4.
+
+``at`` is the first of a kernel's constants. Most begin with those of the profile, eq. 8.7: w/2 - ε,
+1/ε, w/2, and then k_t and n/w of the texture across (k_t is 0 for none).
+"""
+
+import math
+
+from vbraille.render.scene.curvekernels import fall, hump, wave
+from vbraille.render.scene.texturekernels import phase
+from vbraille.render.scene.words import (
+    ACROSS_ROW,
+    ALONG_ROW,
+    FREE_ROW,
+    INSIDE_ROW,
+    MARKED_ROW,
+    SIGN_ROW,
+    SPARE_ROW,
+    X_ROW,
+    Y_ROW,
+)
+from vbraille.render.waves import compiled
+
+NO_VIBRATION, HIGH, LOW = 0.0, 1.0, 2.0
+# Constants after those of the profile, of a stroke and of dots.
+(
+    AMPLITUDE,  # k
+    OUTLINED,  # 1 if it is
+    CUT,  # 0 without a texture along the stroke, 1 with one, 2 if it leaves the edges whole
+    CYCLE,
+    RIDGE,
+    DEPTH,
+    VELOCITY,
+    SWING,  # what vibrates, and then the frequency and amplitude of that
+    _SWING_HZ,
+    _SWING_SHARE,
+    MARKS,  # 1 if there are markers, or dots on vertices, that vibrate in their own way; then how
+    _MARKS_HZ,
+    _MARKS_SHARE,
+    STROKE_NUMBERS,
+) = range(5, 19)
+
+
+@compiled
+def profile(numbers, rows, at, top, count):
+    """Profile at full amplitude, or the texture across where that is higher: the opacity mask."""
+    _profile(numbers, rows, at, top, count)
+    weight, cycles, edge = numbers[at + 3], numbers[at + 4], numbers[at + 2]
+    if weight != 0.0:
+        for n in range(count):
+            r = rows[ACROSS_ROW, n]
+            texture = 0.5 + 0.5 * wave(r * cycles)
+            more = weight * (texture - rows[top, n])
+            rows[top, n] += more if more > 0.0 and r < edge else 0.0
+
+
+@compiled
+def _profile(numbers, rows, at, top, count):
+    flat, sharp = numbers[at], numbers[at + 1]
+    for n in range(count):
+        rows[top, n] = fall((rows[ACROSS_ROW, n] - flat) * sharp)
+
+
+@compiled
+def _groove(numbers, rows, at, row, factor, count):
+    """Multiply a row by what an outline leaves out, γ_o of eq. 8.9, and a factor."""
+    flat, sharp = numbers[at], numbers[at + 1]
+    for n in range(count):
+        rows[row, n] *= factor * fall((rows[ACROSS_ROW, n] - flat) * sharp + 1.0)
+
+
+@compiled
+def stroke(numbers, rows, at, time, top, count):
+    """Deflection of a stroke, eqs. 8.7-8.14, at the coordinates of its shape."""
+    _profile(numbers, rows, at, top, count)
+    weight, cycles, edge = numbers[at + 3], numbers[at + 4], numbers[at + 2]
+    if weight != 0.0:
+        for n in range(count):
+            r = rows[ACROSS_ROW, n]
+            texture = 0.5 + 0.5 * wave(r * cycles)
+            texture = texture if r < edge else 0.0
+            rows[top, n] += weight * (texture - rows[top, n])
+    amplitude = numbers[at + AMPLITUDE]
+    if amplitude != 1.0:
+        for n in range(count):
+            rows[top, n] *= amplitude
+    outlined, cut = numbers[at + OUTLINED], numbers[at + CUT]
+    swing, marks = numbers[at + SWING], numbers[at + MARKS]
+    if outlined == 0.0 and cut == 0.0 and swing == NO_VIBRATION and marks == 0.0:
+        return
+    if cut != 0.0:
+        _cut(numbers, rows, at, time, count)
+        if cut == 2.0:
+            _groove(numbers, rows, at, FREE_ROW, 1.0, count)
+    else:
+        for n in range(count):
+            rows[FREE_ROW, n] = outlined
+        if outlined != 0.0:
+            _groove(numbers, rows, at, FREE_ROW, 1.0, count)
+    if swing == LOW:
+        _share_left(numbers, rows, at + SWING, time, count)
+        for n in range(count):
+            rows[FREE_ROW, n] = 1.0 - rows[FREE_ROW, n] * rows[SPARE_ROW, n]
+    elif swing == HIGH:
+        _share_left(numbers, rows, at + SWING, time, count)
+        for n in range(count):
+            rows[FREE_ROW, n] = (1.0 - rows[FREE_ROW, n]) * rows[SPARE_ROW, n]
+    else:
+        for n in range(count):
+            rows[FREE_ROW, n] = 1.0 - rows[FREE_ROW, n]
+    if marks != 0.0:
+        _share_left(numbers, rows, at + MARKS, time, count)
+        for n in range(count):
+            change = rows[SPARE_ROW, n] - rows[FREE_ROW, n]
+            rows[FREE_ROW, n] += rows[MARKED_ROW, n] * change
+    for n in range(count):
+        rows[top, n] *= rows[FREE_ROW, n]
+
+
+@compiled
+def _share_left(numbers, rows, at, time, count):
+    """What a vibration leaves: δ¹ of eq. 8.3; constants any, frequency, amplitude."""
+    amplitude = numbers[at + 2]
+    swing = 0.5 * amplitude * phase(numbers[at + 1], time)
+    least = 1.0 - 0.5 * amplitude
+    for n in range(count):
+        rows[SPARE_ROW, n] = least + swing * rows[SIGN_ROW, n]
+
+
+@compiled
+def _cut(numbers, rows, at, time, count):
+    """Depth of the cuts of a texture along a stroke: a · g(l)."""
+    cycle, ridge = numbers[at + CYCLE], numbers[at + RIDGE]
+    depth, velocity = numbers[at + DEPTH], numbers[at + VELOCITY]
+    shift = 0.0
+    if velocity != 0.0 and time == time:
+        shift = velocity * time / cycle
+        shift = cycle * (shift - math.floor(shift))
+    cycles, ridges = 1.0 / cycle, 1.0 / ridge
+    for n in range(count):
+        u = rows[ALONG_ROW, n] - shift
+        u -= cycle * math.floor(u * cycles)
+        rows[FREE_ROW, n] = depth * hump(u * ridges - 0.5)
+
+
+@compiled
+def dots(numbers, rows, at, time, block, first, parts, top, count):
+    """Dots, of which the highest counts: 8.4.4 and eq. 6.1.
+
+    Numbers of a part: its middle, and 1 if it is on a vertex, where it vibrates as `MARKS` says.
+    """
+    weight, cycles = numbers[at + 3], numbers[at + 4]
+    flat, sharp, edge = numbers[at], numbers[at + 1], numbers[at + 2]
+    amplitude, swing, marks = numbers[at + AMPLITUDE], numbers[at + SWING], numbers[at + MARKS]
+    for n in range(count):
+        rows[top, n] = 0.0
+    for number in range(parts):
+        part = block + int(numbers[first + number])
+        x, y = numbers[part], numbers[part + 1]
+        on_vertex = numbers[part + 2] != 0.0 and marks != 0.0
+        if weight == 0.0 and swing == NO_VIBRATION and not on_vertex:
+            for n in range(count):
+                dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
+                value = fall((math.sqrt(dx * dx + dy * dy) - flat) * sharp)
+                value *= amplitude
+                rows[top, n] = value if value > rows[top, n] else rows[top, n]
+            continue
+        for n in range(count):
+            dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
+            r = math.sqrt(dx * dx + dy * dy)
+            value = fall((r - flat) * sharp)
+            texture = 0.5 + 0.5 * wave(r * cycles)
+            texture = texture if r < edge else 0.0
+            rows[FREE_ROW, n] = amplitude * (value + weight * (texture - value))
+        if on_vertex or swing == HIGH:
+            _share_left(numbers, rows, at + (MARKS if on_vertex else SWING), time, count)
+            for n in range(count):
+                rows[FREE_ROW, n] *= rows[SPARE_ROW, n]
+        for n in range(count):
+            value = rows[FREE_ROW, n]
+            rows[top, n] = value if value > rows[top, n] else rows[top, n]
+
+
+@compiled
+def dots_mask(numbers, rows, at, block, first, parts, top, count):
+    """Opacity mask of dots: the profile, or a texture across where that is higher."""
+    weight, cycles = numbers[at + 3], numbers[at + 4]
+    flat, sharp, edge = numbers[at], numbers[at + 1], numbers[at + 2]
+    for n in range(count):
+        rows[top, n] = 0.0
+    for number in range(parts):
+        part = block + int(numbers[first + number])
+        x, y = numbers[part], numbers[part + 1]
+        for n in range(count):
+            dx, dy = rows[X_ROW, n] - x, rows[Y_ROW, n] - y
+            r = math.sqrt(dx * dx + dy * dy)
+            value = fall((r - flat) * sharp)
+            if weight != 0.0:
+                more = weight * (0.5 + 0.5 * wave(r * cycles) - value)
+                value += more if more > 0.0 and r < edge else 0.0
+            rows[top, n] = value if value > rows[top, n] else rows[top, n]
+
+
+@compiled
+def fill(numbers, rows, at, top, count):
+    """Add a fill, in ``top - 1``, to the stroke in ``top``; the result is in ``top - 1``.
+
+    Constants: distance from the path at which the fill begins, and 1 over that of its fade.
+    """
+    begin, slope = numbers[at], numbers[at + 1]
+    for n in range(count):
+        share = (rows[ACROSS_ROW, n] - begin) * slope
+        share = share if share > 0.0 else 0.0
+        share = share if share < 1.0 else 1.0
+        value = rows[top, n] + share * rows[INSIDE_ROW, n] * rows[top - 1, n]
+        rows[top - 1, n] = value if value < 1.0 else 1.0
+
+
+@compiled
+def fill_blended(rows, top, count):
+    """Blend a stroke into a fill: fill, stroke, profile -> stroke + (1 - profile) fill, eq. 8.20."""
+    for n in range(count):
+        share = (1.0 - rows[top + 1, n]) * rows[INSIDE_ROW, n]
+        value = rows[top, n] + share * rows[top - 1, n]
+        rows[top - 1, n] = value if value < 1.0 else 1.0
+
+
+@compiled
+def fill_mask(rows, top, count):
+    """Raise the mask in ``top`` to 1 inside."""
+    for n in range(count):
+        within = rows[INSIDE_ROW, n]
+        rows[top, n] = within if within > rows[top, n] else rows[top, n]
