@@ -293,6 +293,11 @@ IGNORED = {
     '<path d="M0 0 L x"/>': ["its text is not understood; it is left out"],
     '<circle r="1e9"/>': ["it goes farther than 10 m from the drawing's corner; it is left out"],
     '<rect width="-5" height="5"/>': ["it has no size, and is left out"],
+    '<path d="M9 9z" stroke="#000" stroke-width="9"/>': ["it has no size, and is left out"],
+    '<polygon points="5,5 9,9"/>': ["it has no size, and is left out"],
+    '<g transform="scale(1e200)"><rect width="1e200" height="1"/></g>': [
+        "it goes farther than 10 m from the drawing's corner; it is left out"
+    ],
     '<polygon points="5,5 5,5"/>': ["it has no size, and is left out"],
     '<path d="M0 0H9" fill="none" stroke="red"/>': [
         "its line is drawn 2 mm wide, not to be missed"

@@ -13,7 +13,7 @@ from vbraille.errors import InputError
 from vbraille.scene.patterns import Group
 from vbraille.scene.svg.looks import drawn, share_of
 from vbraille.scene.svg.numbers import AffineMap, fit, length_px, numbers_of, transform_of
-from vbraille.scene.svg.outlines import MOST_POINTS
+from vbraille.scene.svg.outlines import MOST_POINTS, TOO_FAR
 from vbraille.scene.svg.shapes import SHAPES, circle_of, outline, patterns_of
 from vbraille.scene.svg.style import classes_of, styled
 from vbraille.scene.svg.tree import (
@@ -274,12 +274,11 @@ class SvgDrawing:
                 raise InputError(
                     f"{self.name} has more than {MOST_POINTS} places on its lines; simplify it"
                 )
-            if not contours:
-                self.note(element, "it has no size, and is left out")
-                return []
             notes: list[str] = []
             nonzero = place.style.get("fill-rule") != "evenodd"
             found += patterns_of(name, contours, how, nonzero=nonzero, notes=notes)
+            if not found:
+                self.note(element, "it has no size, and is left out")
             for what in notes:
                 self.note(element, what)
         if place.strength < 1.0:
@@ -368,8 +367,10 @@ class SvgDrawing:
         """Leave out an element that cannot be drawn, and say so."""
         try:
             yield
-        except (ValueError, OverflowError) as error:
+        except ValueError as error:
             self.note(element, f"{error}; it is left out")
+        except OverflowError:
+            self.note(element, f"{TOO_FAR}; it is left out")
 
 
 def start(matrix: AffineMap, style: Mapping[str, str], view: Point) -> _Place:
