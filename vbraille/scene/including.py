@@ -14,6 +14,7 @@ from vbraille.scene.origins import ForeignOrigin, TomlOrigin
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.svg.looks import ClassLook
 from vbraille.scene.walking import with_children
 from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from vbraille.scene.opened import FoundScene, SceneOrigin
-    from vbraille.scene.svg.looks import ClassLook
     from vbraille.scene.walking import Steps
 
 # Scenes of 50,000 shapes; larger files would take longer to read than anybody waits.
@@ -148,6 +148,8 @@ class _Gathering:
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
         }
+        for key in file.names("classes"):  # whose faults are then said as those of a table
+            file.read(ClassLook, under=("classes", key))
         gathered = Gathered(file.read(SceneFile))
         for number, included in enumerate(gathered.form.include):
             self._include(gathered, file, number, included, name, (*way, real))

@@ -416,6 +416,22 @@ def test_a_scene_file_says_what_classes_of_the_drawings_it_includes_become(tmp_p
     )
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("stroke = {widht_mm = 3}", "line 4: [classes.water.stroke] has no key 'widht_mm'"),
+        ("stroke = {width_mm = 0}", "line 4: [classes.water.stroke] width is 0 mm"),
+        ("strok = {}", "line 4: [classes.water] has no key 'strok'"),
+    ],
+)
+def test_classes_that_are_not_right_are_said_with_their_line(tmp_path, line, said):
+    path = tmp_path / "my.scene"
+    path.write_text(f"[canvas]\nwidth_mm = 30\n[classes.water]\n{line}\n")
+    with pytest.raises(InputError) as refused:
+        open_scene(path)
+    assert said in str(refused.value)
+
+
 def test_a_class_may_be_dotted_or_hidden(read):
     looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
     found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
