@@ -150,8 +150,11 @@ def test_a_sum_is_the_maximum_where_nothing_overlaps(one, other, seed):
     for _ in range(2):
         x, y = rng.uniform(first.right - 4, first.right + 4), rng.uniform(first.top, first.bottom)
         pose = At(x, y, rng.uniform(0, 6), rng.uniform(0, 5))
-        added = shown(scene_of(one, other, operation="add"), STRESS2_8X8_ARRAY, pose)
-        same(shown(scene_of(one, other, operation="maximum"), STRESS2_8X8_ARRAY, pose), added)
+        added, most = (
+            shown(scene_of(one, other, operation=operation, side_mm=300), STRESS2_8X8_ARRAY, pose)
+            for operation in ("add", "maximum")
+        )
+        same(added, most)
 
 
 @examples(25)
@@ -257,13 +260,16 @@ def test_a_period_later_it_is_the_same(parts, seed):
 
 
 @examples(25)
-@given(patterns, st.tuples(numbers(-300, 300), numbers(-300, 300)), seeds, displays)
+@given(patterns, st.tuples(numbers(0, 300), numbers(0, 300)), seeds, displays)
 def test_moving_the_picture_and_the_array_together_changes_nothing(pattern, move, seed, display):
-    there = moved(pattern, move)
+    # Both are on the canvas with all that the array can touch.
+    here = moved(pattern, (30.0, 30.0))
+    there = moved(here, move)
     for pose in some_poses(seed):
-        moved_pose = At(pose.x_mm + move[0], pose.y_mm + move[1], pose.theta_rad, pose.time_s)
-        before = shown(scene_of(pattern), display, pose)
-        same(shown(scene_of(there), display, moved_pose), before, 1e-5)
+        first = At(pose.x_mm + 30, pose.y_mm + 30, pose.theta_rad, pose.time_s)
+        other = At(first.x_mm + move[0], first.y_mm + move[1], pose.theta_rad, pose.time_s)
+        before = shown(scene_of(here, side_mm=500), display, first)
+        same(shown(scene_of(there, side_mm=500), display, other), before, 1e-5)
 
 
 @examples(25)
@@ -278,6 +284,15 @@ def test_the_same_place_gives_the_same_frame(pattern, seed):
 
 def test_a_scene_of_nothing_is_at_rest():
     assert not shown(scene_of(), STRESS2_8X8_ARRAY, At(10, 10, 0, 1)).any()
+
+
+@given(patterns, seeds)
+def test_beside_the_canvas_actuators_are_at_rest(pattern, seed):
+    scene = scene_of(pattern)
+    for pose in poses(np.random.default_rng(seed), 2):
+        x, y, _ = actuators(STRESS2_8X8_ARRAY, pose)
+        beside = (x < 0) | (x > 60) | (y < 0) | (y > 60)
+        assert not shown(scene, STRESS2_8X8_ARRAY, pose).ravel()[beside].any()
 
 
 def test_actuators_lie_where_the_pose_says():
