@@ -121,7 +121,12 @@ def test_an_image_that_is_up_outside_is_everywhere():
     pixels = np.zeros((2, 2), np.uint16)
     assert bitmap_box(Bitmap(pixels, (0, 0), 2, 2, 0.1)) is None
     assert opaque(Bitmap(pixels, (0, 0), 2, 2, 0.1)).outside == 1
-    assert bitmap_box(Bitmap(pixels, (0, 0), 2, 2)) == EMPTY
+
+
+def test_an_image_of_nothing_has_the_box_of_a_point():
+    box = bitmap_box(Bitmap(np.zeros((2, 2), np.uint16), (5, 5), 2, 2))
+    assert box is not None
+    assert (box.right, box.bottom) == (box.left, box.top)
 
 
 def test_an_images_box_is_no_larger_than_its_mask():
