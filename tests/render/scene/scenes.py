@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from hypothesis import settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from tests.tiers import by_tier
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
 from vbraille.render.scene import reference
@@ -50,6 +52,11 @@ from vbraille.scene.walking import each
 SIDE_MM = 60
 STRESS2_8X8_ARRAY = STRESS2_8X8.display
 DISPLAYS = (STRESS2_8X8_ARRAY, Display("wide", 6, 10, 1.2, 1.8))
+
+
+def examples(count):
+    """Try a law on so many examples in `make test-all`, on a few and many more in the others."""
+    return settings(max_examples=by_tier(max(count // 8, 4), count, 50 * count))
 
 
 def numbers(least, most):

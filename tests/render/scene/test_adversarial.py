@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.render.scene.scenes import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
+from tests.tiers import by_tier, heavy
 from vbraille.render.scene import reference
 from vbraille.scene.patterns import (
     Circle,
@@ -41,7 +42,7 @@ def over(x_mm, y_mm, theta_rad=0.0, time_s=0.3):
     return At(x_mm - 0.6, y_mm - 0.7, theta_rad, time_s)
 
 
-def everywhere(scene, rng, *, around=(30.0, 30.0), count=12, time_s=None):
+def everywhere(scene, rng, *, around=(30.0, 30.0), count=by_tier(4, 12, 200), time_s=None):
     """Compare kernel and twin around a place."""
     for pose in poses(rng, count):
         at = At(
@@ -98,9 +99,11 @@ def test_polygons_of_any_shape(name, stroke, join, rng):
             fill=Fill(texture=LinearGrating(ridge_mm=3), gap_mm=0.5),
         )
     )
-    everywhere(scene, rng, count=6)
+    everywhere(scene, rng, count=by_tier(2, 6, 50))
 
 
+# Every shape with every span is for the longer runs; laws draw both every time.
+@heavy
 @pytest.mark.parametrize("span", ["angle", "square", "edges", "arc"])
 @pytest.mark.parametrize("name", SHAPES)
 def test_markers_of_any_corner(name, span, rng):
