@@ -33,6 +33,7 @@ from vbraille.scene.textures import (
 )
 
 HOURS_S = 36_000.0
+COUNT = by_tier(4, 12, 200)  # of poses at which a picture is felt
 ALONG = Stroke(width_mm=4, along=Along(ridge_mm=2, gap_mm=1, whole_cycles=False))
 SQUARE = ((10, 10), (40, 10), (40, 40), (10, 40))
 
@@ -42,7 +43,7 @@ def over(x_mm, y_mm, theta_rad=0.0, time_s=0.3):
     return At(x_mm - 0.6, y_mm - 0.7, theta_rad, time_s)
 
 
-def everywhere(scene, rng, *, around=(30.0, 30.0), count=by_tier(4, 12, 200), time_s=None):
+def everywhere(scene, rng, *, around=(30.0, 30.0), count=COUNT, time_s=None):
     """Compare kernel and twin around a place."""
     for pose in poses(rng, count):
         at = At(
