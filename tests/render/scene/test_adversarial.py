@@ -67,14 +67,14 @@ STAR = tuple(
 )
 NEARLY_STRAIGHT = ((5, 30), (20, 30.0000001), (35, 30), (50, 30.000001), (30, 55))
 NEEDLE = ((5, 30), (55, 30), (5.001, 30.02))
-STEPS = (*tuple((10 + n * 1e-05, 30 + 1e-05 * (n % 2)) for n in range(20)), (40, 30), (30, 45))
+STEPS = (*tuple((10 + n * 1e-05, 30 - 1e-05 * (n % 2)) for n in range(20)), (40, 30), (30, 45))
 SHAPES = {
     "star": STAR,
     "nearly straight corners": NEARLY_STRAIGHT,
     "needle": NEEDLE,
     "edges of 14 nm": STEPS,
-    "crossing itself": ((10, 10), (50, 50), (50, 10), (10, 50)),
-    "back on itself": ((10, 30), (50, 30), (30, 30), (30, 50)),
+    "nearly crossing itself": ((10, 10), (50, 50), (50.001, 49.999), (10.002, 10)),
+    "nearly back on itself": ((10, 30), (50, 30), (30, 30.0000001), (30, 50)),
     "far larger than the array": ((-9000, -9000), (9000, -9000), (30, 31)),
 }
 
