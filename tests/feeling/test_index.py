@@ -116,9 +116,7 @@ def test_very_many_that_cover_everything_take_little_and_only_the_upper_ones_are
     asked = []
     layers = [Uniform(level=0.0, title=str(n), inverted=False) for n in range(3000)]
     squares = [
-        Polygon(
-            vertices_mm=((0, 0), (290, 0), (290, 290)), stroke=Stroke(width_mm=1), title=str(n)
-        )
+        Polygon(vertices_mm=((0, 0), (290, 0), (290, 290)), stroke=Stroke(width_mm=1), title=str(n))
         for n in range(500)
     ]
     index = index_of(*layers, *squares, width_mm=300, height_mm=300, asked=asked)

@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import at_height, compose
+from vbraille.feeling.composing import at_height
 from vbraille.feeling.guiding import Guide
 from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.feeling.loading import check_fits, load_scene, with_known
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.prompt import Prompt
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
     from vbraille.engine.engine import Engine
+    from vbraille.feeling.composing import Composer
     from vbraille.feeling.index import NamedElement
     from vbraille.feeling.loading import LoadedScene
     from vbraille.pose import Pose
@@ -48,6 +49,8 @@ class Feeler:
         Engine that drives the device, which is started.
     where
         Function that tells where the array is; None before that is known.
+    composer
+        What makes programs of scenes.
     style
         How the braille of labels is shown.
     say
@@ -58,8 +61,6 @@ class Feeler:
         Commands with their keys.
     room
         Bytes of the largest program that the engine has room for.
-    rate_hz
-        Frames a second.
     steering
         Channel of orders to a simulated hand; None if a person moves the device.
     at_mm
@@ -83,12 +84,12 @@ class Feeler:
         engine: Engine,
         *,
         where: Callable[[], Pose | None],
+        composer: Composer,
         style: BrailleStyle,
         say: Callable[[str], None],
         bound: Bound,
         room: int,
         cue: Callable[[Cue], None] = lambda _: None,
-        rate_hz: float = 1000.0,
         steering: Steering | None = None,
         at_mm: float | None = None,
         entering: bool = False,
@@ -108,7 +109,7 @@ class Feeler:
         self._where = where
         self._style = style
         self._room = room
-        self._rate_hz = rate_hz
+        self._composer = composer
         self._steering = steering
         self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
         self._aim: tuple[float, float] | None = None  # where keys have sent the hand
@@ -285,6 +286,7 @@ class Feeler:
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self._style)
+            loaded = with_known(loaded, self.loaded)
             check_fits(loaded.scene, self.display)
             program = self._compose(loaded)
             if program.nbytes > self._room:
@@ -317,13 +319,7 @@ class Feeler:
             self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
     def _compose(self, loaded: LoadedScene) -> Program:
-        return compose(
-            loaded,
-            self.display,
-            rate_hz=self._rate_hz,
-            contrast=self.contrast,
-            own_y_mm=self._at_mm,
-        )
+        return self._composer.compose(loaded, contrast=self.contrast, own_y_mm=self._at_mm)
 
     def _show(self, program: Program) -> None:
         self._program = program

@@ -53,6 +53,11 @@ class NamedElement:
         return self.pattern.description
 
 
+def label_of(pattern: AnyPattern) -> str:
+    """Title of an element, or its id; empty if it has neither."""
+    return pattern.title or pattern.id
+
+
 class _Leaf(NamedTuple):
     pattern: AnyPattern
     element: NamedElement
@@ -137,7 +142,7 @@ class SceneIndex:
     def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:
         """Patterns within one that are no groups, with the elements by whose names they go."""
         box = None if isinstance(pattern, Group) and above else bounds(pattern, self._known)
-        name = pattern.title or pattern.id
+        name = label_of(pattern)
         if name or (pattern.description and above is None):
             if isinstance(pattern, Group):
                 box = bounds(pattern, self._known)

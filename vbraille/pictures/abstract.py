@@ -165,7 +165,7 @@ class _Painter:
         match texture:
             case Uniform():
                 level = 1.0 - texture.level if texture.inverted else texture.level
-                if not look.raised or (level >= _HALF and where is not None):
+                if level >= _HALF and where is not None if look.raised else level > 0.0:
                     area = InkArea(self.regions.canvas, look.ink(strength * level))
                     yield from self._clipped([area], where)
             case UniformVibration():

@@ -39,6 +39,7 @@ AnyGrating = LinearGrating | RadialGrating | AxialGrating
 _MOST_LINES = 20_000
 _MOST_DOTS = 50_000
 _ROUND_DEG = 3.0  # of the edges that stand for a circle
+_POINT_MM = 0.001  # of a dash whose round ends make it a dot
 _FINE = 20_001  # places at which a distortion is looked up
 
 
@@ -154,9 +155,12 @@ def _ridge_line(
     return InkLine(contours, width_mm, gray, closed, dashes, round_ends=dashes is not None)
 
 
-def dotted(width_mm: float, look: InkLook) -> tuple[float, float]:
-    """Dashes that are round dots, of lines that vibrate."""
-    return 0.001, width_mm + max(look.gap_mm, width_mm)
+def dotted(width_mm: float, look: InkLook, length_mm: float | None = None) -> tuple[float, float]:
+    """Dashes that are round dots, of lines that vibrate; a whole number of them in a length."""
+    pitch_mm = width_mm + max(look.gap_mm, width_mm)
+    if length_mm is not None:
+        pitch_mm = length_mm / max(math.floor(length_mm / pitch_mm), 1)
+    return _POINT_MM, pitch_mm - _POINT_MM
 
 
 def _ridges(

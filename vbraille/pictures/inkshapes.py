@@ -135,9 +135,10 @@ def _stroke(
     whole, edge = stroke.width_mm, stroke.edge
     width = max(whole - edge, look.line_mm)
     ink = look.ink(strength * stroke.amplitude)
+    length = _length_mm(contours[0]) if closed else None
     if look.raised and shakes:
         dot = min(width, look.dot_mm)
-        yield InkLine(contours, dot, ink, closed, dotted(dot, look))
+        yield InkLine(contours, dot, ink, closed, dotted(dot, look, length))
         return
     yield InkLine(contours, width, ink, closed)
     inner = whole - 3 * edge  # between the edges of an outline
@@ -146,18 +147,23 @@ def _stroke(
     along = stroke.along
     if along is not None and cycle is not None:
         cut = max(cycle.ridge / 2, look.gap_mm)
-        length = cycle.length * math.ceil((cut + look.line_mm) / cycle.length - 1e-9)
+        cycle_mm = cycle.length * math.ceil((cut + look.line_mm) / cycle.length - 1e-9)
         cuts = max(inner, look.line_mm) if along.whole_edges and not look.raised else width
         blank = 1.0 if look.raised else 1.0 - (1.0 - ink) * (1.0 - along.amplitude)
         # A ridge of the grating begins where the path does, and its middle is cut.
-        into = length - max(cycle.ridge / 2 - cut / 2, 0.0)
-        dashes = (cut, length - cut)
+        into = cycle_mm - max(cycle.ridge / 2 - cut / 2, 0.0)
+        dashes = (cut, cycle_mm - cut)
         yield InkLine(contours, 1.02 * cuts, blank, closed, dashes, into, round_ends=False)
     if stroke.across is not None and not look.raised:
         yield InkLine(contours, 0.1 * width, 1.0, closed)
     if shakes:
         dot = min(look.dot_mm, 0.5 * width)
-        yield InkLine(contours, dot, 1.0, closed, dotted(dot, look))
+        yield InkLine(contours, dot, 1.0, closed, dotted(dot, look, length))
+
+
+def _length_mm(contour: NDArray[np.float64]) -> float:
+    """Length of a closed contour."""
+    return float(np.hypot(*(np.roll(contour, -1, axis=0) - contour).T).sum())
 
 
 def _discs(

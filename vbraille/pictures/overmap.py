@@ -167,7 +167,7 @@ def map_drawing(
     scene
         The scene, for its canvas and its words.
     deflections : floating[rows, columns]
-        Its deflections.
+        Deflections of the scene.
     over
         Marks in mm of the canvas.
     axes

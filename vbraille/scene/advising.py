@@ -94,7 +94,7 @@ def textures_of(scene: Scene) -> int:
 def _is_texture(element: AnyPattern) -> bool:
     if isinstance(element, Group):
         return all(map(_is_texture, element.parts))
-    return bounds(element) is None and not isinstance(element, Image | Shape)
+    return bounds(element) is None and not isinstance(element, Image | Label | Shape)
 
 
 def _nowhere(pattern: AnyPattern) -> AnyPattern:

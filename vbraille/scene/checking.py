@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.scene import advising, vibrating
 from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.patterns import Label
 from vbraille.scene.walking import each
 from vbraille.wording import count
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.opened import OpenedScene
-    from vbraille.scene.patterns import AnyPattern, Image, Label
+    from vbraille.scene.patterns import AnyPattern, Image
     from vbraille.scene.scene import Scene
 
 _MOST_PAIRS_SAID = 20
@@ -32,7 +33,7 @@ class ElementReport:
     kind
         Kind as the file has it.
     name
-        Title, or else id; empty if it has neither.
+        Title, or else id, or else text; empty if it has none.
     place
         File and line.
     box
@@ -94,7 +95,7 @@ def check_scene(opened: OpenedScene, known: Mapping[Image | Label, Box]) -> Scen
         ElementReport(
             number=number,
             kind=kind_of(wrote),
-            name=" ".join((shown.title or shown.id).split()),
+            name=_name(shown),
             place=opened.place(number - 1),
             box=bounds(shown, known),
             vibration_hz=tuple(sorted(vibrating.frequencies(shown))),
@@ -120,6 +121,11 @@ def kind_of(pattern: AnyPattern) -> str:
     'vibration'
     """
     return str(pattern.__struct_config__.tag)
+
+
+def _name(pattern: AnyPattern) -> str:
+    text = pattern.text if isinstance(pattern, Label) else ""
+    return " ".join((pattern.title or pattern.id or text).split())
 
 
 def _vibrations(

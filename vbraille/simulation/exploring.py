@@ -122,6 +122,14 @@ def spiral(
         # Up the left side, to where the next turn begins.
         x.append(inset - spacing_mm)
         y.append(min(inset, height_mm - inset + spacing_mm))
+    # What is left in the middle is gone along once.
+    inset = min(width_mm, height_mm) / 2
+    if width_mm >= height_mm:
+        x += [x[-1], width_mm - inset]
+        y += [inset, inset]
+    else:
+        x += [inset, inset]
+        y += [y[-1], height_mm - inset]
     return np.array(x), np.array(y)
 
 

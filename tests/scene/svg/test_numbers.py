@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
-from vbraille.scene.svg.numbers import Matrix, fit, length_px, numbers_of, transform_of
+from vbraille.scene.svg.numbers import AffineMap, fit, length_px, numbers_of, transform_of
 from vbraille.scene.svg.outlines import FLATNESS_MM, contours_of_path
 
 
@@ -78,11 +78,11 @@ def test_numbers_stand_without_spaces():
 
 
 def test_factors_of_lengths():
-    assert Matrix(a=2, d=-2).keeps_circles
+    assert AffineMap(a=2, d=-2).keeps_circles
     assert transform_of("rotate(30) scale(3)").keeps_circles
-    assert not Matrix(a=2, d=2.1).keeps_circles
+    assert not AffineMap(a=2, d=2.1).keeps_circles
     assert not transform_of("skewX(10)").keeps_circles
-    assert Matrix(a=4, d=1).scale == 2
+    assert AffineMap(a=4, d=1).scale == 2
     assert transform_of("rotate(20) scale(4 1)").largest == pytest.approx(4)
 
 
@@ -103,7 +103,7 @@ CURVES = {
 def test_chords_are_no_farther_from_their_curve_than_said(kind, places, angle, scale):
     text, at = CURVES[kind]
     cos, sin = scale * math.cos(angle), scale * math.sin(angle)
-    matrix = Matrix(cos, sin, -2 * sin, 2 * cos, 3, 4)
+    matrix = AffineMap(cos, sin, -2 * sin, 2 * cos, 3, 4)
     (contour,) = contours_of_path(text.format(*map(repr, places)), matrix)
     ends = [complex(*point) for point in contour.points_mm]
     farthest = max(
@@ -122,7 +122,7 @@ def _distance(place, a, b):
 @pytest.mark.parametrize("radius", [1, 10, 200])
 def test_arcs_are_flattened_on_their_circle(radius):
     d = f"M{-radius} 0A{radius} {radius} 0 0 1 {radius} 0A{radius} {radius} 0 1 1 {-radius} 0z"
-    (circle,) = contours_of_path(d, Matrix())
+    (circle,) = contours_of_path(d, AffineMap())
     assert circle.closed
     points = [complex(*point) for point in circle.points_mm]
     assert all(abs(abs(point) - radius) < 1e-3 for point in points)
@@ -133,7 +133,7 @@ def test_arcs_are_flattened_on_their_circle(radius):
 
 def test_contours_end_where_they_are_closed_and_begin_anew():
     d = "m 10,10 5,0 0,5 z l 0,-5 M 50 50 h 5 m 1 1 v 0 z M 0 0 L 1 1 2 0 0 0"
-    found = [(one.closed, len(one.points_mm)) for one in contours_of_path(d, Matrix())]
+    found = [(one.closed, len(one.points_mm)) for one in contours_of_path(d, AffineMap())]
     assert found == [(True, 3), (False, 2), (False, 2), (True, 3)]
 
 
@@ -144,4 +144,4 @@ def test_contours_end_where_they_are_closed_and_begin_anew():
 )  # fmt: skip
 def test_paths_that_cannot_be_drawn_are_refused(d):
     with pytest.raises(ValueError, match=r"not understood|10 m|begin"):
-        contours_of_path(d, Matrix())
+        contours_of_path(d, AffineMap())

@@ -27,7 +27,7 @@ def load(tmp_path):
 
 
 def test_a_drawing_has_ten_pixels_a_millimetre_and_its_own_size(load):
-    bitmap = load('<rect x="5" y="2" width="10" height="4"/>', channel="alpha")
+    bitmap = load('<rect x="5" y="2" width="0.104166667in" height="4"/>', channel="alpha")
     assert (bitmap.width_mm, bitmap.height_mm) == pytest.approx((20, 10))
     assert bitmap.intensities.shape == (100, 200)
     wanted = np.zeros((100, 200), np.uint16)

@@ -22,7 +22,7 @@ from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
-from vbraille.feeling.composing import compose
+from vbraille.feeling.composing import Composer
 from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.filewatch import FileWatch
 from vbraille.feeling.loading import check_fits, load_scene
@@ -71,8 +71,6 @@ def run(arguments: argparse.Namespace) -> int:
     loaded = load_scene(arguments.file, model_of(wanted).style)
     if is_simulated(arguments.device):
         _check(loaded, wanted, arguments.at)
-    if (note := compiling_note()) is not None:
-        print(note, file=sys.stderr, flush=True)
     with ExitStack() as listening, Keyboard() as keyboard:
         still = isinstance(moved, Still) and has_hand(arguments.device)
         if still and not (keyboard.attached or arguments.monitor):
@@ -80,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
                 "nothing would move the hand: start vbraille feel at a terminal, with --monitor, "
                 "or with a hand such as --hand wide"
             )
+        if (note := compiling_note()) is not None:
+            print(note, file=sys.stderr, flush=True)
         cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
         live = _live(arguments)
         if live is not None:
@@ -104,7 +104,8 @@ def run(arguments: argparse.Namespace) -> int:
                 check_actuators(display, wanted)
             _check(loaded, display, arguments.at)
             model = model_of(display)
-            program = compose(loaded, display, rate_hz=rate_hz, own_y_mm=arguments.at)
+            composer = Composer(display, rate_hz=rate_hz)
+            program = composer.compose(loaded, own_y_mm=arguments.at)
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
             suspension = listening.enter_context(Suspension())
@@ -113,12 +114,12 @@ def run(arguments: argparse.Namespace) -> int:
                 loaded,
                 device.engine,
                 where=lambda: device.pose,
+                composer=composer,
                 style=model.style,
                 say=hearing.say,
                 bound=BOUND,
                 room=room,
                 cue=hearing.cue,
-                rate_hz=rate_hz,
                 steering=device.steering,
                 at_mm=arguments.at,
                 entering=arguments.say_entering,

@@ -6,14 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vbraille.cli.scenes import prepare_scene
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
+from vbraille.feeling.loading import load_scene
 from vbraille.files import write_file
 from vbraille.pictures import scenes
+from vbraille.pictures.inkfiles import ink_bytes
 from vbraille.pictures.scenewords import scene_lines, scene_text
 from vbraille.render import MODELS
-from vbraille.wording import count, nearest
+from vbraille.wording import count, nearest, spelled
 
 if TYPE_CHECKING:
     import argparse
@@ -36,9 +37,10 @@ def run(arguments: argparse.Namespace) -> int:
     _check(arguments, kind)
     if out.exists() and not arguments.force and not out.is_dir():
         raise InputError(f"{out} is there already; give another name with --out, or --force")
-    prepared = prepare_scene(arguments.file, MODELS[arguments.model].style)
-    scene, assets = prepared.opened.resolved, prepared.assets
-    title = scene.title or Path(arguments.file).stem
+    loaded = load_scene(arguments.file, MODELS[arguments.model].style)
+    scene, assets, title = loaded.scene, loaded.assets, loaded.title
+    for note in loaded.notes:
+        say_line(spelled(note), aside=True)
     if arguments.vibration == "sequence":
         content, said = _sequence(scene, assets, arguments, kind, title)
     elif arguments.abstract or arguments.raised:
@@ -143,7 +145,7 @@ def _map(
     from vbraille.pictures.overmap import map_drawing
 
     drawing = map_drawing(scene, deflections, over, axes=arguments.axes)
-    return _ink(_named(drawing, scene, title, said), kind, per_mm), said
+    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm), said
 
 
 def _sequence(
@@ -198,7 +200,7 @@ def _drawing(
     per_mm = arguments.resolution or _FINE_PIXELS_PER_MM
     if kind == "png":
         scenes.check_pixels(scene.canvas, per_mm)
-    return _ink(_named(drawing, scene, title, said), kind, per_mm), said
+    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm), said
 
 
 def _per_mm(arguments: argparse.Namespace) -> float:
@@ -212,13 +214,3 @@ def _named(drawing: InkDrawing, scene: Scene, title: str, said: list[str]) -> In
 def _told(scene: Scene, said: list[str]) -> str:
     """Text of a picture's file: how it is drawn, and what it holds."""
     return f"{'; '.join(said)}; {scene_text(scene)}"
-
-
-def _ink(drawing: InkDrawing, kind: str, per_mm: float) -> bytes:
-    if kind == "svg":
-        from vbraille.pictures.inksvg import svg
-
-        return svg(drawing)
-    from vbraille.pictures import drawink
-
-    return drawink.ink_pdf(drawing) if kind == "pdf" else drawink.ink_png(drawing, per_mm)

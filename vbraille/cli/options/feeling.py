@@ -11,6 +11,9 @@ TYPE_CHECKING = False  # as in vbraille.cli
 if TYPE_CHECKING:
     from argparse import ArgumentParser
 
+# Options of a path over a picture, beside its name.
+PATH_OPTIONS = ("at", "radius", "seconds", "spacing", "speed", "sway", "unsteady", "back")
+
 
 def feel(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille feel``."""

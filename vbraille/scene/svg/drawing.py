@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from vbraille.errors import InputError
 from vbraille.scene.patterns import Group
 from vbraille.scene.svg.looks import drawn, share_of
-from vbraille.scene.svg.numbers import Matrix, fit, length_px, numbers_of, transform_of
+from vbraille.scene.svg.numbers import AffineMap, fit, length_px, numbers_of, transform_of
 from vbraille.scene.svg.outlines import MOST_POINTS
 from vbraille.scene.svg.shapes import SHAPES, circle_of, outline, patterns_of
 from vbraille.scene.svg.style import classes_of, styled
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.looks import Look
-    from vbraille.scene.svg.style import Sheet
+    from vbraille.scene.svg.looks import ClassLook
+    from vbraille.scene.svg.style import StyleSheet
     from vbraille.scene.svg.tree import Element
 
 # What only stands in a drawing to be used, or says something about it.
@@ -68,12 +68,12 @@ _NAMED_LINES = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class DrawnNode:
     """A pattern, the line of its element, and the same of its parts."""
 
     pattern: AnyPattern
     line: int
-    parts: tuple[Node, ...] = ()
+    parts: tuple[DrawnNode, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,10 +98,10 @@ class _Place:
         Whether their ids are kept, which belong to one place.
     """
 
-    matrix: Matrix
+    matrix: AffineMap
     style: Mapping[str, str]
     view: Point
-    look: Look | None = None
+    look: ClassLook | None = None
     strength: float = 1.0
     depth: int = 0
     groups: int = 0
@@ -109,7 +109,7 @@ class _Place:
 
 
 @dataclass(slots=True)
-class Drawing:
+class SvgDrawing:
     """A drawing that becomes patterns, and what was said of it so far.
 
     Parameters
@@ -119,15 +119,15 @@ class Drawing:
     sheet
         Rules of its style sheets.
     ids
-        Its elements by their ids.
+        The elements by their ids.
     looks
         What the scene says of classes.
     """
 
     name: str
-    sheet: Sheet
+    sheet: StyleSheet
     ids: Mapping[str, Element]
-    looks: Mapping[str, Look]
+    looks: Mapping[str, ClassLook]
     _notes: dict[str, list[tuple[int, str]]] = field(default_factory=lambda: defaultdict(list))
     _named: set[str] = field(default_factory=set)
     _used: list[str] = field(default_factory=list)
@@ -153,7 +153,7 @@ class Drawing:
             said.append(sentence)
         return tuple(said)
 
-    def inside(self, element: Element, place: _Place) -> list[Node]:
+    def inside(self, element: Element, place: _Place) -> list[DrawnNode]:
         """Patterns of what stands in an element."""
         if place.depth >= MOST_DEPTH:
             raise InputError(
@@ -166,7 +166,7 @@ class Drawing:
             children = children[:1]
         return [node for child in children for node in self._one(child, place)]
 
-    def _one(self, element: Element, around: _Place) -> list[Node]:
+    def _one(self, element: Element, around: _Place) -> list[DrawnNode]:
         """Patterns of an element."""
         name = name_of(element)
         self._count(element)
@@ -200,7 +200,7 @@ class Drawing:
         )
         return self._kept(element, name, place)
 
-    def _kept(self, element: Element, name: str, place: _Place) -> list[Node]:
+    def _kept(self, element: Element, name: str, place: _Place) -> list[DrawnNode]:
         """Patterns of an element that is shown, with what it is called."""
         title, description = title_of(element), description_of(element)
         own_id = id_of(element) if place.named else ""
@@ -218,12 +218,12 @@ class Drawing:
         line = element.sourceline or 0
         if len(found) == 1 and not (found[0].pattern.title or found[0].pattern.id):
             one = replace(found[0].pattern, id=own_id, title=title, description=description)
-            return [Node(one, line, found[0].parts)]
+            return [DrawnNode(one, line, found[0].parts)]
         parts = tuple(node.pattern for node in found)
         group = Group(id=own_id, title=title, description=description, parts=parts)
-        return [Node(group, line, tuple(found))]
+        return [DrawnNode(group, line, tuple(found))]
 
-    def _made(self, element: Element, name: str, place: _Place) -> list[Node]:
+    def _made(self, element: Element, name: str, place: _Place) -> list[DrawnNode]:
         """Patterns of an element that is shown, without what it is called."""
         if name == "use":
             return self._of_use(element, place)
@@ -237,10 +237,12 @@ class Drawing:
         with self._noting(element):
             if name == "text":
                 return [
-                    Node(replace(label, amplitude=_rounded(place.strength)), one.sourceline or line)
+                    DrawnNode(
+                        replace(label, amplitude=_rounded(place.strength)), one.sourceline or line
+                    )
                     for one, label in labels_of(element, place.matrix, place.style, self.sheet)
                 ]
-            return [Node(one, line) for one in self._shape(element, name, place)]
+            return [DrawnNode(one, line) for one in self._shape(element, name, place)]
         return []
 
     def _shape(self, element: Element, name: str, place: _Place) -> list[AnyPattern]:
@@ -278,7 +280,7 @@ class Drawing:
             return [replace(one, amplitude=_rounded(place.strength)) for one in found]
         return found
 
-    def _of_use(self, element: Element, place: _Place) -> list[Node]:
+    def _of_use(self, element: Element, place: _Place) -> list[DrawnNode]:
         """Patterns of what a use shows, at its place."""
         link = link_of(element)
         if not link.startswith("#"):
@@ -292,12 +294,12 @@ class Drawing:
             self.note(element, "it uses what it stands in; ignored")
             return []
         x, y = (length_px(element.get(of), 0.0) or 0.0 for of in ("x", "y"))
-        there = _with(place, matrix=place.matrix @ Matrix(e=x, f=y), named=False)
+        there = _with(place, matrix=place.matrix @ AffineMap(e=x, f=y), named=False)
         self._used.append(link)
         if name_of(target) in ("symbol", "svg"):
             self._count(target)
             style = styled(target, there.style, self.sheet)
-            moved = self._matrix(target) or Matrix()
+            moved = self._matrix(target) or AffineMap()
             inner = _with(there, matrix=there.matrix @ moved, style=style, depth=place.depth + 1)
             sizes = element.get("width"), element.get("height")
             found = self._of_svg(target, inner, sizes)
@@ -305,11 +307,11 @@ class Drawing:
             found = self._one(target, there)
         self._used.pop()
         line = element.sourceline or 0
-        return [Node(node.pattern, line, node.parts) for node in found]
+        return [DrawnNode(node.pattern, line, node.parts) for node in found]
 
     def _of_svg(
         self, element: Element, place: _Place, sizes: tuple[str | None, str | None] = (None, None)
-    ) -> list[Node]:
+    ) -> list[DrawnNode]:
         """Patterns of a drawing in a drawing, which is fitted into its rectangle."""
         x, y = (length_px(element.get(of), 0.0) or 0.0 for of in ("x", "y"))
         texts = (sizes[0] or element.get("width"), sizes[1] or element.get("height"))
@@ -318,7 +320,7 @@ class Drawing:
         if width <= 0 or height <= 0:
             self.note(element, "it has no size, and is left out")
             return []
-        matrix = place.matrix @ Matrix(e=x, f=y)
+        matrix = place.matrix @ AffineMap(e=x, f=y)
         view = view_of(element)
         if view is not None:
             how = element.get("preserveAspectRatio") or ""
@@ -326,11 +328,11 @@ class Drawing:
             width, height = view[2:]
         return self.inside(element, _with(place, matrix=matrix, view=(width, height)))
 
-    def _matrix(self, element: Element) -> Matrix | None:
+    def _matrix(self, element: Element) -> AffineMap | None:
         """Map of an element; None, which is said, if it is not understood."""
         text = element.get("transform")
         if text is None:
-            return Matrix()
+            return AffineMap()
         matrix = transform_of(text)
         if matrix is None:
             self.note(element, "its transform is not understood, so it is left out")
@@ -338,7 +340,7 @@ class Drawing:
             return None  # it is drawn as nothing
         return matrix
 
-    def _look(self, element: Element) -> Look | None:
+    def _look(self, element: Element) -> ClassLook | None:
         """What the scene says of an element's class, label or id."""
         if not self.looks:
             return None
@@ -362,7 +364,7 @@ class Drawing:
             self.note(element, f"{error}; it is left out")
 
 
-def start(matrix: Matrix, style: Mapping[str, str], view: Point) -> _Place:
+def start(matrix: AffineMap, style: Mapping[str, str], view: Point) -> _Place:
     """Place of what stands in a drawing's root."""
     return _Place(matrix, style, view)
 

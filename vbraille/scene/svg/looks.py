@@ -35,7 +35,7 @@ _LEAST_DASH_MM = 1.5
 _SEPARATOR = re.compile(r"[\s,]+")
 
 
-class Look(Table, frozen=True, kw_only=True):
+class ClassLook(Table, frozen=True, kw_only=True):
     """What the shapes of a class in a drawing become.
 
     Parameters
@@ -66,7 +66,7 @@ class Look(Table, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class ShapeLook:
     """How a shape is drawn here.
 
     Parameters
@@ -83,7 +83,7 @@ class Drawn:
     notes: tuple[str, ...] = ()
 
 
-def drawn(style: Mapping[str, str], scale_mm: float, look: Look | None) -> Drawn:
+def drawn(style: Mapping[str, str], scale_mm: float, look: ClassLook | None) -> ShapeLook:
     """Say how a shape of a style is drawn.
 
     Parameters
@@ -96,12 +96,12 @@ def drawn(style: Mapping[str, str], scale_mm: float, look: Look | None) -> Drawn
         What the scene says of its class; None if nothing.
     """
     notes: list[str] = []
-    look = look or Look()
+    look = look or ClassLook()
     fill = look.fill or _fill(style, notes)
     if look.dots is not None:
-        return Drawn(None, look.dots, fill, tuple(notes))
+        return ShapeLook(None, look.dots, fill, tuple(notes))
     stroke = look.stroke or _stroke(style, scale_mm, notes)
-    return Drawn(stroke, None, fill, tuple(notes))
+    return ShapeLook(stroke, None, fill, tuple(notes))
 
 
 def _fill(style: Mapping[str, str], notes: list[str]) -> Fill | None:

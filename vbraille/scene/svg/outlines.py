@@ -11,7 +11,7 @@ from vbraille.scene.measures import MOST_MM
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
-    from vbraille.scene.svg.numbers import Matrix
+    from vbraille.scene.svg.numbers import AffineMap
 
 # How far a chord may be from its curve. No array shows less.
 FLATNESS_MM = 0.05
@@ -35,7 +35,7 @@ class Contour:
     closed: bool
 
 
-def contours_of_path(d: str, matrix: Matrix, room: int = MOST_POINTS) -> list[Contour]:
+def contours_of_path(d: str, matrix: AffineMap, room: int = MOST_POINTS) -> list[Contour]:
     """Contours of the text of a path.
 
     Parameters
@@ -74,7 +74,7 @@ def contours_of_path(d: str, matrix: Matrix, room: int = MOST_POINTS) -> list[Co
     return contours
 
 
-def contour(places: list[complex], matrix: Matrix, *, closed: bool) -> list[Contour]:
+def contour(places: list[complex], matrix: AffineMap, *, closed: bool) -> list[Contour]:
     """Contour through places that are given in other coordinates; none if it has no length.
 
     Raises
@@ -130,7 +130,7 @@ def _segments(d: str) -> Any:
         raise ValueError(_NOT_UNDERSTOOD) from None
 
 
-def _chords(segment: Any, matrix: Matrix) -> list[complex]:
+def _chords(segment: Any, matrix: AffineMap) -> list[complex]:
     """Ends of the chords in place of a segment, without its start."""
     from svg.path import Arc, CubicBezier, QuadraticBezier
 

@@ -35,7 +35,8 @@ seconds, memory = map(int, sys.argv[1:])
 resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 import resvg_py
-png = resvg_py.svg_to_bytes(svg_string=sys.stdin.buffer.read().decode(), skip_system_fonts=True)
+text = sys.stdin.buffer.read().decode()
+png = resvg_py.svg_to_bytes(svg_string=text, skip_system_fonts=True, dpi=96)
 sys.stdout.buffer.write(bytes(png))
 """
 

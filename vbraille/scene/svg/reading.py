@@ -10,9 +10,9 @@ from msgspec.structs import replace
 from vbraille.errors import InputError
 from vbraille.scene.opened import FoundScene
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.svg.drawing import Drawing, start, view_of
-from vbraille.scene.svg.numbers import PX_MM, Matrix, fit, length_px
-from vbraille.scene.svg.style import Sheet, styled
+from vbraille.scene.svg.drawing import SvgDrawing, start, view_of
+from vbraille.scene.svg.numbers import PX_MM, AffineMap, fit, length_px
+from vbraille.scene.svg.style import StyleSheet, styled
 from vbraille.scene.svg.tree import name_of, read_tree, text_of
 from vbraille.scene.svg.words import description_of, title_of
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from vbraille.scene.svg.drawing import Node
-    from vbraille.scene.svg.looks import Look
+    from vbraille.scene.svg.drawing import DrawnNode
+    from vbraille.scene.svg.looks import ClassLook
     from vbraille.scene.svg.tree import Element
     from vbraille.scene.walking import Steps
 
@@ -30,7 +30,7 @@ _XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"
 _BY_SCRIPT = "its script is never run"
 
 
-def read_svg(path: Path, looks: Mapping[str, Look] | None = None) -> FoundScene:
+def read_svg(path: Path, looks: Mapping[str, ClassLook] | None = None) -> FoundScene:
     """Read a drawing as a scene.
 
     Paths, rectangles, circles, ellipses, lines, polylines and polygons become shapes, and texts
@@ -58,13 +58,13 @@ def read_svg(path: Path, looks: Mapping[str, Look] | None = None) -> FoundScene:
         than 50,000 elements or 500,000 places together with what it uses again.
     """
     root = read_tree(path)
-    sheet = Sheet()
-    drawing = Drawing(str(path), sheet, _ids(root), looks or {})
+    sheet = StyleSheet()
+    drawing = SvgDrawing(str(path), sheet, _ids(root), looks or {})
     for element in root.iter():
         _look_through(element, sheet, drawing)
     width, height = size_px(root, str(path))
     view = view_of(root)
-    matrix = Matrix(a=PX_MM, d=PX_MM)
+    matrix = AffineMap(a=PX_MM, d=PX_MM)
     if view is not None:
         matrix = matrix @ fit(view, (width, height), root.get("preserveAspectRatio") or "")
     seen = view[2:] if view is not None else (width, height)
@@ -128,7 +128,7 @@ def _ids(root: Element) -> dict[str, Element]:
     return ids
 
 
-def _look_through(element: Element, sheet: Sheet, drawing: Drawing) -> None:
+def _look_through(element: Element, sheet: StyleSheet, drawing: SvgDrawing) -> None:
     """Take an element's style sheet, and note scripts."""
     name = name_of(element)
     if name == "script":
@@ -142,7 +142,7 @@ def _look_through(element: Element, sheet: Sheet, drawing: Drawing) -> None:
         drawing.note(element, _BY_SCRIPT)
 
 
-def _add_lines(lines: dict[Steps, int], steps: Steps, nodes: list[Node]) -> None:
+def _add_lines(lines: dict[Steps, int], steps: Steps, nodes: list[DrawnNode]) -> None:
     """Lines of elements and of their parts, by the keys that lead to them."""
     left = [((*steps, number), node) for number, node in enumerate(nodes)]
     while left:

@@ -15,8 +15,8 @@ from vbraille.scene.svg.tree import name_of
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.looks import Drawn
-    from vbraille.scene.svg.numbers import Matrix
+    from vbraille.scene.svg.looks import ShapeLook
+    from vbraille.scene.svg.numbers import AffineMap
     from vbraille.scene.svg.tree import Element
 
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))
@@ -25,7 +25,7 @@ _MOST_CROSSED = 2000  # places of a contour that is searched for crossings
 CROSSING = "it crosses itself, or may; it is filled by the even-odd rule"
 
 
-def outline(element: Element, matrix: Matrix, view: Point, room: int) -> list[Contour]:
+def outline(element: Element, matrix: AffineMap, view: Point, room: int) -> list[Contour]:
     """Contours of a shape.
 
     Parameters
@@ -79,12 +79,10 @@ def rounded(element: Element, view: Point) -> tuple[Point, Point]:
         diagonal = ((view[0] ** 2 + view[1] ** 2) / 2) ** 0.5
         (radius,) = _lengths(element, ("r",), (diagonal,))
         return (place[0], place[1]), (radius, radius)
-    own = element.get("rx"), element.get("ry")
-    rx, ry = _lengths(element, ("rx", "ry"), view)
-    return (place[0], place[1]), (ry if own[0] is None else rx, rx if own[1] is None else ry)
+    return (place[0], place[1]), _radii(element, view)
 
 
-def circle_of(element: Element, matrix: Matrix, view: Point, drawn: Drawn) -> Circle | None:
+def circle_of(element: Element, matrix: AffineMap, view: Point, drawn: ShapeLook) -> Circle | None:
     """Circle that a circle or an ellipse is on the canvas; None if it is none there."""
     (x, y), (rx, ry) = rounded(element, view)
     radius = rx * matrix.scale
@@ -101,7 +99,7 @@ def circle_of(element: Element, matrix: Matrix, view: Point, drawn: Drawn) -> Ci
 
 
 def patterns_of(
-    name: str, contours: list[Contour], drawn: Drawn, *, nonzero: bool, notes: list[str]
+    name: str, contours: list[Contour], drawn: ShapeLook, *, nonzero: bool, notes: list[str]
 ) -> list[AnyPattern]:
     """Patterns of a shape, from the lowest on.
 
@@ -157,13 +155,11 @@ def _is_polygon(name: str, contours: list[Contour]) -> bool:
     return name == "polygon" or (name == "rect" and len(contours[0].points_mm) == 4)
 
 
-def _rectangle(element: Element, matrix: Matrix, view: Point) -> list[Contour]:
+def _rectangle(element: Element, matrix: AffineMap, view: Point) -> list[Contour]:
     x, y, width, height = _lengths(element, ("x", "y", "width", "height"), (*view, *view))
     if width <= 0 or height <= 0:
         return []
-    own = element.get("rx"), element.get("ry")
-    rx, ry = _lengths(element, ("rx", "ry"), view)
-    rx, ry = ry if own[0] is None else rx, rx if own[1] is None else ry
+    rx, ry = _radii(element, view)
     rx, ry = min(max(rx, 0.0), width / 2), min(max(ry, 0.0), height / 2)
     right, bottom = x + width, y + height
     if not rx or not ry:
@@ -176,6 +172,15 @@ def _rectangle(element: Element, matrix: Matrix, view: Point) -> list[Contour]:
         f"H{x + rx!r}{arc} {x!r} {bottom - ry!r}V{y + ry!r}{arc} {x + rx!r} {y!r}Z",
         matrix,
     )
+
+
+def _radii(element: Element, view: Point) -> Point:
+    """Radii along x and y; one that is not given, or below 0, is like the other."""
+    rx, ry = (
+        length_px(element.get(of), whole) for of, whole in zip(("rx", "ry"), view, strict=True)
+    )
+    rx, ry = (None if of is None or of < 0 else of for of in (rx, ry))
+    return (rx if rx is not None else ry or 0.0), (ry if ry is not None else rx or 0.0)
 
 
 def _lengths(element: Element, names: tuple[str, ...], wholes: tuple[float, ...]) -> list[float]:

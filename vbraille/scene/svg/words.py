@@ -16,8 +16,8 @@ from vbraille.scene.svg.tree import INKSCAPE, name_of, text_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from vbraille.scene.svg.numbers import Matrix
-    from vbraille.scene.svg.style import Sheet
+    from vbraille.scene.svg.numbers import AffineMap
+    from vbraille.scene.svg.style import StyleSheet
     from vbraille.scene.svg.tree import Element
 
 # The size of braille is the device's, not the drawing's, and is not known here. These are a
@@ -71,7 +71,7 @@ class _Line:
 
 
 def labels_of(
-    element: Element, matrix: Matrix, style: Mapping[str, str], sheet: Sheet
+    element: Element, matrix: AffineMap, style: Mapping[str, str], sheet: StyleSheet
 ) -> Iterator[tuple[Element, Label]]:
     """Labels of an element ``text``, one for each of its lines.
 
@@ -118,7 +118,7 @@ def labels_of(
         yield line.element, Label(text=text, place_mm=place, angle_deg=degrees)
 
 
-def _lines(element: Element, style: Mapping[str, str], sheet: Sheet) -> Iterator[_Line]:
+def _lines(element: Element, style: Mapping[str, str], sheet: StyleSheet) -> Iterator[_Line]:
     """Lines of a text, which begin anew wherever a part of it has a place of its own."""
     start = _place(element, style, complex(0, 0))
     line = _Line(start or 0j, style.get("text-anchor", "start"), "", element)
