@@ -39,7 +39,7 @@ class Gathered:
     form
         What the file itself says.
     elements, textures
-        Its elements and named textures, and those that it includes.
+        Elements and named textures of the file and of those that it includes.
     origins
         Where each of them is written.
     warnings
