@@ -13,7 +13,6 @@ from vbraille.render.scene import texturekernels as textures
 from vbraille.render.scene import words as w
 from vbraille.render.scene.braillekernel import label, label_opacity
 from vbraille.render.waves import compiled
-from vbraille.render.work import THETA, TIME, X, Y
 
 _NO_BLOCK = 0
 
