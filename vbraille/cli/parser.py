@@ -93,11 +93,6 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         lambda parser: _add(parser, "action", "ACTION", DEVICE_ACTIONS),
         "vbraille device check serial:/dev/ttyACM0",
     ),
-    "scene": (
-        "Convert tactile pictures of other programs.",
-        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
-        "vbraille scene convert umbrella.gen --out umbrella.scene",
-    ),
     "session": (
         "Run legibility sessions, and keep every answer.",
         lambda parser: _add(parser, "action", "ACTION", SESSION_ACTIONS),
@@ -118,10 +113,33 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         forecast.predict,
         "vbraille predict grid.toml --out predicted --workers 2",
     ),
+    "scene": (
+        "Look through tactile pictures, and convert those of others.",
+        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
+        "vbraille scene check texts/scenes/house.scene",
+    ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
         reading.tables,
         "vbraille tables --language fr",
+    ),
+}
+SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
+    "check": (
+        "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
+        "what, and what is hard to feel.",
+        scenes.check,
+        "vbraille scene check texts/scenes/house.scene",
+    ),
+    "convert": (
+        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
+        scenes.convert,
+        "vbraille scene convert umbrella.gen --out umbrella.scene",
+    ),
+    "schema": (
+        "Print the form of scene files as a JSON Schema, for editors that complete and check.",
+        reading.nothing,
+        "vbraille scene schema > scene.schema.json",
     ),
 }
 DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
@@ -146,13 +164,6 @@ DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
         "their gains; h says the keys.",
         reading.device_calibrate,
         "vbraille device calibrate serial:/dev/ttyACM0",
-    ),
-}
-SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
-    "convert": (
-        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
-        scenes.convert,
-        "vbraille scene convert umbrella.gen --out umbrella.scene",
     ),
 }
 SESSION_ACTIONS: dict[str, tuple[str, Options, str]] = {

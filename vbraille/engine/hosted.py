@@ -244,18 +244,20 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
         keep(config["log"])
     wanted = Display(**config["wanted"])
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
-    with opened_device(config["device"], wanted, fits=config["fits"]) as device:
+    how = {name: config[name] for name in ("fits", "often")}
+    with opened_device(config["device"], wanted, **how) as device:
+        rate_hz = min(wanted.rate_hz, device.display.rate_hz)
         corrected = correct_by_kept(Path(config["settings"]), device)
         channel.say(opened=asdict(device.display), calibration=corrected and corrected.to_json())
-        told = wait_for_line(orders, device, wanted.rate_hz)
+        told = wait_for_line(orders, device, rate_hz)
         if not told:
             return  # the parent has gone, or given up
         extent = shared.Extent(**json.loads(told))
         mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
         os.close(descriptor)
         refused = go_real_time()
-        rehearse(device, wanted.rate_hz)
-        loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
+        rehearse(device, rate_hz)
+        loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, parent)
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, event=refused and to_json(refused))

@@ -68,6 +68,9 @@ class OpenDevice(DeviceInUse):
     wanted
         Display and rate that are asked for: a simulated device is made like this, a real device is
         what it is.
+    often
+        Whether a device of a spec must take frames at the rate that is asked for; otherwise it is
+        sent them at its own rate where that is lower.
     hand, seed
         Hand that moves the simulated device, and seed of what is random in it.
     clock
@@ -95,6 +98,7 @@ class OpenDevice(DeviceInUse):
         device: str | Device,
         wanted: Display,
         *,
+        often: bool = True,
         hand: str = HAND,
         seed: int = 1,
         clock: Clock | None = None,
@@ -138,6 +142,7 @@ class OpenDevice(DeviceInUse):
             self._engine = Host(
                 device_spec(device, hand, seed, self._hand.steering, self._hand.pointer),
                 wanted,
+                often=often,
                 pass_fds=self._hand.descriptors,
                 spawned=spawned,
             )

@@ -64,9 +64,9 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
     """
     size = (0.0, 0.0)
 
-    def shape(columns: int, rows: int) -> tuple[int, int]:
+    def shape(columns: int, rows: int, own: tuple[float, float] | None) -> tuple[int, int]:
         nonlocal size
-        size = size_mm(pattern, columns, rows)
+        size = size_mm(pattern, columns, rows, own)
         most_columns, most_rows = shape_of(*size, MOST_PER_MM)
         return min(columns, most_columns), min(rows, most_rows)
 

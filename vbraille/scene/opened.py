@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
 from vbraille.errors import InputError
-from vbraille.scene.naming import said
+from vbraille.scene.naming import about, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -89,7 +89,7 @@ class Origins:
         """
         found = self.of(steps)
         if found is None:
-            raise InputError(f"{said(steps)} {problem}")
+            raise InputError(about(steps, problem))
         origin, there = found
         origin.fail(there, problem)
 
@@ -122,9 +122,14 @@ class OpenedScene:
     origins: Origins
     warnings: tuple[str, ...] = ()
 
+    @property
+    def places(self) -> tuple[str, ...]:
+        """File and line of each element."""
+        return tuple(self.place(number) for number in range(len(self.written.elements)))
+
     def place(self, number: int) -> str:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
         steps: Steps = ("elements", number)
-        if self.origins.of(steps) is None:  # a group of what another file has
-            steps = (*steps, "parts", 0)
-        return self.origins.place(steps)
+        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
+        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
+        return self.origins.place(first if made_here else steps)

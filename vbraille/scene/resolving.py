@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from msgspec.structs import replace
 
+from vbraille.errors import InputError
 from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.opened import Origins
 from vbraille.scene.patterns import Group, ImageDots, Use
@@ -128,7 +129,10 @@ class _Resolving:
         if isinstance(pattern, ImageDots):
             from vbraille.scene.blobs import dots_of  # loads the reading of images
 
-            return dots_of(pattern, self._folder)
+            try:
+                return dots_of(pattern, self._folder)
+            except InputError as error:
+                self._fail(steps, f": {error}")
         return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
 
     def _used(self, use: Use, steps: Steps) -> AnyPattern:
@@ -142,10 +146,10 @@ class _Resolving:
         title = use.title or pattern.title
         description = use.description or pattern.description
         if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
-            return replace(pattern, id=use.id, title=title, description=description)
+            return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
-            parts=(replace(pattern, title="", description=""),),
+            parts=(_called(pattern, "", "", ""),),
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,
@@ -199,7 +203,14 @@ def points_of(pattern: AnyPattern) -> int:
 def _nameless(pattern: AnyPattern) -> AnyPattern:
     """Pattern without ids, since each is the name of one thing."""
     inside = with_children(pattern, lambda _, part: _nameless(part))
-    return replace(inside, id="") if inside.id else inside
+    return _called(inside, "", inside.title, inside.description)
+
+
+def _called(pattern: AnyPattern, name: str, title: str, description: str) -> AnyPattern:
+    """Pattern with another id, title and description; made anew, and checked, only if need be."""
+    if (pattern.id, pattern.title, pattern.description) == (name, title, description):
+        return pattern
+    return replace(pattern, id=name, title=title, description=description)
 
 
 def _measured(pattern: AnyPattern) -> _Body:

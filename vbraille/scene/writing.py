@@ -99,8 +99,17 @@ def _said(table: Table) -> list[tuple[str, object]]:
     first = [key for key in _FIRST if key in said]
     last = [key for key in _LAST if key in said and isinstance(table, Pattern)]
     middle = [key for key in said if key not in (*first, *last)]
-    middle.sort(key=lambda key: isinstance(said[key], Table))  # the place, and then the looks
+    middle.sort(key=lambda key: _depth(said[key]))
     return [(key, said[key]) for key in (*first, *middle, *last)]
+
+
+def _depth(value: object) -> int:
+    """How far down a value stands in its table: what a thing is, its looks, what is in it."""
+    if isinstance(value, Table):
+        return 1
+    if isinstance(value, Mapping):
+        return 2
+    return 3 if isinstance(value, tuple) and any(isinstance(v, Table) for v in value) else 0
 
 
 def _nothing(table: Table, name: str) -> object:
@@ -112,16 +121,21 @@ def _nothing(table: Table, name: str) -> object:
 
 def _valued(key: str, value: object) -> list[str]:
     """Lines of a key whose value is no table: one, or one for each item if it is too long."""
-    line = f"{key} = {_value(value)}"
+    return _laid(f"{key} = ", value, "")
+
+
+def _laid(before: str, value: object, after: str, indent: str = "") -> list[str]:
+    line = f"{indent}{before}{_value(value)}{after}"
     if len(line) <= LONGEST or not isinstance(value, tuple):
         return [line]
-    return [f"{key} = [", *(f"  {_value(item)}," for item in value), "]"]
+    items = [line for item in value for line in _laid("", item, ",", f"{indent}  ")]
+    return [f"{indent}{before}[", *items, f"{indent}]{after}"]
 
 
 def _inline(key: str, table: Table) -> str | None:
     """Line of a key whose value is a small table; None if that stands better by itself."""
     said = _said(table)
-    if any(isinstance(value, Table | Mapping) for _, value in said):
+    if any(_depth(value) for _, value in said):
         return None
     kind = type(table).__struct_config__
     parts = [f"{kind.tag_field} = {_text(str(kind.tag))}"] if kind.tag_field else []

@@ -7,6 +7,14 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser
 
 
+def check(parser: ArgumentParser) -> None:
+    """Add the options of ``vbraille scene check``."""
+    parser.add_argument(
+        "file", metavar="FILE", help="Check this scene, SVG or file of OpenLatero's."
+    )
+    parser.add_argument("--json", action="store_true", help="Print the report as JSON.")
+
+
 def convert(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille scene convert``."""
     parser.add_argument(

@@ -100,10 +100,7 @@ def vibration(above: GenElement, context: Context, always_up: str = "") -> Vibra
     if not element.switch("enable", True):
         element.forget()
         return None
-    hertz = element.number(
-        "frequency", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz"
-    )
-    amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
+    swing = swung(element, context)
     low = element.word("blend_mode", ("high", "low"), "high") == "low"
     if low and always_up:
         element.say(f"{always_up} have nothing down that could vibrate; what is up does")
@@ -113,8 +110,16 @@ def vibration(above: GenElement, context: Context, always_up: str = "") -> Vibra
         low = False
     elif low:
         element.say("what is down vibrates, as the file says; OpenLatero ignores blend_mode low")
-    shown_hz = timed(hertz, context)
-    return Vibration(frequency_hz=shown_hz, amplitude=amplitude, of="low" if low else "high")
+    return replace(swing, of="low") if low else swing
+
+
+def swung(element: GenElement, context: Context) -> Vibration:
+    """Vibration that an element tells of, whether it is on or off; of what is up."""
+    hertz = element.number(
+        "frequency", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz"
+    )
+    amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
+    return Vibration(frequency_hz=timed(hertz, context), amplitude=amplitude)
 
 
 def timed(hertz: float, context: Context) -> float:

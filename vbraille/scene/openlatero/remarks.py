@@ -36,13 +36,10 @@ class Remarks:
         >>> remarks.listed()
         ('line 4, Circle: its icon is ignored (and line 9)',)
         """
-        found = [
-            (sorted(set(lines)), f"{element}: {text}" if element else text)
-            for (element, text), lines in self._lines.items()
-        ]
+        found = sorted((sorted(set(lines)), *key) for key, lines in self._lines.items())
         return tuple(
-            f"line {lines[0]}{',' if text[0].isupper() else ':'} {text}{_others(lines[1:])}"
-            for lines, text in sorted(found)
+            f"line {lines[0]}, {element}: {text}{_others(lines[1:])}"
+            for lines, element, text in found
         )
 
 

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, vibration
 from vbraille.scene.openlatero.strokes import across_of, drawn, edge_of, filling
@@ -94,9 +95,9 @@ def read_polygon(element: GenElement, context: Context) -> AnyPattern | None:
     fill = _fill(element, context, look)
     if look.stroke is None and look.dots is None and fill is None:
         return _nothing(element)
-    if meeting_edges(vertices) is not None:
+    if len(vertices) > 2 and meeting_edges(vertices) is not None:
         return _path(element, vertices, look, fill, markers)
-    return Polygon(
+    made = Polygon(
         vertices_mm=vertices,
         join="straight" if straight else "rounded",
         rounding_offset_mm=offset,
@@ -106,6 +107,16 @@ def read_polygon(element: GenElement, context: Context) -> AnyPattern | None:
         fill=fill,
         markers=markers,
     )
+    if look.stroke is not None and (markers is not None or (look.stroke.along and not straight)):
+        _say_tight(element, made)
+    return made
+
+
+def _say_tight(element: GenElement, polygon: Polygon) -> None:
+    """Say so if arcs at two corners overlap, which are smaller here."""
+    wanted = rounding_radius_mm(polygon)
+    if any(joint.radius_mm < wanted for joint in joints(polygon.vertices_mm, wanted)):
+        element.say("an edge is too short for the round joints at its ends, which are smaller here")
 
 
 def _path(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_MM, MOST_MM
-from vbraille.scene.openlatero.context import vibration
+from vbraille.scene.openlatero.context import swung, vibration
 from vbraille.scene.patterns import Fill
 from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Stroke, Vibration
 from vbraille.scene.textures import LinearGrating
@@ -63,7 +63,9 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
     edge = edge_of(ridge, edge_of(beneath, 1.0))
     across = across_of(ridge) if ridge.children else across_of(beneath)
     fill = element.one("fill")
-    swing = vibration(row if fill is None else fill, context, "dots" if is_dotted else "")
+    swinging = row if fill is None else fill
+    corners = _against(swinging, context) if corners_swing and is_dotted else None
+    swing = vibration(swinging, context, "dots" if is_dotted else "")
     row.skip("vibration")
     width = _profiled(ridge, width)
     if width < LEAST_MM:
@@ -83,7 +85,6 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
             across=across,
             vibration=swing,
         )
-        corners = _against(swing) if corners_swing else None
         dots = Dotting(dot=dot, separation_mm=spacing, vertex_vibration=corners)
         return Drawn(intensity, None, dots)
     row.forget()
@@ -243,6 +244,9 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
     return max(-most, min(most, speed))
 
 
-def _against(swing: Vibration | None) -> Vibration:
+def _against(above: GenElement, context: Context) -> Vibration:
     """Vibration of dots on vertices, which swing where the others do not."""
-    return Vibration() if swing is None else Vibration(amplitude=0.0)
+    element = above.part("vibration")
+    if element.children and element.switch("enable", True):
+        return Vibration(amplitude=0.0)
+    return swung(element, context)

@@ -61,6 +61,8 @@ def read_tree(content: bytes, name: str, remarks: Remarks) -> GenElement:
     declared: Any = root.getroottree().docinfo.internalDTD
     if declared is not None and any(True for _ in declared.iterentities()):
         raise _entities(name)
+    if root.xpath("count(//*)") > MOST_ELEMENTS:
+        raise InputError(f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two")
     _say_faults(parser, remarks)
     return _elements(root, name, remarks)
 
@@ -85,18 +87,12 @@ def _elements(root: Any, name: str, remarks: Remarks) -> GenElement:
     """Elements for those of the library, without going through them by recursion."""
     top = _element(root, None, remarks)
     left: list[tuple[Any, GenElement, int]] = [(root, top, 1)]
-    number = 1
     while left:
         xml, element, depth = left.pop()
         for inner in xml:
             if not isinstance(inner.tag, str):  # an entity that is declared nowhere
                 element.say(f"the entity {printable(inner.text or '')} is ignored")
                 continue
-            number += 1
-            if number > MOST_ELEMENTS:
-                raise InputError(
-                    f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two"
-                )
             if depth >= DEEPEST:
                 raise InputError(f"{name} line {inner.sourceline}: its elements nest too deep")
             child = _element(inner, element, remarks)

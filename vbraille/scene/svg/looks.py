@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 # Textures of the bank by hue; white surfaces are smooth, and hide what they lie on.
 BY_HUE = {
-    "gray": "stock:horizontal",
-    "blue": "stock:vertical",
+    "gray": "stock:linear-0",
+    "blue": "stock:linear-90",
     "green": "stock:dots",
-    "yellow": "stock:diagonal",
+    "yellow": "stock:linear-45",
     "purple": "stock:grid",
     "red": "stock:vibration",
 }
@@ -35,7 +35,7 @@ _LEAST_DASH_MM = 1.5
 _SEPARATOR = re.compile(r"[\s,]+")
 
 
-class Look(Table, frozen=True, kw_only=True):
+class ClassLook(Table, frozen=True, kw_only=True):
     """What the shapes of a class in a drawing become.
 
     Parameters
@@ -66,7 +66,7 @@ class Look(Table, frozen=True, kw_only=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class ShapeLook:
     """How a shape is drawn here.
 
     Parameters
@@ -83,7 +83,7 @@ class Drawn:
     notes: tuple[str, ...] = ()
 
 
-def drawn(style: Mapping[str, str], scale_mm: float, look: Look | None) -> Drawn:
+def drawn(style: Mapping[str, str], scale_mm: float, look: ClassLook | None) -> ShapeLook:
     """Say how a shape of a style is drawn.
 
     Parameters
@@ -96,12 +96,12 @@ def drawn(style: Mapping[str, str], scale_mm: float, look: Look | None) -> Drawn
         What the scene says of its class; None if nothing.
     """
     notes: list[str] = []
-    look = look or Look()
+    look = look or ClassLook()
     fill = look.fill or _fill(style, notes)
     if look.dots is not None:
-        return Drawn(None, look.dots, fill, tuple(notes))
+        return ShapeLook(None, look.dots, fill, tuple(notes))
     stroke = look.stroke or _stroke(style, scale_mm, notes)
-    return Drawn(stroke, None, fill, tuple(notes))
+    return ShapeLook(stroke, None, fill, tuple(notes))
 
 
 def _fill(style: Mapping[str, str], notes: list[str]) -> Fill | None:
@@ -126,7 +126,7 @@ def _stroke(style: Mapping[str, str], scale_mm: float, notes: list[str]) -> Stro
         return None
     width_mm = width * scale_mm
     if width_mm < LEAST_STROKE_MM:
-        notes.append(f"a line of {width_mm:.2g} mm is drawn {LEAST_STROKE_MM:g} mm wide")
+        notes.append(f"its line is drawn {LEAST_STROKE_MM:g} mm wide, not to be missed")
         width_mm = LEAST_STROKE_MM
     width_mm = round(min(width_mm, _MOST_STROKE_MM), 4)
     hue, amount = paint

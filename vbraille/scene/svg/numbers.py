@@ -7,8 +7,10 @@ import re
 from dataclasses import dataclass
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_LENGTH = re.compile(rf"\s*({_NUMBER})\s*(px|pt|pc|mm|cm|in|em|ex|q|%)?\s*", re.IGNORECASE)
-_NUMBERS = re.compile(rf"{_NUMBER}")
+_LENGTH = re.compile(
+    rf"\s*({_NUMBER})\s*(px|pt|pc|mm|cm|in|em|ex|q|%)?\s*", re.IGNORECASE | re.ASCII
+)
+_NUMBERS = re.compile(_NUMBER, re.ASCII)
 _TRANSFORM = re.compile(r"\s*,?\s*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)\s*")
 # Pixels of CSS, 96 to the inch.
 PX_MM = 25.4 / 96
@@ -63,7 +65,7 @@ def numbers_of(text: str | None) -> list[float]:
 
 
 @dataclass(frozen=True, slots=True)
-class Matrix:
+class AffineMap:
     """An affine map, x' = a x + c y + e and y' = b x + d y + f, as SVG writes it."""
 
     a: float = 1.0
@@ -73,9 +75,9 @@ class Matrix:
     e: float = 0.0
     f: float = 0.0
 
-    def __matmul__(self, first: Matrix) -> Matrix:
+    def __matmul__(self, first: AffineMap) -> AffineMap:
         """Map that does ``first``, and then this one."""
-        return Matrix(
+        return AffineMap(
             self.a * first.a + self.c * first.b,
             self.b * first.a + self.d * first.b,
             self.a * first.c + self.c * first.d,
@@ -114,13 +116,13 @@ class Matrix:
         return all(map(math.isfinite, (self.a, self.b, self.c, self.d, self.e, self.f)))
 
 
-def transform_of(text: str | None) -> Matrix | None:
+def transform_of(text: str | None) -> AffineMap | None:
     """Map of an attribute ``transform``; None if it is not understood.
 
     >>> transform_of("translate(10) scale(2)").put(1 + 1j)
     (12+2j)
     """
-    whole, at = Matrix(), 0
+    whole, at = AffineMap(), 0
     text = (text or "").strip()
     while at < len(text):
         found = _TRANSFORM.match(text, at)
@@ -133,31 +135,31 @@ def transform_of(text: str | None) -> Matrix | None:
     return whole if whole.finite else None
 
 
-def _one(kind: str, of: list[float]) -> Matrix | None:
+def _one(kind: str, of: list[float]) -> AffineMap | None:
     """Map of one function; None if it has a number of numbers that it cannot have."""
     match kind, len(of):
         case "matrix", 6:
-            return Matrix(*of)
+            return AffineMap(*of)
         case "translate", 1 | 2:
-            return Matrix(e=of[0], f=(*of, 0.0)[1])
+            return AffineMap(e=of[0], f=(*of, 0.0)[1])
         case "scale", 1 | 2:
-            return Matrix(a=of[0], d=of[-1])
+            return AffineMap(a=of[0], d=of[-1])
         case "rotate", 1 | 3:
             angle = math.radians(of[0])
             cos, sin = math.cos(angle), math.sin(angle)
-            turn = Matrix(cos, sin, -sin, cos)
+            turn = AffineMap(cos, sin, -sin, cos)
             if len(of) == 1:
                 return turn
-            return Matrix(e=of[1], f=of[2]) @ turn @ Matrix(e=-of[1], f=-of[2])
+            return AffineMap(e=of[1], f=of[2]) @ turn @ AffineMap(e=-of[1], f=-of[2])
         case "skewX", 1:
-            return Matrix(c=math.tan(math.radians(of[0])))
+            return AffineMap(c=math.tan(math.radians(of[0])))
         case "skewY", 1:
-            return Matrix(b=math.tan(math.radians(of[0])))
+            return AffineMap(b=math.tan(math.radians(of[0])))
         case _:
             return None
 
 
-def fit(view: tuple[float, float, float, float], size: tuple[float, float], how: str) -> Matrix:
+def fit(view: tuple[float, float, float, float], size: tuple[float, float], how: str) -> AffineMap:
     """Map of a viewBox into a rectangle at the origin, by ``preserveAspectRatio``.
 
     Parameters
@@ -174,11 +176,11 @@ def fit(view: tuple[float, float, float, float], size: tuple[float, float], how:
     words = how.split()
     align = next((word for word in words if word != "defer"), "xMidYMid")
     if align == "none":
-        return Matrix(a=across, d=down, e=-left * across, f=-top * down)
+        return AffineMap(a=across, d=down, e=-left * across, f=-top * down)
     one = max(across, down) if "slice" in words else min(across, down)
     shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
     x, y = shares.get(align[1:4], 0.5), shares.get(align[5:8], 0.5)
-    return Matrix(
+    return AffineMap(
         a=one,
         d=one,
         e=x * (size[0] - width * one) - left * one,

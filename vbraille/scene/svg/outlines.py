@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,14 +11,20 @@ from vbraille.scene.measures import MOST_MM
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
-    from vbraille.scene.svg.numbers import Matrix
+    from vbraille.scene.svg.numbers import AffineMap
 
 # How far a chord may be from its curve. No array shows less.
 FLATNESS_MM = 0.05
-MOST_POINTS = 1_000_000  # of a drawing
+MOST_POINTS = 500_000  # of a drawing
+_MOST_CHARACTERS = 2_000_000  # of the text of a path
+_NOT_UNDERSTOOD = "its text is not understood"
+# What may stand between commands, and how many numbers each command takes at a time. The flags of
+# arcs may stand without spaces, so theirs are not counted.
+_COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([-+0-9.eE,\s]*)", re.ASCII)
+_NUMBERS = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 1}
 _DECIMALS = 4  # of a millimetre: points that are equal so far are one
 _MOST_CHORDS = 10_000  # of a curve
-_MOST_CHARACTERS = 5_000_000  # of the text of a path
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +35,7 @@ class Contour:
     closed: bool
 
 
-def contours_of_path(d: str, matrix: Matrix) -> list[Contour]:
+def contours_of_path(d: str, matrix: AffineMap, room: int = MOST_POINTS) -> list[Contour]:
     """Contours of the text of a path.
 
     Parameters
@@ -37,6 +44,8 @@ def contours_of_path(d: str, matrix: Matrix) -> list[Contour]:
         The text, as of the attribute ``d``.
     matrix
         Map from its coordinates to mm on the canvas.
+    room
+        How many places it may have; after those it is not read on.
 
     Returns
     -------
@@ -48,34 +57,24 @@ def contours_of_path(d: str, matrix: Matrix) -> list[Contour]:
     ValueError
         If the text is not understood, or goes too far.
     """
-    from svg.path import Close, Move, parse_path
+    from svg.path import Close, Move
 
-    if len(d) > _MOST_CHARACTERS:
-        raise ValueError("it is longer than 5 million characters")
-    try:
-        segments = parse_path(d)
-    # The parser means to raise ValueError, and for some texts raises what its own code does.
-    except (ValueError, ArithmeticError, AttributeError, IndexError, TypeError, AssertionError):
-        raise ValueError("its text is not understood") from None
     contours: list[Contour] = []
     places: list[complex] = []
-    for segment in segments:
-        if isinstance(segment, Move):
-            _add(contours, places, closed=False)
+    for segment in _segments(d):
+        if isinstance(segment, Move | Close):
+            _add(contours, places, closed=isinstance(segment, Close))
+            room -= len(places)
             places = [matrix.put(segment.end)]
-            continue
-        if isinstance(segment, Close):
-            _add(contours, places, closed=True)
-            places = [matrix.put(segment.end)]
-            continue
-        if not places:
-            raise ValueError("its text does not begin with a place")
-        places += _chords(segment, matrix)
+        else:
+            places += _chords(segment, matrix)
+        if len(places) > room:
+            break
     _add(contours, places, closed=False)
     return contours
 
 
-def contour(places: list[complex], matrix: Matrix, *, closed: bool) -> list[Contour]:
+def contour(places: list[complex], matrix: AffineMap, *, closed: bool) -> list[Contour]:
     """Contour through places that are given in other coordinates; none if it has no length.
 
     Raises
@@ -107,28 +106,49 @@ def _add(contours: list[Contour], places: list[complex], *, closed: bool) -> Non
         contours.append(Contour(tuple(points), closed))
 
 
-def _chords(segment: Any, matrix: Matrix) -> list[complex]:
+def _segments(d: str) -> Any:
+    """Segments of the text of a path, which is one as a whole.
+
+    The library leaves off without a word where some texts go wrong.
+    """
+    from svg.path import parse_path
+
+    end = 0
+    for found in _COMMAND.finditer(d):
+        numbers = _NUMBERS.findall(found[2])
+        count = _COUNTS[found[1].upper()]
+        wrong = len(numbers) % count or not numbers if count else numbers
+        if wrong or d[end : found.start()].strip() or len(d) > _MOST_CHARACTERS:
+            raise ValueError(_NOT_UNDERSTOOD)
+        end = found.end()
+    if end < len(d.rstrip()) or d.lstrip()[:1].upper() != "M":
+        raise ValueError(_NOT_UNDERSTOOD)
+    try:
+        return parse_path(d)
+    # It means to raise ValueError, and for some texts raises what its own code does.
+    except (ValueError, ArithmeticError, AttributeError, IndexError, TypeError, AssertionError):
+        raise ValueError(_NOT_UNDERSTOOD) from None
+
+
+def _chords(segment: Any, matrix: AffineMap) -> list[complex]:
     """Ends of the chords in place of a segment, without its start."""
     from svg.path import Arc, CubicBezier, QuadraticBezier
 
-    start, end = matrix.put(segment.start), matrix.put(segment.end)
+    end = matrix.put(segment.end)
     # A chord is within h² |B''| / 8 of its curve, h being its share of it.
     if isinstance(segment, CubicBezier):
-        one, two = matrix.put(segment.control1), matrix.put(segment.control2)
+        start, one, two = map(matrix.put, (segment.start, segment.control1, segment.control2))
         bend = 6 * max(abs(start - 2 * one + two), abs(one - 2 * two + end))
         return [
-            start * (1 - t) ** 3
-            + 3 * one * t * (1 - t) ** 2
-            + 3 * two * t * t * (1 - t)
-            + end * t**3
-            for t in _shares(bend)
+            start * u**3 + 3 * one * t * u * u + 3 * two * t * t * u + end * t**3
+            for t, u in ((t, 1 - t) for t in _shares(bend))
         ]
     if isinstance(segment, QuadraticBezier):
-        one = matrix.put(segment.control)
+        start, one = matrix.put(segment.start), matrix.put(segment.control)
         bend = 2 * abs(start - 2 * one + end)
         return [start * (1 - t) ** 2 + 2 * one * t * (1 - t) + end * t * t for t in _shares(bend)]
     if isinstance(segment, Arc) and segment.start != segment.end:
-        radii = abs(segment.radius.real), abs(segment.radius.imag)
+        radii = segment.radius.real, segment.radius.imag
         if all(radii):
             largest = max(radii) * segment.radius_scale * matrix.largest
             bend = largest * math.radians(segment.delta) ** 2

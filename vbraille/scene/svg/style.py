@@ -44,7 +44,7 @@ _MOST_RULES = 1000
 
 
 @dataclass(slots=True)
-class Sheet:
+class StyleSheet:
     """Rules of a drawing's style sheets.
 
     Parameters
@@ -56,7 +56,7 @@ class Sheet:
         What of the sheets is ignored, each in a few words.
     """
 
-    rules: dict[str, list[_Rule]] = field(default_factory=lambda: defaultdict(list))
+    rules: dict[str, list[_StyleRule]] = field(default_factory=lambda: defaultdict(list))
     ignored: list[str] = field(default_factory=list)
     _count: int = 0
 
@@ -108,7 +108,7 @@ class Sheet:
         self._count += 1
         weight = (kinds.count("#"), kinds.count("."), bool(tag), self._count)
         key = f"{parts[-1][0]}{parts[-1][1]}" if parts else tag or "*"
-        self.rules[key].append(_Rule(weight, tag, frozenset(k + n for k, n in parts), said))
+        self.rules[key].append(_StyleRule(weight, tag, frozenset(k + n for k, n in parts), said))
 
     def said_of(self, element: Element) -> dict[str, str]:
         """What the sheets say of an element, the most special last."""
@@ -131,7 +131,7 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class _Rule:
+class _StyleRule:
     weight: tuple[int, int, bool, int]
     tag: str
     names: frozenset[str]
@@ -154,7 +154,7 @@ def declarations(text: str) -> dict[str, str]:
     return said
 
 
-def styled(element: Element, above: Mapping[str, str], sheet: Sheet) -> dict[str, str]:
+def styled(element: Element, above: Mapping[str, str], sheet: StyleSheet) -> dict[str, str]:
     """Style of an element: what it inherits, its attributes, style sheets, its own style.
 
     Parameters
@@ -166,11 +166,7 @@ def styled(element: Element, above: Mapping[str, str], sheet: Sheet) -> dict[str
     sheet
         The drawing's style sheets.
     """
-    own: dict[str, str] = {}
-    for name in (*INHERITED, *OWN):
-        value = element.get(name)
-        if value is not None:
-            own[name] = value.strip()
+    own = {str(k): str(v).strip() for k, v in element.items() if k in INHERITED or k in OWN}
     own |= sheet.said_of(element)
     if style := element.get("style"):
         own |= declarations(style)

@@ -19,7 +19,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 XLINK = "{http://www.w3.org/1999/xlink}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 MOST_BYTES = 50 << 20
-MOST_ELEMENTS = 100_000
+MOST_ELEMENTS = 50_000
 MOST_DEPTH = 200
 _MOST_ENTITY = 256  # characters of an entity's text
 _MOST_DECLARED = 20_000  # characters; those of Adobe Illustrator are 2,000
@@ -57,7 +57,7 @@ def read_tree(path: Path) -> Element:
     ------
     InputError
         If the file cannot be read, is no SVG, is not well formed, has entities that are no plain
-        text, more than 100,000 elements, elements more than 200 deep, or is larger than 50 MB.
+        text, more than 50,000 elements, elements more than 200 deep, or is larger than 50 MB.
     """
     content = read_bytes(path, MOST_BYTES)
     if content.startswith(b"\x1f\x8b"):
@@ -180,7 +180,8 @@ def _parsed(text: str, path: Path) -> Element:
             raise InputError(
                 f"{path} has elements more than {MOST_DEPTH} deep; ungroup some of them"
             ) from None
-        raise InputError(f"{path} is not well-formed XML: {_short(error.msg or '', 150)}") from None
+        said = _short(error.msg or "it ends too soon", 150)
+        raise InputError(f"{path} is not well-formed XML: {said}") from None
 
 
 def name_of(element: Element) -> str:
@@ -198,6 +199,11 @@ def called(element: Element) -> str:
     own = element.get("id")
     name = name_of(element) or "element"
     return f"{name} {_short(own)}" if own else name
+
+
+def text_of(element: Element) -> str:
+    """All characters within an element."""
+    return "".join(map(str, element.itertext()))
 
 
 def link_of(element: Element) -> str:
