@@ -1,4 +1,4 @@
-"""Scenes, compiled for a display: `vbraille.render.scene.words` has what the programs are made of."""
+"""Scenes, compiled for a display; `vbraille.render.scene.words` has what their programs say."""
 
 from __future__ import annotations
 
@@ -9,25 +9,15 @@ from vbraille.render import work
 from vbraille.render.program import Program, head
 from vbraille.render.scene import words
 from vbraille.render.scene.assets import Assets
-from vbraille.render.scene.flat import Flat, flatten, put_together
-from vbraille.render.scene.frequencies import check_rate, frequency_hz
+from vbraille.render.scene.elements import FlatElements
 from vbraille.render.scene.grid import Grid, assemble
-from vbraille.render.scene.nodes import NodeKind
-from vbraille.render.scene.trees import deflection, layer
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
     from vbraille.display import Display
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
 
 _RATE_HZ = 1000.0
-_KINDS = {
-    "multiply": NodeKind.MULTIPLY,
-    "add": NodeKind.ADD,
-    "maximum": NodeKind.MAXIMUM,
-    "overwrite": NodeKind.OVER,
-}
 
 
 def compile_scene(
@@ -79,12 +69,11 @@ class SceneCompiler:
 
     def __init__(self, display: Display, *, rate_hz: float = _RATE_HZ, pruned: bool = True) -> None:
         self._display, self._rate_hz, self._pruned = display, rate_hz, pruned
-        self._known: dict[int, tuple[AnyPattern, Flat]] = {}
-        self._assets: Assets | None = None
+        self._elements = FlatElements()
 
     def compile(self, scene: Scene, assets: Assets | None = None) -> Program:
         """Compile a scene; see `compile_scene`."""
-        flat = self._flat(scene, Assets() if assets is None else assets)
+        flat = self._elements.put_together(scene, assets or Assets(), self._rate_hz)
         display = self._display
         radius_mm = 0.5 * math.hypot(display.span_mm, display.depth_mm)
         grid = Grid.over(scene.canvas, radius_mm, self._pruned)
@@ -94,32 +83,3 @@ class SceneCompiler:
         numbers[work.FREQUENCY] = 0.0 if flat is None else flat.frequency_hz
         numbers[work.AMPLITUDE] = numbers[work.FREQUENCY] > 0.0
         return Program(*assemble(numbers, scene.canvas, grid, flat))
-
-    def _flat(self, scene: Scene, assets: Assets) -> Flat | None:
-        if not scene.elements:
-            return None
-        if assets is not self._assets:
-            self._known, self._assets = {}, assets
-        if scene.operation not in _KINDS:
-            raise ValueError(
-                f'operation = "{scene.operation}" is for groups; put the elements into one'
-            )
-        laid = scene.operation == "overwrite"
-        known: dict[int, tuple[AnyPattern, Flat]] = {}
-        parts = []
-        for element in scene.elements:
-            found = self._known.get(id(element))
-            if found is None:
-                tree = layer(element, assets) if laid else deflection(element, assets)
-                check_rate(element, len(parts) + 1, self._rate_hz)
-                found = (element, flatten(tree, frequency_hz(element)))
-            known[id(element)] = found
-            parts.append(found[1])
-        self._known = known
-        flat = put_together(parts, _KINDS[scene.operation])
-        if flat.depth > words.DEPTH:
-            raise ValueError(
-                f"patterns stand in each other so deep that {flat.depth} of them are half done at "
-                f"once; there is room for {words.DEPTH}, so put fewer into each other"
-            )
-        return flat

@@ -22,7 +22,7 @@ from vbraille.render.scene.referencestrokes import (
     is_inside,
 )
 from vbraille.render.scene.referencewaves import (
-    Places,
+    ActuatorPlaces,
     Values,
     axial_grating,
     intensity,
@@ -112,18 +112,18 @@ def opacity(
     return mask(pattern, assets, places(x_mm, y_mm, parity, time_s))
 
 
-def places(x_mm: ArrayLike, y_mm: ArrayLike, parity: ArrayLike, time_s: float) -> Places:
+def places(x_mm: ArrayLike, y_mm: ArrayLike, parity: ArrayLike, time_s: float) -> ActuatorPlaces:
     """Make places of arrays; single numbers count for all."""
     x, y, odd = np.broadcast_arrays(
         np.atleast_1d(np.asarray(x_mm, np.float64)), np.asarray(y_mm, np.float64), parity
     )
-    return Places(x, y, np.where(odd == 0, 1.0, -1.0), time_s)
+    return ActuatorPlaces(x, y, np.where(odd == 0, 1.0, -1.0), time_s)
 
 
 # Deflections
 
 
-def deflection(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
+def deflection(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute a pattern with its changes: amplitude, then inversion, then vibration."""
     changed = pattern.amplitude * plain(pattern, assets, at)
     if pattern.inverted:
@@ -131,7 +131,7 @@ def deflection(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
     return np.clip(vibrated(changed, at, pattern.vibration), 0.0, 1.0)
 
 
-def plain(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
+def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute a pattern without its changes."""
     match pattern:
         case Uniform():
@@ -163,7 +163,7 @@ def plain(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
     raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
 
 
-def shape(shape: Line | Circle | Polygon | Path, assets: Assets, at: Places) -> Values:
+def shape(shape: Line | Circle | Polygon | Path, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute a shape: its stroke or dots, and its fill, fig. 8.21.
 
     A blended fill is eq. 8.20 with the profile at full amplitude, or else a weak stroke would let
@@ -182,7 +182,7 @@ def shape(shape: Line | Circle | Polygon | Path, assets: Assets, at: Places) -> 
     return up + inner * np.clip(from_edge / fill.fade_mm, 0.0, 1.0)
 
 
-def group(group: Group, assets: Assets, at: Places) -> Values:
+def group(group: Group, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute a group: masking, addition, maximum, eqs. 8.21 and 8.22."""
     parts = [deflection(part, assets, at) for part in group.parts]
     match group.operation:
@@ -204,7 +204,7 @@ def group(group: Group, assets: Assets, at: Places) -> Values:
             return shown
 
 
-def _blended(group: Group, assets: Assets, at: Places, parts: Sequence[Values]) -> Values:
+def _blended(group: Group, assets: Assets, at: ActuatorPlaces, parts: Sequence[Values]) -> Values:
     """Compute eq. 8.21: (1 - α) δ1 + α δ2."""
     assert group.by is not None
     alpha = deflection(group.by, assets, at)
@@ -218,7 +218,7 @@ def _placed(dots: Dots) -> list[PlacedDot]:
 # Opacity masks
 
 
-def mask(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
+def mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute a pattern's opacity mask μ: 8.4.5 and fig. 8.25.
 
     Amplitude does not change it, nor does vibration of what is up. It is nowhere below the
@@ -244,7 +244,7 @@ def mask(pattern: AnyPattern, assets: Assets, at: Places) -> Values:
     return everywhere
 
 
-def _group_mask(group: Group, assets: Assets, at: Places) -> Values:
+def _group_mask(group: Group, assets: Assets, at: ActuatorPlaces) -> Values:
     """Compute the mask of a group, which the source does not give.
 
     It follows the group's own operation, so that it is nowhere below the group. The masks of

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render.scene.referencewaves import (
-    Places,
+    ActuatorPlaces,
     Values,
     moved_on,
     ridges,
@@ -93,7 +93,7 @@ class Coordinates:
     edge: NDArray[np.int64]
 
 
-def coordinates(shape: AnyShape, at: Places) -> Coordinates:
+def coordinates(shape: AnyShape, at: ActuatorPlaces) -> Coordinates:
     """Compute the coordinates of places, seen from a shape: eqs. 8.15-8.19 and fig. 8.18."""
     if isinstance(shape, Circle):
         return _of_circle(shape, at)
@@ -112,7 +112,7 @@ def coordinates(shape: AnyShape, at: Places) -> Coordinates:
     )
 
 
-def _of_circle(circle: Circle, at: Places) -> Coordinates:
+def _of_circle(circle: Circle, at: ActuatorPlaces) -> Coordinates:
     """Compute eqs. 8.18 and 8.19; the angle is from 0 to 2π, and so begins to the right."""
     dx, dy = at.from_point(*circle.center_mm)
     across = np.abs(np.hypot(dx, dy) - circle.radius_mm)
@@ -121,7 +121,7 @@ def _of_circle(circle: Circle, at: Places) -> Coordinates:
     return Coordinates(across, along, none, none)
 
 
-def _of_contour(points: Sequence[Point], at: Places, *, closed: bool) -> Coordinates:
+def _of_contour(points: Sequence[Point], at: ActuatorPlaces, *, closed: bool) -> Coordinates:
     """Compute eqs. 8.15-8.17 for the nearest of the lines between points.
 
     Where a corner is the nearest place, two lines are; then it is the one on whose side of the
@@ -156,7 +156,7 @@ def _of_contour(points: Sequence[Point], at: Places, *, closed: bool) -> Coordin
     return Coordinates(np.min(r, axis=0), places[edge] + along[edge, every], contour, edge)
 
 
-def _rounded(polygon: Polygon, seen: Coordinates, at: Places) -> Coordinates:
+def _rounded(polygon: Polygon, seen: Coordinates, at: ActuatorPlaces) -> Coordinates:
     """Let l go along an arc at each joint, with the angle about its pivot: fig. 8.18."""
     corners = joints(polygon.vertices_mm, rounding_radius_mm(polygon))
     places = places_along_mm(polygon)
@@ -177,7 +177,7 @@ def _rounded(polygon: Polygon, seen: Coordinates, at: Places) -> Coordinates:
     return Coordinates(seen.across_mm, along, seen.contour, seen.edge)
 
 
-def _round_arc(corner: Joint, at: Places) -> Values:
+def _round_arc(corner: Joint, at: ActuatorPlaces) -> Values:
     """Distance along a joint's arc from its middle: R' times the angle about the pivot."""
     dx, dy = at.from_point(*corner.pivot_mm)
     onward = dx * corner.onward[0] + dy * corner.onward[1]
@@ -186,7 +186,7 @@ def _round_arc(corner: Joint, at: Places) -> Values:
     return corner.radius_mm * np.clip(np.arctan2(onward, outward), -half, half)
 
 
-def is_inside(shape: AnyShape, at: Places) -> NDArray[np.bool_]:
+def is_inside(shape: AnyShape, at: ActuatorPlaces) -> NDArray[np.bool_]:
     """Tell which places are inside a closed shape, by the even-odd rule."""
     if isinstance(shape, Circle):
         return np.hypot(*at.from_point(*shape.center_mm)) < shape.radius_mm
@@ -211,7 +211,7 @@ def stroke_profile(stroke: Stroke, r: Values) -> Values:
     return profile(r, stroke.width_mm, stroke.edge)
 
 
-def stroke_deflection(shape: AnyShape, stroke: Stroke, at: Places) -> Values:
+def stroke_deflection(shape: AnyShape, stroke: Stroke, at: ActuatorPlaces) -> Values:
     """Compute eqs. 8.7-8.14 and the markers of figs. 8.19 and 8.20."""
     seen = coordinates(shape, at)
     r, width = seen.across_mm, stroke.width_mm
@@ -247,7 +247,7 @@ def _cut(along: Along, cycles: Sequence[Cycle], seen: Coordinates, time_s: float
 
 
 def marked(
-    polygon: Polygon, markers: Markers, width: float, seen: Coordinates, at: Places
+    polygon: Polygon, markers: Markers, width: float, seen: Coordinates, at: ActuatorPlaces
 ) -> Values:
     """Compute the share of the markers in a polygon's stroke: 8.4.3, figs. 8.19 and 8.20.
 
@@ -283,7 +283,10 @@ def dot_profile(dot: DotStyle, r: Values) -> Values:
 
 
 def dots_deflection(
-    places: Sequence[PlacedDot], dot: DotStyle, at: Places, vertices: Vibration | None = None
+    places: Sequence[PlacedDot],
+    dot: DotStyle,
+    at: ActuatorPlaces,
+    vertices: Vibration | None = None,
 ) -> Values:
     """Compute dots, of which the largest counts: 8.4.4.
 
@@ -298,7 +301,7 @@ def dots_deflection(
     return most
 
 
-def dots_profile(places: Sequence[PlacedDot], dot: DotStyle, at: Places) -> Values:
+def dots_profile(places: Sequence[PlacedDot], dot: DotStyle, at: ActuatorPlaces) -> Values:
     """Compute the profile of dots at full amplitude, which is what hides a fill."""
     most = np.zeros(at.x_mm.shape)
     for place in places:
@@ -307,7 +310,7 @@ def dots_profile(places: Sequence[PlacedDot], dot: DotStyle, at: Places) -> Valu
     return most
 
 
-def dots_mask(places: Sequence[PlacedDot], dot: DotStyle, at: Places) -> Values:
+def dots_mask(places: Sequence[PlacedDot], dot: DotStyle, at: ActuatorPlaces) -> Values:
     """Compute the opacity of dots: their profile, or a texture of theirs where that is higher."""
     most = np.zeros(at.x_mm.shape)
     for place in places:
@@ -320,7 +323,7 @@ def dots_mask(places: Sequence[PlacedDot], dot: DotStyle, at: Places) -> Values:
 # Shapes
 
 
-def drawn(shape: AnyShape, at: Places) -> Values:
+def drawn(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute a shape's stroke or its dots, without its fill."""
     if shape.stroke is not None:
         return stroke_deflection(shape, shape.stroke, at)
@@ -329,7 +332,7 @@ def drawn(shape: AnyShape, at: Places) -> Values:
     return np.zeros(at.x_mm.shape)
 
 
-def drawn_profile(shape: AnyShape, at: Places) -> Values:
+def drawn_profile(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute the profile of a shape's stroke or of its dots, at full amplitude."""
     if shape.stroke is not None:
         return stroke_profile(shape.stroke, coordinates(shape, at).across_mm)
@@ -338,7 +341,7 @@ def drawn_profile(shape: AnyShape, at: Places) -> Values:
     return np.zeros(at.x_mm.shape)
 
 
-def drawn_mask(shape: AnyShape, at: Places) -> Values:
+def drawn_mask(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute the opacity of a shape's stroke or of its dots: their profile at full amplitude.
 
     A texture across them may be above the profile near their edges; the mask is then the texture,

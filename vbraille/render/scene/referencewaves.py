@@ -26,7 +26,7 @@ Values = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Places:
+class ActuatorPlaces:
     """Places of actuators on the canvas at one moment.
 
     Parameters
@@ -48,7 +48,9 @@ class Places:
         """Vectors from a point to the places."""
         return self.x_mm - x_mm, self.y_mm - y_mm
 
-    def wrapped(self, origin_mm: tuple[float, float], width_mm: float, height_mm: float) -> Places:
+    def wrapped(
+        self, origin_mm: tuple[float, float], width_mm: float, height_mm: float
+    ) -> ActuatorPlaces:
         """Places within their tile: p mod (w, h), Lévesque 2009, 8.4.1."""
         dx, dy = self.from_point(*origin_mm)
         return replace(self, x_mm=np.mod(dx, width_mm), y_mm=np.mod(dy, height_mm))
@@ -57,17 +59,17 @@ class Places:
 # Vibration
 
 
-def vibration(at: Places, frequency_hz: float) -> Values:
+def vibration(at: ActuatorPlaces, frequency_hz: float) -> Values:
     """Compute δ_vib of eq. 8.1: neighbours swing against each other about the middle."""
     return 0.5 + 0.5 * at.sign * math.sin(math.tau * frequency_hz * at.time_s)
 
 
-def share_left(at: Places, swing: Vibration) -> Values:
+def share_left(at: ActuatorPlaces, swing: Vibration) -> Values:
     """Compute δ¹_vib of eq. 8.3, by which other deflections are multiplied."""
     return (1 - swing.amplitude) + swing.amplitude * vibration(at, swing.frequency_hz)
 
 
-def vibrated(deflection: Values, at: Places, swing: Vibration | None) -> Values:
+def vibrated(deflection: Values, at: ActuatorPlaces, swing: Vibration | None) -> Values:
     """Let what is up vibrate, δ δ¹_vib, or what is down, 1 - (1 - δ) δ¹_vib: 8.4.1, fig. 8.10."""
     if swing is None:
         return deflection
@@ -126,7 +128,7 @@ def distorted(x: Values, distortion: Gradual | Peak | None) -> Values:
     return peak(x, distortion.factor, distortion.center_mm, distortion.length_mm)
 
 
-def linear_grating(grating: LinearGrating, at: Places) -> Values:
+def linear_grating(grating: LinearGrating, at: ActuatorPlaces) -> Values:
     """Compute a linear grating: x is the abscissa along the direction of travel, 8.4.1."""
     angle = math.radians(travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg))
     dx, dy = at.from_point(*grating.start_mm)
@@ -135,14 +137,14 @@ def linear_grating(grating: LinearGrating, at: Places) -> Values:
     return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.time_s), cycle)
 
 
-def radial_grating(grating: RadialGrating, at: Places) -> Values:
+def radial_grating(grating: RadialGrating, at: ActuatorPlaces) -> Values:
     """Compute a radial grating: x is the distance from its centre, 8.4.1."""
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
     x = distorted(np.hypot(*at.from_point(*grating.center_mm)), grating.distortion)
     return ridges(moved_on(x, cycle, grating.velocity_mm_s, at.time_s), cycle)
 
 
-def axial_grating(grating: AxialGrating, at: Places) -> Values:
+def axial_grating(grating: AxialGrating, at: ActuatorPlaces) -> Values:
     """Compute an axial grating: x is the angle round its centre, in degrees, 8.4.1.
 
     Near the centre it goes over linearly into ``middle`` between the radii at which the arc of its
@@ -166,7 +168,7 @@ def axial_grating(grating: AxialGrating, at: Places) -> Values:
 # Images
 
 
-def intensity(bitmap: Bitmap, at: Places) -> Values:
+def intensity(bitmap: Bitmap, at: ActuatorPlaces) -> Values:
     """Compute the intensity of a bitmap, bilinear between the middles of its pixels: 8.4.2."""
     rows, columns = bitmap.intensities.shape
     framed = np.full((rows + 2, columns + 2), bitmap.outside)

@@ -13,7 +13,6 @@ from vbraille.render.scene import texturekernels as textures
 from vbraille.render.scene import words as w
 from vbraille.render.scene.braillekernel import label, label_opacity
 from vbraille.render.waves import compiled
-from vbraille.render.work import THETA, TIME, X, Y
 
 _NO_BLOCK = 0
 
@@ -174,51 +173,6 @@ def evaluate(numbers, table, rows, start, count, time):
         elif operation == w.UNWRAP:
             top -= 2
             _unwrap(rows, top, count)
-
-
-@compiled
-def show(numbers, table, rows, at, out):
-    """Fill a frame with the deflections of a scene at a pose and a time."""
-    above, across = out.shape
-    x, y = at[X], at[Y]
-    column = math.floor((x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM])
-    row = math.floor((y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM])
-    columns = numbers[w.GRID_COLUMNS]
-    # Beyond the grid no actuator is on the canvas; NaN, too, is nowhere.
-    if not (0.0 <= column < columns and 0.0 <= row < numbers[w.GRID_ROWS]):
-        out[:] = 0.0
-        return
-    start = int(numbers[w.GRID + int(row * columns + column)])
-    if int(numbers[start]) == w.END:
-        out[:] = 0.0
-        return
-    lanes = above * across
-    cosine, sine = 1.0, 0.0
-    theta = at[THETA]
-    if theta != 0.0:
-        cosine, sine = math.cos(theta), math.sin(theta)
-    n = 0
-    for i in range(above):
-        down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
-        for j in range(across):
-            aside = (j - 0.5 * (across - 1)) * numbers[w.COLUMN_MM]
-            rows[w.X_ROW, n] = x + aside * cosine + down * sine
-            rows[w.Y_ROW, n] = y + down * cosine - aside * sine
-            rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
-            n += 1
-    evaluate(numbers, table, rows, start, lanes, at[TIME])
-    n = 0
-    left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
-    top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
-    for i in range(above):
-        for j in range(across):
-            px, py = rows[w.X_ROW, n], rows[w.Y_ROW, n]
-            on = left <= px <= right and top <= py <= bottom
-            value = rows[w.STACK, n]
-            value = value if value > 0.0 else 0.0
-            value = value if value < 1.0 else 1.0
-            out[i, j] = value if on else 0.0
-            n += 1
 
 
 @compiled

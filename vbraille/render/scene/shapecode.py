@@ -245,7 +245,11 @@ def _say_places(shape: AnyShape, block: Block, parts: bool) -> list[int]:
     kept = block.keep(_segments(shape, along or marked))
     if not parts:
         block.say_parts(kept)
-    block.say(words.SEGMENTS, float(places.ALONG if along or marked else places.ACROSS))
+    asked = places.ACROSS
+    if along or marked:
+        rounded = isinstance(shape, Polygon) and shape.join == "rounded"
+        asked = places.ROUNDED if rounded or _differ(stroke_cycles(shape)) else places.ALONG
+    block.say(words.SEGMENTS, float(asked))
     if fill_of(shape) is not None:
         block.say(words.INSIDE)
     if marked:

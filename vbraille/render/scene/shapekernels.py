@@ -23,8 +23,9 @@ from vbraille.render.waves import compiled
 
 _FAR = 1e12  # mm²
 _TURN = 2 * math.pi
-# What is asked of `segments`.
-ACROSS, ALONG = range(2)
+# What is asked of `segments`: only how far across, how far along, or along round corners and
+# within cycles that differ.
+ACROSS, ALONG, ROUNDED = range(3)
 # Numbers of a segment: its start and direction, its length, and y of its end.
 (
     START_X,
@@ -79,7 +80,7 @@ def segments(numbers, rows, at, time, block, first, parts, count):
     along = numbers[at] != ACROSS
     if along:
         for n in range(count):
-            rows[FREE_ROW, n] = 0.0
+            rows[FREE_ROW, n] = rows[ALONG_ROW, n] = 0.0
             rows[PART_ROW, n] = block + numbers[first]
     for number in range(parts):
         part = block + int(numbers[first + number])
@@ -100,7 +101,7 @@ def segments(numbers, rows, at, time, block, first, parts, count):
         end_half_x, end_half_y = numbers[part + END_HALF_X], numbers[part + END_HALF_Y]
         bias = numbers[part + END_BIAS]
         end_x, end_y = x + length * right, y + length * down
-        place = float(part)
+        place, begin = float(part), numbers[part + BEGIN]
         for n in range(count):
             px, py = rows[X_ROW, n], rows[Y_ROW, n]
             dx, dy = px - x, py - y
@@ -113,14 +114,15 @@ def segments(numbers, rows, at, time, block, first, parts, count):
             dx -= v * right
             dy -= v * down
             q = dx * dx + dy * dy
-            other = (u <= 0.0 and before) or (u >= length and after)
-            nearer = q < rows[ACROSS_ROW, n] and not other
+            other = ((u <= 0.0) & before) | ((u >= length) & after)
+            nearer = (q < rows[ACROSS_ROW, n]) & (other == False)  # noqa: E712
             rows[ACROSS_ROW, n] = q if nearer else rows[ACROSS_ROW, n]
             rows[FREE_ROW, n] = u if nearer else rows[FREE_ROW, n]
             rows[PART_ROW, n] = place if nearer else rows[PART_ROW, n]
+            rows[ALONG_ROW, n] = begin + u if nearer else rows[ALONG_ROW, n]
     for n in range(count):
         rows[ACROSS_ROW, n] = math.sqrt(rows[ACROSS_ROW, n])
-    if along:
+    if numbers[at] == ROUNDED:
         for n in range(count):
             rows[ALONG_ROW, n] = _along(
                 numbers,
@@ -181,7 +183,7 @@ def inside(numbers, rows, block, first, parts, count):
         for n in range(count):
             py = rows[Y_ROW, n]
             crossed = (y > py) != (end > py)
-            hit = crossed and rows[X_ROW, n] < x + (py - y) * slope
+            hit = crossed & (rows[X_ROW, n] < x + (py - y) * slope)
             was = rows[INSIDE_ROW, n]
             rows[INSIDE_ROW, n] = 1.0 - was if hit else was
 

@@ -122,7 +122,7 @@ def _group_mask(pattern: Group, assets: Assets) -> Node | None:
     if pattern.by is not None:
         if not known:
             return None
-        first, second = (_one() if part is None else part for part in masks)
+        first, second = (ONE if part is None else part for part in masks)
         return _blend((first, second), deflection(pattern.by, assets))
     if len(known) < len(masks):
         return None
@@ -133,10 +133,6 @@ def _blend(parts: Sequence[Node], by: Node) -> Node:
     first, second = parts
     depth = max(first.depth, 1 + second.depth, 2 + by.depth)
     return Node(NodeKind.BLEND, (first, second, by), depth=depth)
-
-
-def _one() -> Node:
-    return Node(NodeKind.LEAF, say=_say_one, one=True)
 
 
 def _changed(pattern: Pattern, own: Node) -> Node:
@@ -306,6 +302,9 @@ def _say_texture(pattern: AnyPattern, block: Block, parts: bool) -> list[int]:
 def _say_one(block: Block, parts: bool) -> list[int]:
     block.say(words.LEVEL, 1.0)
     return []
+
+
+ONE = Node(NodeKind.LEAF, say=_say_one, one=True)
 
 
 def _say_bitmap(bitmap: Bitmap, block: Block, parts: bool) -> list[int]:

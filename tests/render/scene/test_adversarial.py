@@ -1,0 +1,270 @@
+"""Pictures that are hard to render: degenerate, huge, tiny, far away, and felt for hours."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.render.scene.scenes import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
+from vbraille.render.scene import reference
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    Line,
+    Path,
+    Polygon,
+    Tile,
+)
+from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.textures import (
+    AxialGrating,
+    Gradual,
+    LinearGrating,
+    Peak,
+    RadialGrating,
+    TurnPeak,
+    Uniform,
+    UniformVibration,
+)
+
+HOURS_S = 36_000.0
+ALONG = Stroke(width_mm=4, along=Along(ridge_mm=2, gap_mm=1, whole_cycles=False))
+SQUARE = ((10, 10), (40, 10), (40, 40), (10, 40))
+
+
+def over(x_mm, y_mm, theta_rad=0.0, time_s=0.3):
+    """A pose at which an actuator stands at this very place."""
+    return At(x_mm - 0.6, y_mm - 0.7, theta_rad, time_s)
+
+
+def everywhere(scene, rng, *, around=(30.0, 30.0), count=12, time_s=None):
+    """Compare kernel and twin around a place."""
+    for pose in poses(rng, count):
+        at = At(
+            pose.x_mm - 30 + around[0],
+            pose.y_mm - 30 + around[1],
+            pose.theta_rad,
+            pose.time_s if time_s is None else time_s,
+        )
+        frame = shown(scene, STRESS2_8X8_ARRAY, at)
+        assert np.isfinite(frame).all()
+
+
+def wide(width, **more):
+    return Stroke(width_mm=width, **more)
+
+
+STAR = tuple(
+    (30 + r * math.cos(math.pi * n / 5), 30 + r * math.sin(math.pi * n / 5))
+    for n in range(10)
+    for r in [25 if n % 2 else 4]
+)
+NEARLY_STRAIGHT = ((5, 30), (20, 30.0000001), (35, 30), (50, 30.000001), (30, 55))
+NEEDLE = ((5, 30), (55, 30), (5.001, 30.02))
+STEPS = (*tuple((10 + n * 1e-05, 30 + 1e-05 * (n % 2)) for n in range(20)), (40, 30), (30, 45))
+SHAPES = {
+    "star": STAR,
+    "nearly straight corners": NEARLY_STRAIGHT,
+    "needle": NEEDLE,
+    "edges of 14 nm": STEPS,
+    "crossing itself": ((10, 10), (50, 50), (50, 10), (10, 50)),
+    "back on itself": ((10, 30), (50, 30), (30, 30), (30, 50)),
+    "far larger than the array": ((-9000, -9000), (9000, -9000), (30, 31)),
+}
+
+
+@pytest.mark.parametrize("join", ["straight", "rounded"])
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize(
+    "stroke",
+    [
+        pytest.param(wide(1, along=Along(ridge_mm=0.5, gap_mm=0.3)), id="thin"),
+        pytest.param(wide(6, along=Along(ridge_mm=3, whole_edges=True), edge_mm=1), id="wide"),
+        pytest.param(wide(60, along=Along(ridge_mm=3)), id="wider than its edges are long"),
+    ],
+)
+def test_polygons_of_any_shape(name, stroke, join, rng):
+    # Places as near to one edge as to another differ by rounding: odd coordinates have none.
+    scene = scene_of(
+        Polygon(
+            vertices_mm=SHAPES[name],
+            stroke=stroke,
+            join=join,
+            markers=Markers(span="arc", blend_mm=2),
+            fill=Fill(texture=LinearGrating(ridge_mm=3), gap_mm=0.5),
+        )
+    )
+    everywhere(scene, rng, count=6)
+
+
+@pytest.mark.parametrize("span", ["angle", "square", "edges", "arc"])
+@pytest.mark.parametrize("name", SHAPES)
+def test_markers_of_any_corner(name, span, rng):
+    scene = scene_of(
+        Polygon(
+            vertices_mm=SHAPES[name],
+            stroke=wide(5, along=Along(ridge_mm=1)),
+            markers=Markers(span=span, angle_deg=180, blend_mm=0.05, vibration=None),
+        )
+    )
+    everywhere(scene, rng, count=4)
+
+
+AT_HEARTS = {
+    "circle of strokes": Circle(center_mm=(30, 30), radius_mm=3, stroke=ALONG),
+    "circle smaller than its stroke": Circle(
+        center_mm=(30, 30), radius_mm=0.05, stroke=wide(20, along=Along(ridge_mm=2))
+    ),
+    "filled circle": Circle(center_mm=(30, 30), radius_mm=9, fill=Fill(texture=Uniform())),
+    "radial grating": RadialGrating(center_mm=(30, 30), ridge_mm=3),
+    "axial grating": AxialGrating(center_mm=(30, 30), ridge_deg=30),
+    "axial grating that fades nowhere": AxialGrating(
+        center_mm=(30, 30), ridge_deg=0.5, fade_mm=(0, 1e-6), whole_cycles=False
+    ),
+    "turning": AxialGrating(center_mm=(30, 30), ridge_deg=20, velocity_deg_s=3600),
+    "spokes with a peak": AxialGrating(
+        center_mm=(30, 30), ridge_deg=20, distortion=TurnPeak(factor=20, length_deg=0.5)
+    ),
+    "dot": Dots(centers_mm=((30, 30),), dot=DotStyle(radius_mm=2, across=Across())),
+    "dot with hardly an edge": Dots(centers_mm=((30, 30),), dot=DotStyle(plateau=0.95)),
+    "dots on one place": Dots(centers_mm=((30, 30),) * 3, dot=DotStyle(radius_mm=5)),
+    "tile": Tile(width_mm=0.1, height_mm=0.1, part=LinearGrating(ridge_mm=3), origin_mm=(30, 30)),
+    "corner": Polygon(vertices_mm=((30, 30), (50, 30), (50, 50)), stroke=ALONG),
+    "pivot": Polygon(
+        vertices_mm=((28, 28), (50, 28), (50, 50), (28, 50)), stroke=ALONG, markers=Markers()
+    ),
+    "label": Label(text="map", place_mm=(30, 30), angle_deg=33),
+    "image of a pixel": Image(file="one.png", place_mm=(30, 30), width_mm=0.1, height_mm=0.1),
+}
+
+
+@pytest.mark.parametrize("name", AT_HEARTS)
+def test_the_very_middle_of_things(name, rng):
+    scene = scene_of(AT_HEARTS[name])
+    for theta in (0.0, 0.5):
+        shown(scene, STRESS2_8X8_ARRAY, over(30, 30) if theta == 0 else At(30, 30, theta, 0.1))
+    for dx, dy in rng.uniform(-1e-7, 1e-7, (3, 2)):
+        frame = shown(scene, STRESS2_8X8_ARRAY, over(30 + dx, 30 + dy))
+        assert np.isfinite(frame).all()
+    everywhere(scene, rng, count=4)
+
+
+FAR = 9900.0
+FAR_AWAY = {
+    "linear": LinearGrating(ridge_mm=0.5, wave_angle_deg=33, start_mm=(-FAR, FAR)),
+    "radial": RadialGrating(center_mm=(FAR, -FAR), ridge_mm=1),
+    "axial": AxialGrating(center_mm=(-FAR, -FAR), ridge_deg=0.5),
+    "gradual": LinearGrating(
+        ridge_mm=5, distortion=Gradual(factor=20, start_mm=-10_000, length_mm=10_000)
+    ),
+    "peak": RadialGrating(
+        center_mm=(-FAR, 0),
+        ridge_mm=5,
+        distortion=Peak(factor=0.05, center_mm=9930, length_mm=0.05),
+    ),
+    "tile": Tile(width_mm=7, height_mm=0.1, part=RadialGrating(center_mm=(3, 0), ridge_mm=1)),
+    "circle": Circle(center_mm=(FAR, 30), radius_mm=FAR - 30, stroke=ALONG),
+    "line": Line(
+        start_mm=(-FAR, -FAR), end_mm=(FAR, FAR), stroke=wide(20, along=Along(ridge_mm=1))
+    ),
+    "stroke of ten metres": Line(start_mm=(0, 0), end_mm=(1, 0), stroke=wide(10_000)),
+}
+
+
+@pytest.mark.parametrize("name", FAR_AWAY)
+def test_things_whose_middle_is_ten_metres_away(name, rng):
+    everywhere(scene_of(FAR_AWAY[name]), rng)
+
+
+@pytest.mark.parametrize("place", [(9950.0, 9950.0), (-9950.0, 30.0)])
+def test_places_ten_metres_away(place, rng):
+    x, y = place
+    shapes = (
+        LinearGrating(ridge_mm=3, wave_angle_deg=70, amplitude=0.3),
+        Circle(center_mm=(x, y), radius_mm=9, stroke=ALONG, fill=Fill(texture=Uniform())),
+        Dots(centers_mm=((x + 9, y - 9), (x - 9, y - 9)), dot=DotStyle(radius_mm=3)),
+        Polygon(
+            vertices_mm=((x - 20, y - 20), (x + 20, y - 20), (x, y + 20)),
+            stroke=ALONG,
+            markers=Markers(),
+        ),
+    )
+    everywhere(scene_of(*shapes, operation="maximum"), rng, around=place)
+    everywhere(scene_of(*shapes), rng, around=place)
+
+
+MOVING = {
+    "vibration": UniformVibration(frequency_hz=49.9),
+    "fastest ridges": LinearGrating(ridge_mm=2.1, velocity_mm_s=1000),
+    "slowest ridges": LinearGrating(ridge_mm=2.1, velocity_mm_s=-0.01),
+    "spokes": AxialGrating(center_mm=(30, 30), ridge_deg=7, velocity_deg_s=-1234.5),
+    "along": Circle(
+        center_mm=(30, 30),
+        radius_mm=20,
+        stroke=wide(9, along=Along(ridge_mm=3, gap_mm=0.7, velocity_mm_s=333.3)),
+    ),
+    "contours": Path(
+        contours_mm=(SQUARE, ((20, 20), (30, 20), (30, 33))),
+        closed=True,
+        stroke=wide(
+            6, along=Along(ridge_mm=3, gap_mm=0.7, velocity_mm_s=-77), vibration=Vibration(of="low")
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MOVING)
+@pytest.mark.parametrize("time_s", [HOURS_S, HOURS_S + 1 / 3, 1e-9])
+def test_what_moves_after_hours(name, time_s, rng):
+    everywhere(scene_of(MOVING[name]), rng, time_s=time_s, count=4)
+
+
+def test_many_layers_of_everything(rng):
+    parts = [
+        Group(
+            operation=operation,
+            parts=(
+                Circle(
+                    center_mm=(20 + n * 4, 30), radius_mm=8, stroke=ALONG, vibration=Vibration()
+                ),
+                LinearGrating(ridge_mm=2 + n, wave_angle_deg=20 * n),
+                Dots(centers_mm=((20, 20 + n), (35, 40)), dot=DotStyle(radius_mm=4)),
+            ),
+            amplitude=0.8,
+            inverted=n == 2,
+        )
+        for n, operation in enumerate(("overwrite", "multiply", "add", "maximum"))
+    ]
+    everywhere(scene_of(*parts), rng)
+    everywhere(scene_of(*parts, operation="add"), rng)
+    for part in parts:
+        everywhere(scene_of(part), rng, count=4)
+
+
+@pytest.mark.parametrize("outside", [0.0, 0.3])
+@pytest.mark.parametrize("file", ["one.png", "gray.png", "sparse.png", "whole.png", "blank.png"])
+def test_images_on_top_hide_what_is_under_them_and_no_more(file, outside, rng):
+    image = Image(
+        file=file, place_mm=(20, 25), width_mm=22, height_mm=7, outside=outside, amplitude=0.5
+    )
+    scene = scene_of(LinearGrating(ridge_mm=3), image)
+    everywhere(scene, rng)
+    x, y = rng.uniform(0, 60, (2, 500))
+    assets = assets_of(image)
+    at = reference.places(x, y, 0, 0)
+    assert (reference.deflection(image, assets, at) <= reference.mask(image, assets, at)).all()
+
+
+def test_dotted_shapes_with_hardly_room(rng):
+    dots = Dotting(dot=DotStyle(radius_mm=3), separation_mm=4, vertex_vibration=Vibration())
+    for shape in (
+        Circle(center_mm=(30, 30), radius_mm=0.5, dots=dots),
+        Line(start_mm=(30, 30), end_mm=(30.00001, 30), dots=dots),
+        Polygon(vertices_mm=NEEDLE, dots=dots, fill=Fill(texture=Uniform(level=0.5), blended=True)),
+        Path(contours_mm=(STEPS,), dots=dots),
+    ):
+        everywhere(scene_of(shape), rng, count=4)

@@ -1,0 +1,133 @@
+"""Frames of compiled scenes.
+
+What reads a scene's words is large, and would be compiled anew into everything that makes frames:
+each kind of tick, and each layout of frames. So it is compiled once, as a function of C, and those
+call it by its name, as they call functions of the C library.
+"""
+
+import math
+
+from llvmlite import binding, ir
+from numba import carray, cfunc, config, types
+from numba.extending import intrinsic
+
+from vbraille.caching import keep_compiled
+from vbraille.render.scene import words as w
+from vbraille.render.scene.scenekernels import evaluate
+from vbraille.render.waves import compiled
+from vbraille.render.work import THETA, TIME, X, Y
+
+_NAME = "vbraille_evaluate_scene"
+_I64, _F64 = ir.IntType(64), ir.DoubleType()
+_SIGNATURE = types.void(
+    types.CPointer(types.float64),
+    types.CPointer(types.uint16),
+    types.CPointer(types.float64),
+    types.int64,
+    types.int64,
+    types.int64,
+    types.float64,
+)
+
+
+def _evaluate_plainly(numbers, table, rows, width, start, count, time):
+    # The machine stays within what was compiled; how long that is it does not ask.
+    evaluate(
+        carray(numbers, (_ANY,)),
+        carray(table, (_ANY,)),
+        carray(rows, (w.SCRATCH_ROWS, width)),
+        start,
+        count,
+        time,
+    )
+
+
+_ANY = 1 << 40
+
+
+@intrinsic
+def _call(typing, numbers, table, rows, width, start, count, time):
+    """Call `evaluate` by its name, with addresses of arrays."""
+
+    def code(context, builder, signature, arguments):
+        doubles, words = _F64.as_pointer(), ir.IntType(16).as_pointer()
+        kinds = (doubles, words, doubles, _I64, _I64, _I64, _F64)
+        function = builder.module.globals.get(_NAME)
+        if function is None:
+            kind = ir.FunctionType(ir.VoidType(), kinds)
+            function = ir.Function(builder.module, kind, _NAME)
+        given = list(arguments)
+        for n in range(3):
+            given[n] = builder.inttoptr(given[n], kinds[n])
+        builder.call(function, given)
+        return context.get_dummy_value()
+
+    return types.void(*(types.int64,) * 6, types.float64), code
+
+
+if config.DISABLE_JIT:
+    run = evaluate
+else:
+    # Kept as long as the process, for compiled code calls it by its address.
+    _evaluate = cfunc(_SIGNATURE, cache=keep_compiled(), error_model="numpy", nogil=True)(
+        _evaluate_plainly
+    )
+    binding.add_symbol(_NAME, _evaluate.address)
+
+    @compiled
+    def run(numbers, table, rows, start, count, time):
+        """Do as `scenekernels.evaluate` does, which is not compiled into the caller."""
+        _call(
+            numbers.ctypes.data,
+            table.ctypes.data,
+            rows.ctypes.data,
+            rows.shape[1],
+            start,
+            count,
+            time,
+        )
+
+
+@compiled
+def show(numbers, table, rows, at, out):
+    """Fill a frame with the deflections of a scene at a pose and a time."""
+    above, across = out.shape
+    x, y = at[X], at[Y]
+    column = math.floor((x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM])
+    row = math.floor((y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM])
+    columns = numbers[w.GRID_COLUMNS]
+    # Beyond the grid no actuator is on the canvas; NaN, too, is nowhere.
+    if not (0.0 <= column < columns and 0.0 <= row < numbers[w.GRID_ROWS]):
+        out[:] = 0.0
+        return
+    start = int(numbers[w.GRID + int(row * columns + column)])
+    if int(numbers[start]) == w.END:
+        out[:] = 0.0
+        return
+    lanes = above * across
+    cosine, sine = 1.0, 0.0
+    theta = at[THETA]
+    if theta != 0.0:
+        cosine, sine = math.cos(theta), math.sin(theta)
+    n = 0
+    for i in range(above):
+        down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
+        for j in range(across):
+            aside = (j - 0.5 * (across - 1)) * numbers[w.COLUMN_MM]
+            rows[w.X_ROW, n] = x + aside * cosine + down * sine
+            rows[w.Y_ROW, n] = y + down * cosine - aside * sine
+            rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
+            n += 1
+    run(numbers, table, rows, start, lanes, at[TIME])
+    n = 0
+    left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
+    top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
+    for i in range(above):
+        for j in range(across):
+            px, py = rows[w.X_ROW, n], rows[w.Y_ROW, n]
+            on = left <= px <= right and top <= py <= bottom
+            value = rows[w.STACK, n]
+            value = value if value > 0.0 else 0.0
+            value = value if value < 1.0 else 1.0
+            out[i, j] = value if on else 0.0
+            n += 1
