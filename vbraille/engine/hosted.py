@@ -124,6 +124,7 @@ class Hosted:
         self._ended = False
         self._zeroed = 0
         self._taken = 0
+        mailbox.keep_room()
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
         """Handle a signal: the loop ends after this tick."""
@@ -140,7 +141,7 @@ class Hosted:
         # Looked at before the mailbox: what comes meanwhile ends the ticks that follow.
         mailbox.obeyed[:] = mailbox.orders
         if mailbox.published != self._taken:
-            posted = mailbox.take()
+            posted = mailbox.take_piece()
             if posted is None:
                 mailbox.obeyed[:] = -1  # look at it again, a tick later
             else:

@@ -14,7 +14,11 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
+from vbraille.pictures.scenewords import vibrations
 from vbraille.pictures.words import plain
+from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
+from vbraille.scene.walking import each
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -27,6 +31,7 @@ if TYPE_CHECKING:
 
 PIXELS_PER_MM = 4.0
 MOST_PIXELS = 100_000_000
+MOST_CSV_ROWS = 10_000_000  # of a CSV
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
 _MM_PER_INCH = 25.4
 
@@ -53,6 +58,32 @@ def map_places(
     InputError
         If the resolution is no number above 0, or the map would have too many pixels.
     """
+    columns, rows = check_pixels(canvas, pixels_per_mm)
+    x, y = (np.arange(count, dtype=np.float64) + 0.5 for count in (columns, rows))
+    return x / pixels_per_mm, y / pixels_per_mm
+
+
+def check_pixels(
+    canvas: Canvas, pixels_per_mm: float, maps: int = 1, most: int = MOST_PIXELS
+) -> tuple[int, int]:
+    """Compute the columns and rows of a map, if there is room for so many maps of it.
+
+    Parameters
+    ----------
+    canvas
+        The canvas that is shown whole.
+    pixels_per_mm
+        Resolution, above 0.
+    maps
+        Number of maps.
+    most
+        Number of pixels that there is room for.
+
+    Raises
+    ------
+    InputError
+        If the resolution is no number above 0, or there would be too many pixels.
+    """
     if not 0 < pixels_per_mm <= 1000:
         raise InputError(
             f"{setting('resolution')} is {pixels_per_mm:g} pixels a mm; it must be above 0 and at "
@@ -60,14 +91,32 @@ def map_places(
         )
     columns = max(round(canvas.width_mm * pixels_per_mm), 1)
     rows = max(round(canvas.height_mm * pixels_per_mm), 1)
-    if columns * rows > MOST_PIXELS:
-        most = (MOST_PIXELS / (canvas.width_mm * canvas.height_mm)) ** 0.5
+    if columns * rows * maps > most:
+        fits = (most / (maps * canvas.width_mm * canvas.height_mm)) ** 0.5
+        what = "the picture would be" if maps == 1 else f"{maps} maps would each be"
         raise InputError(
-            f"the picture would be {columns} × {rows} pixels, and there is room for "
-            f"{MOST_PIXELS // 10**6} million; give {setting('resolution')} {0.99 * most:.2g} or "
+            f"{what} {columns} × {rows} pixels, and there is room for "
+            f"{most // 10**6} million; give {setting('resolution')} {0.99 * fits:.2g} or "
             "less"
         )
-    return (np.arange(columns) + 0.5) / pixels_per_mm, (np.arange(rows) + 0.5) / pixels_per_mm
+    return columns, rows
+
+
+def slowest_s(scene: Scene) -> float | None:
+    """Longest period of what vibrates or moves in a scene, in s; None if nothing does."""
+    swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
+    periods = [1.0 / frequency_hz for frequency_hz in swings]
+    for part in each(*scene.elements):
+        match part:
+            case LinearGrating() | RadialGrating() if part.velocity_mm_s:
+                periods.append((part.ridge_mm + part.gap_mm) / abs(part.velocity_mm_s))
+            case AxialGrating() if part.velocity_deg_s:
+                periods.append((part.ridge_deg + part.gap_deg) / abs(part.velocity_deg_s))
+            case Line() | Circle() | Polygon() | Path() if part.stroke and part.stroke.along:
+                along = part.stroke.along
+                if along.velocity_mm_s:
+                    periods.append((along.ridge_mm + along.gap_mm) / abs(along.velocity_mm_s))
+    return max(periods, default=None)
 
 
 def map_deflections(

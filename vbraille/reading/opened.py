@@ -162,8 +162,15 @@ class OpenDevice(DeviceInUse):
             return self._wanted
         return self._engine.open() if isinstance(self._engine, Host) else self._engine.display
 
-    def start(self, model: Model) -> None:
+    def start(self, model: Model, room: int | None = None) -> None:
         """Drive the device, for lines that are shown in the style of a model.
+
+        Parameters
+        ----------
+        model
+            Display and style.
+        room
+            Bytes of the largest picture; None for lines of the style.
 
         Raises
         ------
@@ -172,9 +179,10 @@ class OpenDevice(DeviceInUse):
         """
         self._model = model
         if isinstance(self._engine, Host):
-            # Cells may come closer while somebody reads.
-            lines = MOST_LINES if model.display.height_mm else 1
-            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS, lines))
+            if room is None:  # cells may come closer while somebody reads
+                lines = MOST_LINES if model.display.height_mm else 1
+                room = model.style.room(model.display, MOST_CELLS, lines)
+            self._engine.fit(model.display, room)
         self._engine.start()
 
     def start_again(self) -> None:
@@ -182,7 +190,8 @@ class OpenDevice(DeviceInUse):
         self.placing = Placing.DONE
         self._closed = False
         self._engine.start()
-        self.reader.under.steer()
+        if self._reader is not None:
+            self._reader.under.steer()
 
     def show(
         self,

@@ -174,6 +174,7 @@ class Program:
         x_mm: NDArray[np.float64],
         y_mm: NDArray[np.float64],
         theta_rad: NDArray[np.float64] | float = 0.0,
+        time_s: NDArray[np.float64] | float = 0.0,
     ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         """Fill the frames of a way over the canvas.
 
@@ -181,6 +182,8 @@ class Program:
         ----------
         x_mm, y_mm, theta_rad : float64[n]
             Places of the array's centre, and angles by which the array is turned.
+        time_s : float64[n]
+            Times of a picture that moves by itself, since its start.
 
         Returns
         -------
@@ -192,6 +195,7 @@ class Program:
 
         at = np.zeros((x_mm.size, 6))
         at[:, work.X], at[:, work.Y], at[:, work.THETA] = x_mm, y_mm, theta_rad
+        at[:, work.TIME] = time_s
         parts = np.zeros(x_mm.size, np.int64)
         out = np.empty((x_mm.size, *self.shape), np.float32)
         kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)

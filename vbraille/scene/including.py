@@ -90,8 +90,8 @@ class Gathered:
         for name, texture in textures.items():
             origin, there = origins.places["textures", name]
             if name in self.textures:
-                first = self.origins.places["textures", name][0]
-                origin.fail(there, f"has a name that is in {first.where} too; take another")
+                first = self.origins.place(("textures", name))
+                origin.fail(there, f"is called {name}, as is {first}; give it another name")
             self.textures[name] = texture
             self.origins.places["textures", name] = (origin, there)
         start = len(self.elements)
@@ -131,7 +131,7 @@ class _Gathering:
         form = form_of(name)
         if form != "toml":
             return _foreign(name, form)
-        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name))
+        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name), several_lines=True)
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
@@ -225,7 +225,7 @@ def _about(path: Path, warning: str) -> str:
 
 def _read_foreign(path: Path, form: str) -> FoundScene:
     if form == "svg":
-        from vbraille.scene.svgscene import read_svg  # loads the library for SVG
+        from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
 
         return read_svg(path)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NoReturn, Protocol
 
 from vbraille.errors import InputError
-from vbraille.scene.naming import said
+from vbraille.scene.naming import about, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -74,6 +74,11 @@ class Origins:
                 return origin, (*there, *steps[depth:])
         return None
 
+    def place(self, steps: Steps) -> str:
+        """File and line of a place of the scene, or words for it if it comes from no file."""
+        found = self.of(steps)
+        return said(steps) if found is None else found[0].place(found[1])
+
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the scene for a problem at a place in it, with the file and the line.
 
@@ -84,7 +89,7 @@ class Origins:
         """
         found = self.of(steps)
         if found is None:
-            raise InputError(f"{said(steps)} {problem}")
+            raise InputError(about(steps, problem))
         origin, there = found
         origin.fail(there, problem)
 
@@ -117,11 +122,14 @@ class OpenedScene:
     origins: Origins
     warnings: tuple[str, ...] = ()
 
+    @property
+    def places(self) -> tuple[str, ...]:
+        """File and line of each element."""
+        return tuple(self.place(number) for number in range(len(self.written.elements)))
+
     def place(self, number: int) -> str:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
         steps: Steps = ("elements", number)
-        found = self.origins.of(steps) or self.origins.of((*steps, "parts", 0))
-        if found is None:
-            return str(self.path)
-        origin, there = found
-        return origin.place(there)
+        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
+        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
+        return self.origins.place(first if made_here else steps)

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn
 
 from vbraille.errors import InputError
-from vbraille.scene.naming import said
+from vbraille.scene.naming import about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -79,7 +79,7 @@ class ForeignOrigin:
         InputError
             In any case.
         """
-        raise InputError(f"{self.place(steps)}: {said(steps)} {problem}")
+        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
 
 
 def _place(where: str, lines: Mapping[Steps, int], steps: Steps) -> str:

@@ -29,7 +29,7 @@ def open_scene(path: str | Path) -> OpenedScene:
         path=path,
         folder=path.parent,
         written=scene,
-        resolved=resolve(scene, path.parent, gathered.origins.fail),
+        resolved=resolve(scene, path.parent, gathered.origins),
         origins=gathered.origins,
         warnings=tuple(gathered.warnings),
     )

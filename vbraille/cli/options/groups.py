@@ -36,7 +36,8 @@ SETTLED = (
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
     "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
-    "wander:SPEED goes about without reading, and still moves only in the live view of --monitor"
+    "wander:SPEED goes about without reading, wide goes round a picture and inward, spot:X,Y "
+    "swings about a place of it, and still moves only in the live view of --monitor"
 )
 SPEC = "Name the device, such as serial:/dev/ttyACM0, latero:HOST, or sim for a simulated one"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import groups
+from vbraille.cli.options import feeling, groups
 from vbraille.cli.options.groups import MODELS, SPEC
 from vbraille.cli.options.live import add_live_options
 from vbraille.cli.options.values import duration, number, whole
@@ -193,6 +193,8 @@ def render(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
+    feeling.path(parser)
+    parser.set_defaults(model=None)  # which is another one for lines than for pictures
     parser.add_argument(
         "--plain", action="store_true", help="Print progress as lines, without a bar."
     )
