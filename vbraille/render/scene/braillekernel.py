@@ -7,6 +7,8 @@ that `vbraille.render.scene.brailleplaces` names, and its words are in the progr
 
 import math
 
+import numpy as np
+
 from vbraille.render.scene.brailleplaces import (
     APART,
     CELL_PITCH,
@@ -81,23 +83,34 @@ def _apart(numbers, first, table, x, y, count, out):
     lines = int(numbers[first + LINES])
     half_sine = numbers[first + PROFILE] == _HALF_SINE
     contrast = numbers[first + CONTRAST]
+    # How far each place is from the nearest dot, whether up or not: vector instructions.
     for n in range(count):
         right, down = x[n] - x0, y[n] - y0
         u = right * cosine + down * sine
         v = down * cosine - right * sine
+        v -= np.floor(v * lines_per_mm) * line_pitch
+        row = np.floor(v * rows_per_mm)
+        v -= (row if row < _LAST_ROW else _LAST_ROW) * row_pitch + radius
+        u -= np.floor(u * cells_per_mm) * cell_pitch + radius
+        u = u if u < spacing - radius else u - spacing
+        q = (u * u + v * v) * per_mm2
+        out[n] = q if q < 0.25 else 0.25
+    for n in range(count):
+        q = out[n]
         out[n] = 0.0
-        if not (u > 0.0 and u < width and v > 0.0 and v < height):  # NaN is outside, too
+        if q >= 0.25:
+            continue
+        right, down = x[n] - x0, y[n] - y0
+        u = right * cosine + down * sine
+        v = down * cosine - right * sine
+        if not (u > 0.0 and u < width and v > 0.0 and v < height):
             continue
         line, cell = int(v * lines_per_mm), int(u * cells_per_mm)
         line = line if line < lines else lines - 1
-        v -= line * line_pitch
-        row = int(v * rows_per_mm)
+        row = int((v - line * line_pitch) * rows_per_mm)
         row = row if row < _LAST_ROW else _LAST_ROW
-        u -= cell * cell_pitch
-        side = 1 if u >= spacing else 0
-        dx, dy = u - side * spacing - radius, v - row * row_pitch - radius
-        q = (dx * dx + dy * dy) * per_mm2
-        if q < 0.25 and table[start + line * stride + cell] >> (row + 4 * side) & 1:
+        side = 4 if u - cell * cell_pitch >= spacing else 0
+        if table[start + line * stride + cell] >> (row + side) & 1:
             out[n] = contrast * _swing(numbers, first + SHAPE, half_sine, q)
 
 
