@@ -29,6 +29,7 @@ PARTS = (
     "conventional",
     "straying",
     "figure",
+    "scene",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
