@@ -28,6 +28,7 @@ PARTS = (
     "live",
     "conventional",
     "straying",
+    "feel",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
