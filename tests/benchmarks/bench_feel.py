@@ -60,7 +60,7 @@ def circles(count: int) -> tuple[Circle, ...]:
 def nested() -> Group:
     """A composite of ten parts, everywhere."""
     parts = tuple(
-        LinearGrating(ridge_mm=2 + 0.2 * n, gap_mm=2, ridge_deg=17.0 * n) for n in range(8)
+        LinearGrating(ridge_mm=2 + 0.2 * n, gap_mm=2, wave_angle_deg=17.0 * n) for n in range(8)
     )
     return Group(
         operation="add",
