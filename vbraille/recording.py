@@ -33,13 +33,13 @@ class SceneRecorded(NamedTuple):
     Parameters
     ----------
     text
-        Bytes of its file.
+        Bytes of the file.
     title, description
         What it shows.
     width_mm, height_mm
-        Size of its canvas.
+        Size of the canvas.
     map_png
-        Its deflection map as a PNG that covers the canvas; white is rest.
+        The deflection map as a PNG that covers the canvas; white is rest.
     """
 
     text: bytes
