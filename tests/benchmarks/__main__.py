@@ -30,6 +30,7 @@ PARTS = (
     "straying",
     "figure",
     "scene",
+    "feel",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):
