@@ -12,6 +12,7 @@ from vbraille.errors import InputError
 from vbraille.scene.opened import Origins
 from vbraille.scene.origins import ForeignOrigin, TomlOrigin
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
+from vbraille.scene.resolving import MOST_PATTERNS
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.svg.looks import ClassLook
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from vbraille.scene.opened import FoundScene, SceneOrigin
     from vbraille.scene.walking import Steps
 
-# Scenes of 50,000 shapes; larger files would take longer to read than anybody waits.
+# Scenes of 50,000 shapes or so; larger files would take longer to read than anybody waits.
 MOST_BYTES = 8_000_000
 MOST_FILES = 100
 UNSAID_LANGUAGE = "en"
@@ -42,7 +43,7 @@ class Gathered:
     form
         What the file itself says.
     elements, textures
-        Its elements and named textures, and those that it includes.
+        Elements and named textures of the file and of those that it includes.
     origins
         Where each of them is written.
     warnings
@@ -143,7 +144,10 @@ class _Gathering:
         form = form_of(name)
         if form != "toml":
             return _foreign(name, form, classes or {})
-        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name), several_lines=True)
+        text = read_text(name, "scene", MOST_BYTES)
+        if text.count("kind") > MOST_PATTERNS:  # each has one
+            raise InputError(f"{name} has more than {MOST_PATTERNS} patterns; use fewer")
+        file = TomlFile(text, str(name), several_lines=True)
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
