@@ -22,6 +22,7 @@ from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.brailleplaces import box_of
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.opaque import bitmap_box
 from vbraille.scene.patterns import (
     Circle,
@@ -273,7 +274,9 @@ ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
 lines = st.builds(lambda own, look, change: Line(**own, **look, **change), ends, drawn, changes)
 round_fields = {"center_mm": points, "radius_mm": numbers(0.5, 30)}
 corner_fields = {
-    "vertices_mm": outlines().filter(apart),
+    "vertices_mm": outlines().filter(
+        lambda places: apart(places) and meeting_edges(places) is None
+    ),
     "join": st.sampled_from(["straight", "rounded"]),
     "rounding_offset_mm": st.just(0.0) | numbers(0, 6),
     "markers": st.none() | markers,
