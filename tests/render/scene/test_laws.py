@@ -11,22 +11,16 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from tests.render.scene.scenes import (
+from tests.render.scene.scenes import KINDS, bounded, examples, numbers, patterns, scenes, seeds
+from tests.render.scene.showing import (
     DISPLAYS,
-    KINDS,
     STRESS2_8X8_ARRAY,
     At,
     actuators,
     assets_of,
-    bounded,
-    examples,
     known_boxes,
-    numbers,
-    patterns,
     poses,
     scene_of,
-    scenes,
-    seeds,
     shown,
 )
 from vbraille.render.scene import reference
