@@ -37,6 +37,7 @@ def _name(table):
     if tag is not None:
         return f'kind = "{tag}"'
     named = {"SceneFile": "The file as a whole", "Canvas": "[canvas]", "DotStyle": "table dot"}
+    named["ClassLook"] = "table [classes.NAME]"
     named |= {"Dotting": "table dots, of shapes", "TurnPeak": "table distortion, of axial gratings"}
     return named.get(table.__name__, f"table {table.__name__.lower()}")
 
@@ -63,7 +64,12 @@ def _takes(field, kinds):
     if kind == "string":
         return "text"
     if kind == "object":
-        return "a table of patterns by name"
+        of = field.get("additionalProperties", {})
+        return (
+            f"a table by name, of {kinds[of['$ref'].rpartition('/')[2]]}"
+            if "$ref" in of
+            else ("a table of patterns by name")
+        )
     if kind == "array" and "prefixItems" in field:
         return "two numbers" if len(field["prefixItems"]) == 2 else "numbers"
     if kind == "array":
