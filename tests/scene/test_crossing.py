@@ -4,6 +4,7 @@ import doctest
 import math
 import time
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -66,6 +67,10 @@ def test_edges_that_are_too_close_together_to_be_compared_are_refused():
     slanted = [(n * 1e-3 + (n % 2) * 70.0, n * 1e-3 + (n % 2) * 30.0) for n in range(20_000)]
     with pytest.raises(ValueError, match="edges so close together that they cannot be compared"):
         meeting_edges((*slanted, (-500.0, 500.0)))
+
+
+def test_places_may_be_numbers_of_numpy():
+    assert meeting_edges(tuple(map(tuple, np.array([(0, 0), (9, 9), (9, 0), (0, 9)])))) == (1, 3)
 
 
 places = st.tuples(st.integers(0, 6), st.integers(0, 6))

@@ -23,8 +23,8 @@ LEAST_BLANK_MM = 2.5
 MOST_TEXTURES = 5
 LEAST_WAVE_MM, MOST_WAVE_MM = 2.0, 15.0
 LEAST_STROKE_MM, MOST_STROKE_MM = 2.0, 10.0
-# Size of the 8 × 8 array of the source (6.2), which reaches beyond its centre's travel.
-_ARRAY_MM = (9.0, 11.0)
+# Size of the largest array of 8 × 8, the Latero's, which reaches beyond its centre's travel.
+_ARRAY_MM = (9.0, 12.7)
 # Pairs of elements that stand side by side, and are looked at.
 _MOST_PAIRS = 50_000
 

@@ -89,7 +89,8 @@ def _describe(schema: dict[str, Any], table: type[Table]) -> None:
 def _plain(text: str) -> str:
     """Text of a docstring without its marks of code."""
     text = text.replace("``", "").replace("`", "")
-    return text.replace(". None for", ". Left out for").replace("None for", "left out for").replace("None if", "left out if")
+    text = text.replace(". None for", ". Left out for").replace("None for", "left out for")
+    return text.replace("None if", "left out if")
 
 
 def _without_null(schema: Any) -> Any:
