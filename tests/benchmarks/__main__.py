@@ -28,6 +28,9 @@ PARTS = (
     "live",
     "conventional",
     "straying",
+    "figure",
+    "scene",
+    "feel",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -81,7 +81,7 @@ def _slowly(vertices_mm: tuple[Point, ...]) -> Iterator[tuple[int, int]]:
 def _turn(a: Point, b: Point, c: Point) -> float:
     """Sign of the turn at b on the way from a to c: -1, 0 or 1."""
     area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return (area > 0) - (area < 0)
+    return int(area > 0) - int(area < 0)
 
 
 def _dot(origin: Point, a: Point, b: Point) -> float:

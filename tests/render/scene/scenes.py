@@ -5,20 +5,14 @@ ones: a place that is as near to one edge as to another belongs to either.
 """
 
 import math
-import zlib
-from dataclasses import dataclass
 
-import numpy as np
+from hypothesis import settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from vbraille.display import Display
-from vbraille.render import STRESS2_8X8
-from vbraille.render.scene import reference
-from vbraille.render.scene.assets import Assets, Written
-from vbraille.render.scene.brailleplaces import box_of
-from vbraille.scene.bitmap import WHOLE, Bitmap
-from vbraille.scene.opaque import bitmap_box
+from tests.render.scene.showing import SIDE_MM
+from tests.tiers import by_tier
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -43,11 +37,11 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.scene.walking import each
 
-SIDE_MM = 60
-STRESS2_8X8_ARRAY = STRESS2_8X8.display
-DISPLAYS = (STRESS2_8X8_ARRAY, Display("wide", 6, 10, 1.2, 1.8))
+
+def examples(count):
+    """Try a law on so many examples in `make test-all`, on a few and many more in the others."""
+    return settings(max_examples=by_tier(max(count // 8, 4), count, 50 * count))
 
 
 def numbers(least, most):
@@ -264,7 +258,9 @@ ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
 lines = st.builds(lambda own, look, change: Line(**own, **look, **change), ends, drawn, changes)
 round_fields = {"center_mm": points, "radius_mm": numbers(0.5, 30)}
 corner_fields = {
-    "vertices_mm": outlines().filter(apart),
+    "vertices_mm": outlines().filter(
+        lambda places: apart(places) and meeting_edges(places) is None
+    ),
     "join": st.sampled_from(["straight", "rounded"]),
     "rounding_offset_mm": st.just(0.0) | numbers(0, 6),
     "markers": st.none() | markers,
@@ -292,41 +288,6 @@ labels = patterns_of(
     place_mm=points,
     angle_deg=st.just(0.0) | numbers(-180, 180),
 )
-
-
-def bitmap_of(image):
-    """The picture that stands for a file in these tests: pixels by its name alone."""
-    rng = np.random.default_rng(zlib.crc32(image.file.encode()))
-    rows, columns = (1, 1) if image.file == "one.png" else (7, 11)
-    gray = {
-        "blank.png": np.zeros((rows, columns)),
-        "whole.png": np.ones((rows, columns)),
-        "sparse.png": rng.uniform(size=(rows, columns)) * (rng.uniform(size=(rows, columns)) > 0.8),
-    }.get(image.file, rng.uniform(size=(rows, columns)))
-    pixels = np.round(gray * WHOLE).astype(np.uint16)
-    return Bitmap(pixels, image.place_mm, image.width_mm, image.height_mm, image.outside)
-
-
-def written_of(label):
-    """Cells that stand for a label in these tests: a line for each of its words."""
-    words = (np.frombuffer(word.encode(), np.uint8) & 63 for word in label.text.split())
-    return Written(tuple(words), STRESS2_8X8.style)
-
-
-def assets_of(*parts):
-    """What patterns need beside themselves."""
-    found = list(each(*parts))
-    return Assets(
-        {part: bitmap_of(part) for part in found if isinstance(part, Image)},
-        {part: written_of(part) for part in found if isinstance(part, Label)},
-    )
-
-
-def known_boxes(assets):
-    """Boxes of the images and labels in assets."""
-    boxes = {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
-    boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
-    return {pattern: box for pattern, box in boxes.items() if box is not None}
 
 
 # All together
@@ -430,55 +391,4 @@ def scenes(draw, parts=patterns, most=4):
     )
 
 
-def scene_of(*elements, operation="overwrite"):
-    """A scene of these elements."""
-    return Scene(
-        canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM), operation=operation, elements=elements
-    )
-
-
-# Poses
-
-
-@dataclass(frozen=True)
-class At:
-    """Where the array is, when."""
-
-    x_mm: float
-    y_mm: float
-    theta_rad: float
-    time_s: float
-
-
-def poses(rng, count):
-    """Places all over the canvas and beside it, at any angle and any time up to hours."""
-    x, y = rng.uniform(-12, SIDE_MM + 12, (2, count))
-    theta = rng.uniform(-math.pi, math.pi, count) * (rng.uniform(size=count) > 0.3)
-    time = rng.uniform(0, 1, count) * rng.choice([0.0, 1.0, 1e4], count)
-    return [At(*map(float, pose)) for pose in zip(x, y, theta, time, strict=True)]
-
-
 seeds = st.integers(0, 2**32 - 1)
-
-
-def actuators(display, pose):
-    """Places of the actuators, and their parities, as `vbraille.pose` says; row by row."""
-    right, down = np.meshgrid(display.column_offsets_mm(), display.row_offsets_mm())
-    right, down = right - right.mean(), down - down.mean()
-    cosine, sine = math.cos(pose.theta_rad), math.sin(pose.theta_rad)
-    x = pose.x_mm + right * cosine + down * sine
-    y = pose.y_mm + down * cosine - right * sine
-    row, column = np.indices(display.shape)
-    return x.ravel(), y.ravel(), ((row + column) % 2).ravel()
-
-
-def twin(scene, display, pose, assets=None):
-    """The frame of a scene in plain numpy."""
-    x, y, parity = actuators(display, pose)
-    assets = assets_of(*scene.elements) if assets is None else assets
-    return reference.deflections(scene, assets, x, y, parity, pose.time_s).reshape(display.shape)
-
-
-def shown(scene, display, pose):
-    """The frame of a scene."""
-    return twin(scene, display, pose)

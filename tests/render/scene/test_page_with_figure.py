@@ -8,6 +8,7 @@ from vbraille.errors import InputError
 from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8, Straying
 from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.compiling import compile_scene
 from vbraille.render.scene.figures import FIGURE, PAGE, page_with_figure
 from vbraille.render.scene.referencebraille import label_deflections
 from vbraille.scene.bitmap import Bitmap
@@ -73,6 +74,34 @@ def test_a_figure_within_its_canvas_is_not_cut_and_others_are():
     for element in (beyond, LinearGrating(ridge_mm=3)):
         scene, _ = page_with_figure(lines, STYLE, figure(element), (5.0, 0.0))
         assert scene.elements[1].operation == "multiply"
+
+
+def test_a_program_of_both_is_the_page_where_the_figure_is_not_and_the_figure_where_it_is(rng):
+    display, geometry = STRESS2_8X8.display, STYLE.geometry
+    lines = [rng.integers(1, 64, 16).astype(np.uint8) for _ in range(9)]
+    left_mm, top_mm = 8 * geometry.cell_pitch_mm, 3 * geometry.line_pitch_mm
+    for number in (3, 4, 5, 6):
+        lines[number] = lines[number][:7]
+    free = STYLE.replace(straying=Straying("free"))
+    alone = free.render_page(lines, display)
+    grating = LinearGrating(ridge_mm=3.0)  # which goes beyond the figure's rectangle
+    own = figure(grating)
+    scene, assets = page_with_figure(lines, STYLE, own, (left_mm, top_mm), Assets())
+    both = compile_scene(scene, display, assets)
+    frames = np.zeros((2, *display.shape))
+    felt = set()
+    for x_mm, y_mm, theta in rng.uniform((0, 0, -0.3), (170, 95, 0.3), (200, 3)):
+        for frame, program in zip(frames, (both, alone), strict=True):
+            program.frame(x_mm, frame, y_mm=y_mm, theta_rad=theta)
+        x, y = (at.reshape(display.shape) for at in lane_places(display, x_mm, y_mm, theta))
+        within = (x > left_mm) & (x < left_mm + 60) & (y > top_mm) & (y < top_mm + 40)
+        np.testing.assert_allclose(frames[0][~within], frames[1][~within], rtol=0, atol=1e-9)
+        inner = (x > left_mm + 1) & (x < left_mm + 59) & (y > top_mm + 1) & (y < top_mm + 39)
+        ridges = 0.5 - 0.5 * np.cos(2 * np.pi * (x - left_mm) / 3.0)
+        np.testing.assert_allclose(frames[0][inner], ridges[inner], rtol=0, atol=1e-6)
+        felt |= {"page"} if (~within).all() and frames[0].any() else set()
+        felt |= {"figure"} if inner.all() else set()
+    assert felt == {"page", "figure"}
 
 
 def test_no_page_and_no_place():

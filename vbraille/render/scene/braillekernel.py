@@ -7,7 +7,10 @@ that `vbraille.render.scene.brailleplaces` names, and its words are in the progr
 
 import math
 
+import numpy as np
+
 from vbraille.render.scene.brailleplaces import (
+    APART,
     CELL_PITCH,
     CELLS_PER_MM,
     CONTRAST,
@@ -38,28 +41,82 @@ _LAST_ROW = 3
 
 
 @inlined
-def _swing(numbers, first, q):
-    """Swing of a dot, which is round, at q = (distance from its middle / its width)² < 1/4."""
+def _swing(numbers, shape, half_sine, q):
+    """Swing of a dot, which is round, at q = (distance from its middle / its width)² ≤ 1/4."""
     sine = cos_pi(q)
     y = sine * sine
-    if numbers[first + PROFILE] == _HALF_SINE:
+    if half_sine:
         # Lévesque 2009, 3.2, with sin 8θ = 8 sin θ cos θ (1 - 10y + 24y² - 16y³)
         wave = -sin_pi(math.sqrt(q), q) * (1.0 + y * (-10.0 + y * (24.0 - 16.0 * y)))
-        value = sine * (numbers[first + SHAPE] + numbers[first + SHAPE + 1] * wave)
+        value = sine * (numbers[shape] + numbers[shape + 1] * wave)
     else:
         # eqs. 4.1-4.3 on [0, 1]: c = cos πp, and cos kπp = T_k(c), which is odd
         c = 2.0 * y - 1.0
         z = c * c
-        value = numbers[first + SHAPE + 5]
-        for n in range(4, -1, -1):
-            value = numbers[first + SHAPE + n] + z * value
-        value = 0.5 + c * value
+        high = numbers[shape + 3] + z * (numbers[shape + 4] + z * numbers[shape + 5])
+        low = numbers[shape] + z * (numbers[shape + 1] + z * (numbers[shape + 2] + z * high))
+        value = 0.5 + c * low
     return min(max(value, 0.0), 1.0)
 
 
 @compiled
 def label(numbers, first, table, x, y, count, out):
     """Fill ``out[:count]`` with what a label has at places ``x[:count]``, ``y[:count]``."""
+    if numbers[first + APART] != 0.0:
+        _apart(numbers, first, table, x, y, count, out)
+    else:
+        _close(numbers, first, table, x, y, count, out)
+
+
+@compiled
+def _apart(numbers, first, table, x, y, count, out):
+    """Fill ``out`` where each place has one dot at most: found by divisions alone."""
+    x0, y0 = numbers[first + X0], numbers[first + Y0]
+    cosine, sine = numbers[first + COSINE], numbers[first + SINE]
+    width, height = numbers[first + WIDTH], numbers[first + HEIGHT]
+    line_pitch, lines_per_mm = numbers[first + LINE_PITCH], numbers[first + LINES_PER_MM]
+    row_pitch, rows_per_mm = numbers[first + ROW_PITCH], numbers[first + ROWS_PER_MM]
+    cell_pitch, cells_per_mm = numbers[first + CELL_PITCH], numbers[first + CELLS_PER_MM]
+    spacing, radius = numbers[first + DOT_SPACING], 0.5 * numbers[first + DOT_WIDTH]
+    per_mm2 = numbers[first + DOTS_PER_MM] * numbers[first + DOTS_PER_MM]
+    stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE]) + 1
+    lines = int(numbers[first + LINES])
+    half_sine = numbers[first + PROFILE] == _HALF_SINE
+    contrast = numbers[first + CONTRAST]
+    # How far each place is from the nearest dot, whether up or not: vector instructions.
+    for n in range(count):
+        right, down = x[n] - x0, y[n] - y0
+        u = right * cosine + down * sine
+        v = down * cosine - right * sine
+        v -= np.floor(v * lines_per_mm) * line_pitch
+        row = np.floor(v * rows_per_mm)
+        v -= (row if row < _LAST_ROW else _LAST_ROW) * row_pitch + radius
+        u -= np.floor(u * cells_per_mm) * cell_pitch + radius
+        u = u if u < spacing - radius else u - spacing
+        q = (u * u + v * v) * per_mm2
+        out[n] = q if q < 0.25 else 0.25
+    for n in range(count):
+        q = out[n]
+        out[n] = 0.0
+        if q >= 0.25:
+            continue
+        right, down = x[n] - x0, y[n] - y0
+        u = right * cosine + down * sine
+        v = down * cosine - right * sine
+        if not (u > 0.0 and u < width and v > 0.0 and v < height):
+            continue
+        line, cell = int(v * lines_per_mm), int(u * cells_per_mm)
+        line = line if line < lines else lines - 1
+        row = int((v - line * line_pitch) * rows_per_mm)
+        row = row if row < _LAST_ROW else _LAST_ROW
+        side = 4 if u - cell * cell_pitch >= spacing else 0
+        if table[start + line * stride + cell] >> (row + side) & 1:
+            out[n] = contrast * _swing(numbers, first + SHAPE, half_sine, q)
+
+
+@compiled
+def _close(numbers, first, table, x, y, count, out):
+    """Fill ``out`` where dots overlap, of which the larger counts."""
     x0, y0 = numbers[first + X0], numbers[first + Y0]
     cosine, sine = numbers[first + COSINE], numbers[first + SINE]
     width, height = numbers[first + WIDTH], numbers[first + HEIGHT]
@@ -69,12 +126,13 @@ def label(numbers, first, table, x, y, count, out):
     radius, dots_per_mm = 0.5 * dot, numbers[first + DOTS_PER_MM]
     reach = _LAST_ROW * row_pitch + dot
     stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE])
+    half_sine = numbers[first + PROFILE] == _HALF_SINE
     for n in range(count):
         right, down = x[n] - x0, y[n] - y0
         u = right * cosine + down * sine
         v = down * cosine - right * sine
         out[n] = 0.0
-        if not (u > 0.0 and u < width and v > 0.0 and v < height):  # NaN is outside, too
+        if not (u > 0.0 and u < width and v > 0.0 and v < height):
             continue
         cell = int(u * numbers[first + CELLS_PER_MM])
         cell = cell if cell < stride - 2 else stride - 2
@@ -98,7 +156,7 @@ def label(numbers, first, table, x, y, count, out):
                     dx = left - (which - 1) * spacing if which else left - spacing + cell_pitch
                     q = (dx * dx + dy * dy) * dots_per_mm * dots_per_mm
                     if q < 0.25:
-                        most = max(most, _swing(numbers, first, q))
+                        most = max(most, _swing(numbers, first + SHAPE, half_sine, q))
         out[n] = numbers[first + CONTRAST] * most
 
 

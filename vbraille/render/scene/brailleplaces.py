@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.dots import PLACES
+from vbraille.braille.dots import DOT_ROWS, PLACES
 from vbraille.render.braille.profiles import coefficients
 from vbraille.scene.bounds import around
 
@@ -58,10 +58,13 @@ if TYPE_CHECKING:
     _S5,
     STRIDE,  # words of a line in the table: its cells, an empty one before them and one after
     TABLE,  # first of its words in the table
+    APART,  # 1 if no two dots can be over one place
     COUNT,  # how many numbers there are
-) = range(27)
+) = range(28)
 
 FADE_MM = 1.0  # over which the opacity of a label ends
+# By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.
+_SLACK_MM = 1e-6
 _ROWS = 3
 _EIGHT_DOTS = 0xC0  # dots 7 and 8, which make a fourth row
 # Bit r of a word is the dot in row r of the left column; bit 4 + r that of the right one.
@@ -145,6 +148,12 @@ def pack_label(label: Label, written: Written) -> PackedLabel:
     numbers[SHAPE : SHAPE + 6] = coefficients(written.style.profile, tuning)
     stride = max((len(masks) for masks in written.lines), default=0) + 2
     numbers[STRIDE] = stride
+    numbers[APART] = (
+        geometry.dot_width_mm
+        <= min(geometry.dot_spacing_mm, geometry.cell_gap_mm, geometry.row_spacing_mm)
+        and (DOT_ROWS - 1) * geometry.row_spacing_mm + geometry.dot_width_mm
+        <= geometry.line_pitch_mm + _SLACK_MM
+    )
     table = np.zeros((len(written.lines), stride), np.uint16)
     for row, masks in zip(table, written.lines, strict=True):
         row[1 : 1 + len(masks)] = _WORDS[masks]
