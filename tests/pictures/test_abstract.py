@@ -184,3 +184,13 @@ def test_dotted_shapes_have_their_dots():
     discs = next(mark for mark in plain_marks(drawing) if isinstance(mark, InkDiscs))
     assert len(discs.centers_mm) == 9  # ⌊40 / 5⌋ + 1
     assert discs.radius_mm == pytest.approx(1)  # where a smooth dot is half as high
+
+
+def test_a_group_of_textures_that_vibrates_and_an_inverted_label_are_drawn():
+    textures = Group(parts=(Uniform(level=0.5),), vibration=Vibration())
+    label = Label(text="l", place_mm=(20, 10), inverted=True)
+    masks = np.array([0b000111], np.uint8)
+    assets = Assets(written={label: Written((masks,), LATERO.style)})
+    drawing = abstract_drawing(scene_of(textures, label), assets)
+    assert any(isinstance(mark, InkDiscs) for mark in plain_marks(drawing))
+    assert ink_of(drawing).max() > 0.5

@@ -188,7 +188,8 @@ class _Painter:
         if isinstance(bare, Polygon):
             bare = structs.replace(bare, markers=None)
         inside = self.regions.of(bare)
-        inside = _both(inside, where)
+        assert inside is not None  # a shape is somewhere
+        inside = _common(inside, where)
         wide = 0.0 if shape.stroke is None else shape.stroke.width_mm
         if shape.dots is not None:
             wide = 2 * shape.dots.dot.radius_mm
@@ -225,7 +226,7 @@ class _Painter:
         else:
             if self._look.halo_mm:
                 region = self.regions.grown(region, self._look.halo_mm)
-            contours = self.regions.contours(_both(region, where))
+            contours = self.regions.contours(_common(region, where))
         if contours:
             yield from self._clipped([InkArea(contours, 1.0)], where)
 
@@ -243,9 +244,9 @@ class _Painter:
             yield discs
 
     def _area(
-        self, region: NDArray[np.floating], where: Where, strength: float
+        self, region: NDArray[np.float32], where: Where, strength: float
     ) -> Iterator[InkMark]:
-        contours = self.regions.contours(_both(region, where))
+        contours = self.regions.contours(_common(region, where))
         if contours:
             yield InkArea(contours, self._look.ink(strength))
 
@@ -259,9 +260,11 @@ class _Painter:
             yield InkClip(contours, marks)
 
 
-def _both(region: Where, where: Where) -> NDArray[np.float32]:
-    """What is in two regions, of which one at most is everywhere."""
-    if region is None:
-        assert where is not None
-        return where
+def _both(region: Where, where: Where) -> Where:
+    """What is in two regions."""
+    return where if region is None else _common(region, where)
+
+
+def _common(region: NDArray[np.float32], where: Where) -> NDArray[np.float32]:
+    """What is in two regions, of which the first is not everywhere."""
     return region if where is None else np.minimum(region, where)

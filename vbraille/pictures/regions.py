@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace as exchange
 from functools import reduce
 from typing import TYPE_CHECKING, cast
 
@@ -10,7 +11,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from vbraille.pictures.scenes import map_places
-from vbraille.scene.patterns import Group, Image, Tile
+from vbraille.scene.patterns import Group, Image, Label, Tile
 from vbraille.scene.scene import Scene
 from vbraille.scene.textures import (
     AxialGrating,
@@ -154,14 +155,15 @@ class Regions:
             return self._of_group(pattern)
         if isinstance(pattern, Image):
             plain = replace(pattern, texture=None, amplitude=1.0, inverted=False, vibration=None)
-            assets = self._assets
-            if pattern in assets.bitmaps:
-                from dataclasses import replace as exchange
-
-                bitmaps = {**assets.bitmaps, plain: assets.bitmaps[pattern]}
-                assets = exchange(assets, bitmaps=bitmaps)
+            bitmaps = {**self._assets.bitmaps, plain: self._assets.bitmaps[pattern]}
+            assets = exchange(self._assets, bitmaps=bitmaps)
             return self._map(plain, assets).deflections(self.x_mm, self.y_mm)
-        return self._map(replace(pattern, inverted=False)).opacity(self.x_mm, self.y_mm)
+        upright = replace(pattern, inverted=False)
+        assets = self._assets
+        if isinstance(pattern, Label) and isinstance(upright, Label):
+            written = {**assets.written, upright: assets.written[pattern]}
+            assets = exchange(assets, written=written)
+        return self._map(upright, assets).opacity(self.x_mm, self.y_mm)
 
     def _of_group(self, group: Group) -> NDArray[np.float32] | None:
         parts = [self.of(part) for part in group.parts]

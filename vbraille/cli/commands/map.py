@@ -41,12 +41,15 @@ def run(arguments: argparse.Namespace) -> int:
     scene, assets, title = loaded.scene, loaded.assets, loaded.title
     for note in loaded.notes:
         say_line(spelled(note), aside=True)
+    draw = _map
     if arguments.vibration == "sequence":
-        content, said = _sequence(scene, assets, arguments, kind, title)
+        draw = _sequence
     elif arguments.abstract or arguments.raised:
-        content, said = _drawing(scene, assets, arguments, kind, title)
-    else:
-        content, said = _map(scene, assets, arguments, kind, title)
+        draw = _drawing
+    try:
+        content, said = draw(scene, assets, arguments, kind, title)
+    except ValueError as error:  # patterns stand too deep in each other
+        raise InputError(f"{arguments.file}: {error}") from None
     write_file(out, content, replace=arguments.force)
     for line in (f"drawn: {out}", *said, *scene_lines(scene)):
         say_line(line)
