@@ -84,7 +84,7 @@ class PackedLabel:
     Parameters
     ----------
     numbers : float64[COUNT]
-        Its numbers, at the places that this module names; ``TABLE`` is 0, and has to be where its
+        The numbers, at the places that this module names; ``TABLE`` is 0, and has to be where its
         words begin once they are part of a larger table.
     table : uint16[lines · STRIDE]
         A word for each cell of each line.
