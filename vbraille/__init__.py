@@ -37,12 +37,16 @@ if TYPE_CHECKING:
     from vbraille.render.braille.straying import Straying as Straying
     from vbraille.render.braille.style import BrailleStyle as BrailleStyle
     from vbraille.render.braille.tuning import Tuning as Tuning
+    from vbraille.scene.reading import open_scene as open_scene
+    from vbraille.scene.scene import Canvas as Canvas
+    from vbraille.scene.scene import Scene as Scene
     from vbraille.sessions.conditions import Conditions as Conditions
     from vbraille.sessions.session import Session as Session
 
 # Where each name is; what it has another name there stands after the colon.
 _PLACES = {
     "BrailleStyle": "vbraille.render.braille.style",
+    "Canvas": "vbraille.scene.scene",
     "Conditions": "vbraille.sessions.conditions",
     "Device": "vbraille.devices.base",
     "DeviceError": "vbraille.errors",
@@ -58,6 +62,7 @@ _PLACES = {
     "Results": "vbraille.analysis.results",
     "STRESS2": "vbraille.render.braille.models",
     "STRESS2_8X8": "vbraille.render.braille.models",
+    "Scene": "vbraille.scene.scene",
     "Session": "vbraille.sessions.session",
     "Straying": "vbraille.render.braille.straying",
     "Tuning": "vbraille.render.braille.tuning",
@@ -65,6 +70,7 @@ _PLACES = {
     "VbrailleError": "vbraille.errors",
     "analyse": "vbraille.analysis",
     "open": "vbraille.reading.opening:open_to_read",
+    "open_scene": "vbraille.scene.reading",
     "render_text": "vbraille.reading.frames",
 }
 __all__ = [
@@ -74,6 +80,7 @@ __all__ = [
     "STRESS2_8X8",
     "VBD",
     "BrailleStyle",
+    "Canvas",
     "Conditions",
     "Device",
     "DeviceError",
@@ -85,12 +92,14 @@ __all__ = [
     "Pose",
     "RenderedLine",
     "Results",
+    "Scene",
     "Session",
     "Straying",
     "Tuning",
     "VbrailleError",
     "analyse",
     "open",
+    "open_scene",
     "render_text",
     "testing",
 ]

@@ -33,13 +33,13 @@ class SceneRecorded(NamedTuple):
     Parameters
     ----------
     text
-        Bytes of its file.
+        Bytes of the file.
     title, description
         What it shows.
     width_mm, height_mm
-        Size of its canvas.
+        Size of the canvas.
     map_png
-        Its deflection map as a PNG that covers the canvas; white is rest.
+        The deflection map as a PNG that covers the canvas; white is rest.
     """
 
     text: bytes
@@ -120,7 +120,7 @@ class Recorder:
         self,
         scene: SceneRecorded,
         *,
-        model: str,
+        model: Model,
         rate_hz: float,
         source: str,
         sha256: str,
@@ -133,7 +133,7 @@ class Recorder:
         scene
             The picture.
         model
-            Name of the display.
+            Display, and the style of the braille in the picture.
         rate_hz
             Frames a second.
         source, sha256
@@ -152,10 +152,10 @@ class Recorder:
             path=path,
         )
         self._file.attrs.update(
-            model=model,
-            mapping="",
-            geometry="{}",
-            tuning="{}",
+            model=model.name,
+            mapping="",  # which belongs to lines
+            geometry=json.dumps(asdict(model.style.geometry)),
+            tuning=json.dumps(asdict(model.style.tuning)),
             rate_hz=rate_hz,
             first_line=1,
             source=source,

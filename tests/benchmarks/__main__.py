@@ -29,6 +29,8 @@ PARTS = (
     "conventional",
     "straying",
     "figure",
+    "scene",
+    "feel",
 )
 
 if unknown := set(sys.argv[1:]) - set(PARTS):

@@ -75,3 +75,20 @@ def test_what_is_a_scene_file_already_is_refused(tmp_path):
 def test_only_openlateros_scenes_can_be_as_shown(tmp_path):
     with pytest.raises(InputError, match="is not OpenLatero's"):
         convert_scene(tmp_path / "drawing.svg", tmp_path, as_shown=True)
+
+
+def test_a_drawing_is_converted_too(tmp_path):
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="50mm" height="40mm" viewBox="0 0 50 40">\n'
+        "<title>Sun</title>\n"
+        '<circle id="sun" cx="20" cy="15" r="8" fill="none" stroke="black" stroke-width="2"/>\n'
+        "</svg>"
+    )
+    new = tmp_path / "drawing.scene"
+    new.write_text(convert_scene(drawing, tmp_path).text)
+    opened = open_scene(new)
+    assert opened.written.title == "Sun"
+    assert opened.written.elements[0].radius_mm == 8
+    assert "# From line 3." in new.read_text()
+    assert opened.resolved == open_scene(drawing).resolved

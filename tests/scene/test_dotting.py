@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.patterns import Circle, Line, Path, Polygon
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
@@ -23,6 +24,12 @@ coordinates = st.integers(-2000, 2000).map(lambda n: n / 100)
 points = st.tuples(coordinates, coordinates)
 
 
+def in_order_around(places):
+    """The places in order around their middle, so that edges between them seldom cross."""
+    x, y = (sum(axis) / len(places) for axis in zip(*places, strict=True))
+    return tuple(sorted(places, key=lambda place: math.atan2(place[1] - y, place[0] - x)))
+
+
 def follow(places):
     return all(
         math.dist(a, b) > 0.01 for a, b in zip(places, [*places[1:], places[0]], strict=True)
@@ -30,11 +37,12 @@ def follow(places):
 
 
 rings = st.lists(points, min_size=3, max_size=7).map(tuple).filter(follow)
+uncrossed = rings.map(in_order_around).filter(lambda ring: meeting_edges(ring) is None)
 dottings = st.builds(
     Dotting, dot=st.builds(DotStyle, radius_mm=st.floats(0.1, 3)), separation_mm=st.floats(0, 5)
 )
 shapes = st.one_of(
-    st.builds(Polygon, vertices_mm=rings, dots=dottings),
+    st.builds(Polygon, vertices_mm=uncrossed, dots=dottings),
     st.builds(
         Path,
         contours_mm=st.lists(rings, min_size=1, max_size=2).map(tuple),

@@ -217,6 +217,14 @@ def test_files_and_pipes_that_are_no_ordinary_files_are_not_waited_for(tmp_path)
         loaded(tmp_path, Image(file="pipe.png", width_mm=5))
 
 
+def test_the_place_of_the_element_is_said_where_it_is_known(tmp_path):
+    saved(tmp_path / "a.png", [[0, 255]])
+    good, bad = Image(file="a.png", width_mm=5), Image(file="none.png", width_mm=5)
+    scene = Scene(canvas=CANVAS, elements=(good, Group(parts=(good, bad))))
+    with pytest.raises(InputError, match=r"^my\.scene line 9: image none.png: .* does not exist"):
+        load_bitmaps(scene, tmp_path, ["my.scene line 5", "my.scene line 9"])
+
+
 @heavy  # it takes reading 72 million pixels
 def test_many_large_images_are_refused_together(tmp_path):
     saved(tmp_path / "a.png", np.zeros((3000, 3000)))

@@ -87,10 +87,10 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
     """
     opened = open_scene(path)
     scene = opened.resolved
-    bitmaps = load_bitmaps(scene, opened.folder)
+    places = [opened.place(number) for number in range(len(scene.elements))]
+    bitmaps = load_bitmaps(scene, opened.folder, places)
     if not any(isinstance(pattern, Label) for pattern in each(*scene.elements)):
         return LoadedScene(opened, Assets(bitmaps), opened.warnings)
-    places = [opened.place(number) for number in range(len(scene.elements))]
     written = write_labels(scene, style, places)
     notes = (*opened.warnings, *label_warnings(scene, written, places))
     return LoadedScene(opened, Assets(bitmaps, written), notes)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec import structs
 
-from vbraille.pictures.hatching import grating_marks, vibration_discs
+from vbraille.pictures.hatching import grating_marks, vibration_discs, vibration_pitch_mm
 from vbraille.pictures.ink import InkArea, InkClip, InkDrawing, InkLine, InkRaster
 from vbraille.pictures.inkshapes import (
     dots_marks,
@@ -175,8 +175,10 @@ class _Painter:
             case _:
                 marks = grating_marks(texture, self._canvas, look, ink)  # pyright: ignore
                 yield from self._clipped(marks, where)
-        if isinstance(texture, Uniform | Tile) and texture.vibration is not None:
-            yield from self._shaking(where)
+        swing = texture.vibration
+        if swing is not None and (not look.raised or isinstance(texture, Uniform | Tile)):
+            # On the ridges white dots are seen, dark ones in the gaps.
+            yield from self._shaking(where, 1.0 if swing.of == "high" else ink)
 
     def _fill(self, shape: AnyShape, where: Where, strength: float) -> Iterator[InkMark]:
         if isinstance(shape, Line) or shape.fill is None:
@@ -234,7 +236,9 @@ class _Painter:
         discs = vibration_discs(self._canvas, self._look, gray)
         if where is not None:
             held = self.regions.holds(where, discs.centers_mm, discs.radius_mm)
-            discs = replace(discs, centers_mm=discs.centers_mm[held])
+            centers = discs.centers_mm[held]
+            more = self.regions.spread(where, vibration_pitch_mm(self._look), centers)
+            discs = replace(discs, centers_mm=np.vstack([centers, more]))
         if len(discs.centers_mm):
             yield discs
 

@@ -68,7 +68,7 @@ def vibration_discs(canvas: Canvas, look: InkLook, gray: float) -> InkDiscs:
     InputError
         If there would be more dots than anybody could see.
     """
-    pitch = look.dot_mm + look.gap_mm if look.raised else 3 * look.dot_mm
+    pitch = vibration_pitch_mm(look)
     across = np.arange(pitch / 2, canvas.width_mm + pitch, pitch)
     down = np.arange(pitch / 2, canvas.height_mm + pitch, pitch)
     if across.size * down.size > _MOST_DOTS:
@@ -79,6 +79,11 @@ def vibration_discs(canvas: Canvas, look: InkLook, gray: float) -> InkDiscs:
     x, y = np.meshgrid(across, down)
     x[1::2] -= pitch / 2
     return InkDiscs(np.stack([x.ravel(), y.ravel()], axis=-1), look.dot_mm / 2, gray)
+
+
+def vibration_pitch_mm(look: InkLook) -> float:
+    """Distance of the dots that stand for vibration."""
+    return look.dot_mm + look.gap_mm if look.raised else 3 * look.dot_mm
 
 
 def _linear(
@@ -121,21 +126,28 @@ def _axial(
     middle, half = cycle.ridge / 2, cycle.ridge / 4
     if grating.inverted:
         middle, half = (cycle.ridge + cycle.length) / 2, cycle.length / 2 - cycle.ridge / 4
-    number = max(round(360.0 / cycle.length), 1)
-    turns = middle + cycle.length * np.arange(number, dtype=np.float64)
-    turns = _warped_back(turns, grating.distortion, 0.0, 360.0)
-    # Spokes begin where both they and the blanks between them are wide enough.
-    blank = math.radians(max(cycle.length - 2 * half, 0.1))
-    first = max(look.line_mm / (2 * math.radians(half)), look.gap_mm / blank, grating.fade_mm[1])
+    bend = grating.distortion
+    begin, end = np.array([0.0, 360.0]) if bend is None else _bent(np.array([0.0, 360.0]), bend)
+    number = max(round((end - begin) / cycle.length), 1)
+    middles = middle + cycle.length * (
+        np.arange(number) + math.ceil((begin - middle) / cycle.length)
+    )
+    turns = middles[:, None] + np.array([-half, half])
+    turns = _warped_back(turns, bend, -360.0, 720.0)
     wedges = []
-    for turn in turns[np.isfinite(turns)]:
-        edges = np.radians(grating.start_deg + turn + np.array([-half, half]))
+    for left, right in turns[np.isfinite(turns).all(axis=1)]:
+        # A spoke begins where both it and the blank beside it are wide enough.
+        half_rad = max(math.radians(right - left) / 2, 1e-3)
+        blank_rad = max(2 * half_rad * (cycle.length / (2 * half) - 1), 1e-3)
+        first = max(look.line_mm / (2 * half_rad), look.gap_mm / blank_rad, grating.fade_mm[1])
+        edges = np.radians(grating.start_deg + np.array([left, right]))
         near, far = (
             center + radius * np.stack([np.cos(edges), np.sin(edges)], axis=-1)
             for radius in (first, farthest)
         )
-        wedges.append(np.array([near[0], near[1], far[1], far[0]]))
-    if wedges and first < farthest:
+        if first < farthest:
+            wedges.append(np.array([near[0], near[1], far[1], far[0]]))
+    if wedges:
         yield InkArea(tuple(wedges), gray)
 
 
@@ -149,7 +161,7 @@ def _ridge_line(
     closed: bool,
 ) -> InkLine:
     dashes = None
-    if grating.vibration is not None:
+    if look.raised and grating.vibration is not None and grating.vibration.of == "high":
         width_mm = min(width_mm, look.dot_mm)
         dashes = dotted(width_mm, look)
     return InkLine(contours, width_mm, gray, closed, dashes, round_ends=dashes is not None)
@@ -208,7 +220,9 @@ def _by_width(
         yield middles[rounded == width], width
 
 
-def _warped(x: NDArray[np.float64], distortion: Gradual | Peak | None) -> NDArray[np.float64]:
+def _warped(
+    x: NDArray[np.float64], distortion: Gradual | Peak | TurnPeak | None
+) -> NDArray[np.float64]:
     """X' of eqs. 8.5 and 8.6 (mended), as an integral of the frequency's factor."""
     if distortion is None:
         return x

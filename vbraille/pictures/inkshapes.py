@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from vbraille.scene.strokes import DotStyle, Stroke
 
 AnyShape = Line | Circle | Polygon | Path
+_SHAKING_CUT = 0.7  # gray of what is down in a stroke and vibrates
 _ERROR_MM = 0.01  # of the edges that stand for a circle
 
 
@@ -136,7 +137,8 @@ def _stroke(
     width = max(whole - edge, look.line_mm)
     ink = look.ink(strength * stroke.amplitude)
     length = _length_mm(contours[0]) if closed else None
-    if look.raised and shakes:
+    low = stroke.vibration is not None and stroke.vibration.of == "low"
+    if look.raised and shakes and not low:
         dot = min(width, look.dot_mm)
         yield InkLine(contours, dot, ink, closed, dotted(dot, look, length))
         return
@@ -150,15 +152,19 @@ def _stroke(
         cycle_mm = cycle.length * math.ceil((cut + look.line_mm) / cycle.length - 1e-9)
         cuts = max(inner, look.line_mm) if along.whole_edges and not look.raised else width
         blank = 1.0 if look.raised else 1.0 - (1.0 - ink) * (1.0 - along.amplitude)
+        if low and not look.raised:
+            blank = _SHAKING_CUT
         # A ridge of the grating begins where the path does, and its middle is cut.
         into = cycle_mm - max(cycle.ridge / 2 - cut / 2, 0.0)
         dashes = (cut, cycle_mm - cut)
         yield InkLine(contours, 1.02 * cuts, blank, closed, dashes, into, round_ends=False)
     if stroke.across is not None and not look.raised:
         yield InkLine(contours, 0.1 * width, 1.0, closed)
-    if shakes:
+    if shakes and not low:
         dot = min(look.dot_mm, 0.5 * width)
-        yield InkLine(contours, dot, 1.0, closed, dotted(dot, look, length))
+        yield InkLine(
+            contours, dot, ink if stroke.outlined else 1.0, closed, dotted(dot, look, length)
+        )
 
 
 def _length_mm(contour: NDArray[np.float64]) -> float:

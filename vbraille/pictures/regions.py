@@ -100,6 +100,39 @@ class Regions:
         away_mm = np.asarray(distance_transform_edt(~inside)) / self._per_mm
         return np.clip(_HALF + (by_mm - away_mm) * self._per_mm, 0.0, 1.0).astype(np.float32)
 
+    def spread(
+        self, region: NDArray[np.floating], pitch_mm: float, before_mm: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Find places for dots where a region is thinner than their pitch, along its middle.
+
+        No two are nearer to each other, or to one of those before, than the pitch. All are
+        float64[n, 2].
+        """
+        from scipy.ndimage import distance_transform_edt, maximum_filter
+
+        thick = self.grown(self.grown(region, -pitch_mm / 2), 0.75 * pitch_mm)
+        thin = (region >= _HALF) & (thick < _HALF)
+        if not thin.any():
+            return np.zeros((0, 2))
+        inside = np.asarray(distance_transform_edt(region >= _HALF))
+        rows, columns = np.nonzero(thin & (inside >= maximum_filter(inside, 3)))
+        taken: dict[tuple[int, int], list[tuple[float, float]]] = {}
+        for x, y in before_mm.tolist():
+            taken.setdefault((int(x / pitch_mm), int(y / pitch_mm)), []).append((x, y))
+        found = []
+        for x, y in zip(self.x_mm[columns].tolist(), self.y_mm[rows].tolist(), strict=True):
+            at = int(x / pitch_mm), int(y / pitch_mm)
+            near = (
+                other
+                for across in (-1, 0, 1)
+                for down in (-1, 0, 1)
+                for other in taken.get((at[0] + across, at[1] + down), ())
+            )
+            if all(math.dist((x, y), other) >= pitch_mm for other in near):
+                taken.setdefault(at, []).append((x, y))
+                found.append((x, y))
+        return np.array(found).reshape(-1, 2)
+
     def holds(
         self, region: NDArray[np.floating], centers_mm: NDArray[np.float64], radius_mm: float
     ) -> NDArray[np.bool_]:
@@ -135,6 +168,11 @@ class Regions:
         some = [part for part in parts if part is not None]
         if group.operation == "multiply":
             return reduce(np.minimum, some) if some else None
+        if group.by is not None:
+            second = np.clip(self.felt(group.by), 0.0, 1.0)
+            one, other = (np.float32(1.0) if part is None else part for part in parts)
+            chosen = (1.0 - second) * one + second * other
+            return np.asarray(chosen, np.float32) if some else None
         if len(some) < len(parts):
             return None
         return reduce(np.maximum, some)

@@ -27,7 +27,7 @@ class Keyed(Protocol):
     prompt: Prompt | None
     bound: Bound | None
 
-    def say(self, sentence: str) -> None:
+    def say(self, sentence: str, /) -> None:
         """Say a sentence."""
         ...
 

@@ -35,9 +35,9 @@ class ConvertedScene:
     Parameters
     ----------
     text
-        Its text.
+        Text of the file.
     elements
-        Number of its elements.
+        Number of elements in it.
     differences
         What was ignored, or means something else here, each in one sentence.
     """
@@ -115,8 +115,7 @@ def _relative(file: Path, folder: Path) -> str:
 
 def _read(path: Path, form: str, as_shown: bool) -> FoundScene:
     if form == "svg":
-        # It loads the library for SVG.
-        from vbraille.scene.svgscene import read_svg  # pyright: ignore[reportMissingImports]
+        from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
 
         return read_svg(path)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML

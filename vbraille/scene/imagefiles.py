@@ -94,7 +94,7 @@ def intensities_of(path: Path, channel: Channel, shape_of: ShapeOf) -> NDArray[n
         if image.format in ("JPEG", "MPO") and content.count(_SCAN) > _MOST_SCANS:
             raise InputError(f"{path} has far too many scans for a JPEG file; save it again")
         image.load()
-        image = ImageOps.exif_transpose(image)
+        ImageOps.exif_transpose(image, in_place=True)
         shape = image.size if drawn else shape_of(*image.size, None)
         return _intensities(image, channel, shape, path)
 
@@ -135,7 +135,8 @@ def _intensities(
         return _deep(image, shape)
     if image.mode in ("RGBA", "LA", "PA") or "transparency" in image.info:
         # Colours times alpha, so that averaging is right at transparent edges.
-        image = _smaller(image.convert("RGBA").convert("RGBa"), shape)
+        image = image if image.mode == "RGBA" else image.convert("RGBA")
+        image = _smaller(image.convert("RGBa"), shape)
         image = image.getchannel(3) if channel == "alpha" else _luminance(image)
     elif channel == "alpha":
         raise _no_alpha(path)

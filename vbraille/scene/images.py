@@ -15,7 +15,7 @@ from vbraille.scene.patterns import Image
 from vbraille.scene.walking import each
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -43,7 +43,7 @@ class _Laid:
     margins_mm: tuple[float, float] = (0.0, 0.0)
 
 
-def load_bitmaps(scene: Scene, folder: Path) -> dict[Image, Bitmap]:
+def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict[Image, Bitmap]:
     """Read the image files of a scene.
 
     An image has at most 10 pixels per mm, and at most 16 million; what is more is averaged. Images
@@ -57,6 +57,8 @@ def load_bitmaps(scene: Scene, folder: Path) -> dict[Image, Bitmap]:
         A resolved scene.
     folder
         Folder from which the names of files are seen.
+    places
+        File and line of each element, for messages; none if they are not known.
 
     Returns
     -------
@@ -71,19 +73,34 @@ def load_bitmaps(scene: Scene, folder: Path) -> dict[Image, Bitmap]:
     """
     bitmaps: dict[Image, Bitmap] = {}
     kept: dict[tuple[object, ...], _Laid] = {}
-    for image in each(*scene.elements):
-        if not isinstance(image, Image) or image in bitmaps:
-            continue
-        source = _source(image)
-        if source not in kept:
-            kept[source] = _laid(image, folder)
-            if sum(laid.intensities.size for laid in kept.values()) > MOST_TOGETHER:
-                raise InputError(
-                    f"{named(image)}: the images of the scene have more than "
-                    f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
-                )
-        bitmaps[image] = _bitmap(image, kept[source])
+    for number, element in enumerate(scene.elements):
+        with _placing(places[number] if number < len(places) else ""):
+            for image in each(element):
+                if isinstance(image, Image) and image not in bitmaps:
+                    bitmaps[image] = _loaded(image, folder, kept)
     return bitmaps
+
+
+def _loaded(image: Image, folder: Path, kept: dict[tuple[object, ...], _Laid]) -> Bitmap:
+    """Bitmap of an image, whose pixels are read if they were not kept before."""
+    source = _source(image)
+    if source not in kept:
+        kept[source] = _laid(image, folder)
+        if sum(laid.intensities.size for laid in kept.values()) > MOST_TOGETHER:
+            raise InputError(
+                f"{named(image)}: the images of the scene have more than "
+                f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
+            )
+    return _bitmap(image, kept[source])
+
+
+@contextmanager
+def _placing(place: str) -> Iterator[None]:
+    """Put a place, if it is known, before what is refused there."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{place}: {error}") if place else error from None
 
 
 def named(image: Image | ImageDots) -> str:

@@ -12,6 +12,7 @@ from vbraille.errors import InputError
 from vbraille.scene.opened import Origins
 from vbraille.scene.origins import ForeignOrigin, TomlOrigin
 from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
+from vbraille.scene.resolving import MOST_PATTERNS
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.walking import with_children
@@ -19,10 +20,13 @@ from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from vbraille.scene.opened import FoundScene, SceneOrigin
+    from vbraille.scene.svg.looks import ClassLook
     from vbraille.scene.walking import Steps
 
-# Scenes of 50,000 shapes; larger files would take longer to read than anybody waits.
+# Scenes of 50,000 shapes or so; larger files would take longer to read than anybody waits.
 MOST_BYTES = 8_000_000
 MOST_FILES = 100
 UNSAID_LANGUAGE = "en"
@@ -39,7 +43,7 @@ class Gathered:
     form
         What the file itself says.
     elements, textures
-        Its elements and named textures, and those that it includes.
+        Elements and named textures of the file and of those that it includes.
     origins
         Where each of them is written.
     warnings
@@ -125,13 +129,25 @@ class _Gathering:
     def __init__(self) -> None:
         self._read: set[Path] = set()
 
-    def gather(self, name: Path, real: Path, way: tuple[Path, ...]) -> Gathered:
-        """Read a file, at the end of a way of files of which each includes the next."""
+    def gather(
+        self,
+        name: Path,
+        real: Path,
+        way: tuple[Path, ...],
+        classes: Mapping[str, ClassLook] | None = None,
+    ) -> Gathered:
+        """Read a file, at the end of a way of files of which each includes the next.
+
+        If it is a drawing, ``classes`` are those of the file that includes it.
+        """
         self._read.add(real)
         form = form_of(name)
         if form != "toml":
-            return _foreign(name, form)
-        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name), several_lines=True)
+            return _foreign(name, form, classes or {})
+        text = read_text(name, "scene", MOST_BYTES)
+        if text.count("kind") > MOST_PATTERNS:  # each has one
+            raise InputError(f"{name} has more than {MOST_PATTERNS} patterns; use fewer")
+        file = TomlFile(text, str(name), several_lines=True)
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
@@ -171,7 +187,7 @@ class _Gathering:
             return
         if len(self._read) >= MOST_FILES:
             file.fail(steps, f"is one file more than the {MOST_FILES} that a scene can include")
-        found = self.gather(path, real, way)
+        found = self.gather(path, real, way, into.form.classes)
         folder, language = Path(included).parent, found.form.language
         into.add(
             [_seen_from(element, folder, language) for element in found.elements],
@@ -197,9 +213,9 @@ def form_of(path: Path) -> str:
     return "svg" if b"<svg" in head or b":svg" in head else "gen"
 
 
-def _foreign(path: Path, form: str) -> Gathered:
+def _foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> Gathered:
     """Read a file of another format."""
-    found = _read_foreign(path, form)
+    found = _read_foreign(path, form, classes)
     scene = found.scene
     gathered = Gathered(
         SceneFile(
@@ -223,11 +239,11 @@ def _about(path: Path, warning: str) -> str:
     return f"{path} {warning}" if warning.startswith("line ") else f"{path}: {warning}"
 
 
-def _read_foreign(path: Path, form: str) -> FoundScene:
+def _read_foreign(path: Path, form: str, classes: Mapping[str, ClassLook]) -> FoundScene:
     if form == "svg":
         from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
 
-        return read_svg(path)
+        return read_svg(path, classes)
     from vbraille.scene.openlatero import read_gen  # loads the library for XML
 
     return read_gen(path)

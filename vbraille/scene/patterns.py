@@ -70,9 +70,10 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
     file
         Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
     place_mm
-        Its top left corner on the canvas.
+        Place of the top left corner on the canvas.
     width_mm, height_mm
-        Its size; one of them follows from the other and the picture's shape if it is left out.
+        Size on the canvas; if one of them is left out, it follows from the other and from the
+        picture's shape.
     channel
         "gray", by which white is up, or "alpha", by which what is opaque is up.
     inverted_source
@@ -121,9 +122,10 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     file
         Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
     place_mm
-        Its top left corner on the canvas.
+        Place of the top left corner on the canvas.
     width_mm, height_mm
-        Its size; one of them follows from the other and the picture's shape if it is left out.
+        Size on the canvas; if one of them is left out, it follows from the other and from the
+        picture's shape.
     threshold
         Gray, from 0 to 1, above which a pixel belongs to a blob.
     by_area
@@ -222,7 +224,7 @@ class Line(Shape, frozen=True, kw_only=True, tag="line"):
     Parameters
     ----------
     start_mm, end_mm
-        Its two ends; textures along it begin at the first.
+        The two ends; textures along it begin at the first.
 
     Raises
     ------
@@ -248,7 +250,7 @@ class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
     Parameters
     ----------
     center_mm, radius_mm
-        Its middle, and its radius to the middle of the stroke.
+        Middle of the circle, and radius to the middle of the stroke.
     fill
         What fills it; None for nothing.
 
@@ -275,7 +277,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     Parameters
     ----------
     vertices_mm
-        Its vertices in order, three or more; the first is where textures along it begin.
+        Vertices in order, three or more; the first is where textures along it begin.
     join
         How a texture along the stroke goes round a corner: "straight", to the bisector, where it
         jumps, or "rounded", along an arc round the point where the stroke's edges meet.
@@ -353,9 +355,9 @@ class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
     Parameters
     ----------
     centers_mm
-        Their middles.
+        Middles of the dots.
     dot
-        How they look.
+        How the dots look.
 
     Raises
     ------

@@ -13,7 +13,7 @@ class Canvas(Table, frozen=True, kw_only=True):
     Parameters
     ----------
     width_mm, height_mm
-        Its size, 1 to 10,000 mm.
+        Size of the canvas, 1 to 10,000 mm.
 
     Raises
     ------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vbraille.scene.patterns import AnyPattern, Operation
 from vbraille.scene.scene import Canvas
+from vbraille.scene.svg.looks import ClassLook
 from vbraille.toml.tomlfile import Table
 
 
@@ -24,6 +25,9 @@ class SceneFile(Table, frozen=True, kw_only=True):
     include
         Names of other scenes' files, seen from this one. Their elements stand before its own, and
         their names can be used here.
+    classes
+        What shapes of included SVG drawings become, by the name of their class, by the label that
+        Inkscape gives them, or by their id.
     textures
         Patterns by name, which are shown where something uses them.
     elements
@@ -36,5 +40,6 @@ class SceneFile(Table, frozen=True, kw_only=True):
     language: str = ""
     operation: Operation = "overwrite"
     include: tuple[str, ...] = ()
+    classes: dict[str, ClassLook] = {}  # noqa: RUF012 - msgspec copies an empty default
     textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
     elements: tuple[AnyPattern, ...] = ()

@@ -88,7 +88,8 @@ def _describe(schema: dict[str, Any], table: type[Table]) -> None:
 
 def _plain(text: str) -> str:
     """Text of a docstring without its marks of code."""
-    return text.replace("``", "").replace("`", "").replace("None for", "nothing for")
+    text = text.replace("``", "").replace("`", "")
+    return text.replace(". None for", ". Left out for").replace("None for", "left out for").replace("None if", "left out if")
 
 
 def _without_null(schema: Any) -> Any:

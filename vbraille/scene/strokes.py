@@ -122,7 +122,8 @@ class Stroke(Table, frozen=True, kw_only=True):
     width_mm
         Width w of the stroke.
     edge_mm
-        Length ε of its edge; half of the width, or more, or None, makes a smooth stroke.
+        Length ε of its edge; half of the width or more (in Python also None) makes a smooth
+        stroke.
     amplitude
         Deflection k of its middle, from 0 to 1.
     outlined
@@ -263,7 +264,7 @@ class Markers(Table, frozen=True, kw_only=True):
     blend_mm
         Distance over which a marker goes over into the stroke's texture.
     vibration
-        Vibration of the markers; an amplitude of 0, or None, makes plain ones.
+        Vibration of the markers; an amplitude of 0 (in Python also None) makes plain ones.
 
     Raises
     ------

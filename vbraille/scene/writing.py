@@ -7,6 +7,7 @@ is read again gives the same scene.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -85,22 +86,34 @@ def _lines(
 def _said(table: Table) -> list[tuple[str, object]]:
     """Keys and values of a table that are not as usual, in the order in which they stand."""
     said: dict[str, object] = {}
-    for field in structs.fields(table):
-        value = getattr(table, field.name)
-        usual = field.default
-        if field.default_factory is not msgspec.NODEFAULT:
-            usual = field.default_factory()
-        if value == usual and not (isinstance(table, Group) and field.name == "operation"):
+    for name, key, usual in _fields(type(table)):
+        value = getattr(table, name)
+        if value == usual and not (isinstance(table, Group) and name == "operation"):
             continue
         if value is None:
-            value = _nothing(table, field.name)
+            value = _nothing(table, name)
         if value is not None:
-            said[field.encode_name] = value
+            said[key] = value
     first = [key for key in _FIRST if key in said]
     last = [key for key in _LAST if key in said and isinstance(table, Pattern)]
     middle = [key for key in said if key not in (*first, *last)]
     middle.sort(key=lambda key: _depth(said[key]))
     return [(key, said[key]) for key in (*first, *middle, *last)]
+
+
+@cache
+def _fields(kind: type[Table]) -> list[tuple[str, str, object]]:
+    """Names of a table's fields, their keys and what they are as usual."""
+    return [
+        (
+            field.name,
+            field.encode_name,
+            field.default
+            if field.default_factory is msgspec.NODEFAULT
+            else field.default_factory(),
+        )
+        for field in structs.fields(kind)
+    ]
 
 
 def _depth(value: object) -> int:

@@ -77,12 +77,13 @@ class TomlFile:
         except ValueError as error:
             raise InputError(f"{where} is not TOML: {error}; mend it there") from None
         spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
-        for path, value in _leaves(self._tree):
-            if isinstance(value, str) and not value.translate(spaces).isprintable():
-                lines = "text" if several_lines else "one line"
-                self._refuse(path, f"{lines} without control characters")
-            if isinstance(value, int) and abs(value) > _MOST_WHOLE:
-                self._refuse(path, "a smaller number")
+        if all(_is_good(value, spaces) for value in _values(self._tree)):
+            return
+        path, value = next(leaf for leaf in _leaves(self._tree) if not _is_good(leaf[1], spaces))
+        if isinstance(value, str):
+            lines = "text" if several_lines else "one line"
+            self._refuse(path, f"{lines} without control characters")
+        self._refuse(path, "a smaller number")
 
     def read(
         self,
@@ -254,7 +255,7 @@ class TomlFile:
         table = self._at(path)
         if isinstance(table, dict):
             path = (*path, *_steps_of(problem, table))
-        lines = lines_of(self._text)
+        lines = lines_of(self._text, path)
         while path and path not in lines:
             path = path[:-1]
         return f"{self._where} line {lines[path]}" if path else self._where
@@ -283,6 +284,26 @@ def quote(value: object) -> str:
 def which(name: str, names: Collection[str]) -> str:
     """End of a sentence about an unknown name: the nearest known name, and all known names."""
     return f"; {nearest(name, names)}, and there is {', '.join(sorted(names))}"
+
+
+def _is_good(value: object, spaces: dict[int, str]) -> bool:
+    """Whether a value without others in it is no string with control characters, nor too large."""
+    if isinstance(value, str):
+        return value.isprintable() or value.translate(spaces).isprintable()
+    return not isinstance(value, int) or abs(value) <= _MOST_WHOLE
+
+
+def _values(tree: object) -> Iterator[object]:
+    """All values of a file that contain no other values, at any depth."""
+    left: list[object] = [tree]
+    while left:
+        value = left.pop()
+        if isinstance(value, dict):
+            left += value.values()
+        elif isinstance(value, list):
+            left += value
+        else:
+            yield value
 
 
 def _leaves(tree: object) -> Iterator[tuple[Path, object]]:

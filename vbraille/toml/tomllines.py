@@ -25,13 +25,15 @@ _TOKEN = re.compile(
 )
 
 
-def lines_of(text: str) -> dict[Path, int]:
+def lines_of(text: str, about: Path | None = None) -> dict[Path, int]:
     r"""Line numbers, from 1, of keys, tables and items by their paths; braces are not looked into.
 
     Parameters
     ----------
     text
         A TOML text that `tomllib` can read; for other texts the result means nothing.
+    about
+        Path that is asked for: items of other keys' lists are left out then. None for all.
 
     Examples
     --------
@@ -53,7 +55,8 @@ def lines_of(text: str) -> dict[Path, int]:
             path = (*path, _unquoted(token))
             lines.setdefault(path, statement[0][1])
         if not header:
-            _add_items(lines, path, statement[tokens.index("=") + 1 :])
+            if about is None or path == about[: len(path)]:
+                _add_items(lines, path, statement[tokens.index("=") + 1 :])
             continue
         if tokens[1] == "[":
             tables[path] += 1

@@ -163,3 +163,31 @@ def test_within_a_white_picture_there_is_its_texture_and_nothing_beyond(folder):
     alone[0].write_text(alone[1])
     assert through == pytest.approx(deflections(read_gen(alone[0]).scene, Assets(), x, y))
     assert not deflections(opened.resolved, assets, [5.0, 100.0], [50.0, 15.0]).any()
+
+
+def test_pixels_are_where_they_were_to_the_step_between_neighbours(folder):
+    """The nearest pixel there, and bilinear between their middles here."""
+    columns, rows = 64, 32
+    across = np.linspace(0, 200, columns)[None, :] + np.linspace(0, 40, rows)[:, None]
+    shades = np.rint(across).astype(np.uint8)
+    Pillow.fromarray(shades).save(folder / "ramp.png")
+    place, size = (12.5, 30.25), (96.0, 40.0)
+    (folder / "old.gen").write_text(
+        scene(
+            image(
+                "<imgfile>ramp.png</imgfile><position>12.5,30.25</position>"
+                '<width units="mm">96</width><height units="mm">40</height>',
+                texture("Plain"),
+            )
+        )
+    )
+    opened = open_scene(folder / "old.gen")
+    assets = Assets(bitmaps=load_bitmaps(opened.resolved, opened.folder))
+    rng = np.random.default_rng(3)
+    # Within the middles of the outermost pixels, beyond which the picture ends there.
+    x, y = rng.uniform(place[0] + 1, place[0] + 95, 200), rng.uniform(place[1] + 1, 69, 200)
+    column = np.floor((x - place[0]) / size[0] * columns).astype(int)
+    row = np.floor((y - place[1]) / size[1] * rows).astype(int)
+    steps = (200 / (columns - 1) + 40 / (rows - 1)) / 2 + 1
+    felt = deflections(opened.resolved, assets, x, y)
+    assert np.abs(felt - shades[row, column] / 255).max() <= steps / 255

@@ -15,6 +15,7 @@ from vbraille.scene.patterns import (
     Group,
     Label,
     Line,
+    LinearGrating,
     Polygon,
     Uniform,
     UniformVibration,
@@ -22,11 +23,14 @@ from vbraille.scene.patterns import (
 )
 from vbraille.scene.patterns import Path as Lines
 from vbraille.scene.reading import open_scene
+from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Dotting, Stroke
+from vbraille.scene.svg.colors import color_of, hue_of
 from vbraille.scene.svg.looks import BY_HUE, ClassLook
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
+from vbraille.toml.tomlfile import TomlFile
 
 FILES = Path(__file__).parent / "files"
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
@@ -289,6 +293,11 @@ IGNORED = {
     '<path d="M0 0 L x"/>': ["its text is not understood; it is left out"],
     '<circle r="1e9"/>': ["it goes farther than 10 m from the drawing's corner; it is left out"],
     '<rect width="-5" height="5"/>': ["it has no size, and is left out"],
+    '<path d="M9 9z" stroke="#000" stroke-width="9"/>': ["it has no size, and is left out"],
+    '<polygon points="5,5 9,9"/>': ["it has no size, and is left out"],
+    '<g transform="scale(1e200)"><rect width="1e200" height="1"/></g>': [
+        "it goes farther than 10 m from the drawing's corner; it is left out"
+    ],
     '<polygon points="5,5 5,5"/>': ["it has no size, and is left out"],
     '<path d="M0 0H9" fill="none" stroke="red"/>': [
         "its line is drawn 2 mm wide, not to be missed"
@@ -383,6 +392,30 @@ def test_a_scene_says_what_a_class_becomes(read, text):
     assert (circle.fill, circle.stroke) == (WATER.fill, WATER.stroke)
 
 
+def test_a_scene_file_says_what_classes_of_the_drawings_it_includes_become(tmp_path):
+    (tmp_path / "plan.svg").write_text(
+        f'<svg {NS} width="9" height="9"><circle r="5" class="water"/></svg>'
+    )
+    (tmp_path / "my.scene").write_text(
+        'include = ["plan.svg"]\n'
+        "[canvas]\nwidth_mm = 30\nheight_mm = 20\n"
+        "[textures.waves]\n"
+        'kind = "linear-grating"\nridge_mm = 3\n'
+        '[classes.water.fill]\ntexture = {kind = "use", name = "waves"}\n'
+        "[classes.water.stroke]\nwidth_mm = 5\n"
+        "[classes.watr]\nhidden = true\n"
+    )
+    opened = open_scene(tmp_path / "my.scene")
+    (circle,) = opened.resolved.elements
+    assert circle.fill.texture == LinearGrating(ridge_mm=3)
+    assert circle.stroke.width_mm == 5
+    (warning,) = opened.warnings
+    assert warning == (
+        f"{tmp_path / 'plan.svg'}: nothing that is shown has the class, label or id watr, "
+        "which the scene speaks of"
+    )
+
+
 def test_a_class_may_be_dotted_or_hidden(read):
     looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
     found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
@@ -410,3 +443,19 @@ def test_damaged_drawings_are_read_or_refused_in_one_sentence(tmp_path_factory, 
     assert "\n" not in said
     assert len(found) < 30
     assert not any(re.search(r"[=(, ]-?(nan|inf)[,)]", one) for one in found)
+
+
+def test_scenes_in_the_documentation_are_scenes():
+    page = Path(__file__).parents[3] / "docs" / "drawings.md"
+    texts = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    assert len(texts) == 4
+    for text in texts:
+        assert TomlFile(text, page.name).read(SceneFile)
+
+
+def test_the_table_of_colours_in_the_documentation_is_the_one_that_counts():
+    page = (Path(__file__).parents[3] / "docs" / "drawings.md").read_text("utf-8")
+    rows = dict(re.findall(r"^\| ([\w, ]+) \| `(stock:[\w-]+)`", page, re.MULTILINE))
+    told = {hue: texture for hues, texture in rows.items() for hue in hues.split(", ")}
+    for word, texture in told.items():
+        assert BY_HUE[hue_of(color_of(word))] == texture, word

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
                 height_mm=loaded.scene.canvas.height_mm,
                 map_png=seen_from_above(loaded),
             ),
-            model=model.name,
+            model=model,
             rate_hz=rate_hz,
             source=Path(arguments.file).name,
             sha256=hashlib.sha256(written).hexdigest(),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.scene.converting import convert_scene
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
     import argparse
@@ -29,8 +29,8 @@ def convert(arguments: argparse.Namespace) -> int:
     made = convert_scene(path, out.parent, as_shown=arguments.as_shown)
     write_file(out, made.text.encode(), replace=arguments.force)
     for difference in made.differences:
-        print(f"differs: {path} {printable(difference)}")
-    print(f"elements: {made.elements}")
-    print(f"differences: {len(made.differences)}")
-    print(f"written: {out}")
+        say_line(f"differs: {path} {difference}")
+    say_line(f"elements: {made.elements}")
+    say_line(f"differences: {len(made.differences)}")
+    say_line(f"written: {out}")
     return 0

@@ -84,7 +84,7 @@ def path(parser: ArgumentParser) -> None:
 
 def profile(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille profile``."""
-    parser.add_argument("file", metavar="FILE", help="Take this scene.")
+    parser.add_argument("file", metavar="FILE", help="Take the scene in this file.")
     parser.add_argument(
         "--model",
         choices=MODELS,

@@ -46,10 +46,10 @@ _ANY = 1 << 40
 
 
 @intrinsic
-def _call(typing, numbers, table, rows, width, start, count, time):
+def _call(_typing, _numbers, _table, _rows, _width, _start, _count, _time):
     """Call `evaluate` by its name, with addresses of arrays."""
 
-    def code(context, builder, signature, arguments):
+    def code(context, builder, _signature, arguments):
         doubles, words = _F64.as_pointer(), ir.IntType(16).as_pointer()
         kinds = (doubles, words, doubles, _I64, _I64, _I64, _F64)
         function = builder.module.globals.get(_NAME)

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 SURFACE_MM = (289.9, 230.1875)
 DEEPEST = 32  # patterns within one another
 
-Reader = Callable[["GenElement", "Context"], "AnyPattern | None"]
+Reader = Callable[["GenElement", "GenContext"], "AnyPattern | None"]
 
 
 @dataclass(frozen=True, slots=True)
-class Context:
+class GenContext:
     """How a file is read.
 
     Parameters
@@ -82,7 +82,7 @@ class Context:
         return self._found.get(id(pattern), (None, None))[1]
 
 
-def vibration(above: GenElement, context: Context, always_up: str = "") -> Vibration | None:
+def vibration(above: GenElement, context: GenContext, always_up: str = "") -> Vibration | None:
     """Vibration in an element; None if there is none, or it is off.
 
     Parameters
@@ -113,7 +113,7 @@ def vibration(above: GenElement, context: Context, always_up: str = "") -> Vibra
     return replace(swing, of="low") if low else swing
 
 
-def swung(element: GenElement, context: Context) -> Vibration:
+def swung(element: GenElement, context: GenContext) -> Vibration:
     """Vibration that an element tells of, whether it is on or off; of what is up."""
     hertz = element.number(
         "frequency", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz"
@@ -122,7 +122,7 @@ def swung(element: GenElement, context: Context) -> Vibration:
     return Vibration(frequency_hz=timed(hertz, context), amplitude=amplitude)
 
 
-def timed(hertz: float, context: Context) -> float:
+def timed(hertz: float, context: GenContext) -> float:
     """Frequency that is shown for one that is written: its period has whole microseconds there."""
     return 1e6 / math.floor(1e6 / hertz) if context.as_shown else hertz
 

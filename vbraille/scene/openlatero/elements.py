@@ -39,9 +39,9 @@ class GenElement:
     line
         Line at which it begins, from 1.
     attributes
-        Its attributes.
+        Attributes of the element.
     text
-        Its text before the first element in it.
+        Text in it before its first element.
     remarks
         What is said about the file.
     owner
@@ -141,7 +141,7 @@ class GenElement:
         low, high
             The range of it here; what is outside is put to its nearest end, and said.
         unit
-            Its unit: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
+            Unit that counts: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
         """
         element = self.one(name)
         if element is None:

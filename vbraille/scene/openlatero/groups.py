@@ -16,7 +16,7 @@ from vbraille.scene.textures import (
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from vbraille.scene.openlatero.context import Context
+    from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern, Operation
 
@@ -30,7 +30,7 @@ OPERATIONS: dict[str, Operation] = {
 _TEXTURES = (Uniform, UniformVibration, LinearGrating, RadialGrating, AxialGrating, Tile)
 
 
-def read_group(element: GenElement, context: Context) -> AnyPattern | None:
+def read_group(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Group of an element; None if there is nothing to show."""
     return joined(element, [context.pattern(part) for part in element.every("Pattern")])
 
@@ -43,7 +43,7 @@ def joined(element: GenElement, parts: list[AnyPattern | None]) -> AnyPattern | 
     element
         The group, with its operation.
     parts
-        Its parts, of which None are left out.
+        Parts of it, of which None are left out.
     """
     name = operation_of(element, "max")
     if not parts:
@@ -83,7 +83,7 @@ def _say_layers(element: GenElement, parts: list[AnyPattern]) -> None:
         element.say("a texture hides all below it here, and only where it is up there")
 
 
-def read_toggle(element: GenElement, context: Context) -> AnyPattern | None:
+def read_toggle(element: GenElement, context: GenContext) -> AnyPattern | None:
     """First pattern of two that a button swaps."""
     parts = element.every("Pattern")
     if len(parts) < 2:
@@ -96,7 +96,7 @@ def read_toggle(element: GenElement, context: Context) -> AnyPattern | None:
     return context.pattern(parts[0])
 
 
-def read_audio(element: GenElement, context: Context) -> None:
+def read_audio(element: GenElement, context: GenContext) -> None:
     """Sounds, which are not played."""
     del context
     sounds = count(len(element.every("sound")), "sound")

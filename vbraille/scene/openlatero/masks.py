@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM
-from vbraille.scene.openlatero.pictures import Picture, measure
+from vbraille.scene.openlatero.pictures import MaskPicture, measure
 from vbraille.scene.patterns import Image
 from vbraille.scene.textures import Uniform
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.measures import Point
-    from vbraille.scene.openlatero.context import Context
+    from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
 
@@ -31,10 +31,10 @@ class _Found:
     """A picture of a mask, by its name seen from the file, and what it is."""
 
     name: str
-    picture: Picture
+    picture: MaskPicture
 
 
-def read_image(element: GenElement, context: Context) -> AnyPattern | None:
+def read_image(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Image of an element; None if there is nothing to show.
 
     Raises
@@ -90,8 +90,8 @@ def _plain(value_mm: float) -> float:
     return round(value_mm, 6)
 
 
-def _found(file: GenElement, context: Context) -> _Found | None:
-    """Picture that an element names."""
+def _found(file: GenElement, context: GenContext) -> _Found | None:
+    """MaskPicture that an element names."""
     name = file.text.strip().rstrip("\\").strip()
     # OpenLatero itself writes "/mask.png" for a picture that stands beside the scene.
     beside = name.rpartition("/")[2]
@@ -116,7 +116,7 @@ def _in(folder: Path, error: InputError) -> str:
     return str(error).replace(f"{folder}/", "") if str(folder) != "." else str(error)
 
 
-def _size(mask: GenElement, picture: Picture) -> tuple[float, float]:
+def _size(mask: GenElement, picture: MaskPicture) -> tuple[float, float]:
     """Width and height of an image on the surface, in mm."""
     mask.skip("lock_aspect_ratio")  # what the program keeps while somebody changes the size
     # The largest size that fits on the surface in the picture's shape.
@@ -152,7 +152,7 @@ def _place(mask: GenElement, width: float, height: float) -> Point:
     return element.place(middle)
 
 
-def _blur(mask: GenElement, picture: Picture, width: float, height: float) -> float:
+def _blur(mask: GenElement, picture: MaskPicture, width: float, height: float) -> float:
     """Standard deviation of the blur of an image as it is placed, in mm."""
     if not mask.switch("blur", False):
         return 0.0
@@ -163,7 +163,7 @@ def _blur(mask: GenElement, picture: Picture, width: float, height: float) -> fl
     return _BLUR_PIXELS * math.sqrt(pixel[0] * pixel[1])
 
 
-def _say_channel(file: GenElement, picture: Picture, channel: str) -> None:
+def _say_channel(file: GenElement, picture: MaskPicture, channel: str) -> None:
     """Say so if a picture's intensities are others there."""
     if channel == "gray" and picture.is_coloured:
         file.say("its picture has colours: their luminance counts here, and their red there")

@@ -30,13 +30,13 @@ _PIXELS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class MaskPicture:
     """What a picture is, without its pixels.
 
     Parameters
     ----------
     width_px, height_px
-        Its size in pixels; of a drawing, as it is rasterised at 96 per inch.
+        Size in pixels; of a drawing, as it is rasterised at 96 per inch.
     is_coloured, has_alpha
         Whether it has colours, and whether some of it is transparent.
     """
@@ -47,7 +47,7 @@ class Picture:
     has_alpha: bool
 
 
-def measure(path: Path) -> Picture:
+def measure(path: Path) -> MaskPicture:
     """Find the size of a picture.
 
     Raises
@@ -67,7 +67,7 @@ def measure(path: Path) -> Picture:
             width, height = image.size
             if width * height > MOST_PIXELS:
                 raise InputError(f"{path} has {width} × {height} pixels, which are too many")
-            return Picture(width, height, _is_coloured(image), _has_alpha(image))
+            return MaskPicture(width, height, _is_coloured(image), _has_alpha(image))
     except InputError:
         raise
     # Readers of damaged files raise nearly everything, and Pillow promises no fewer kinds.
@@ -92,7 +92,7 @@ def _has_alpha(image: Any) -> bool:
     return low < 255
 
 
-def _drawn(path: Path) -> Picture:
+def _drawn(path: Path) -> MaskPicture:
     """Size of a drawing."""
     from lxml import etree
 
@@ -114,7 +114,7 @@ def _drawn(path: Path) -> Picture:
     ]
     if min(sizes) <= 0 or max(sizes) > 1e6:
         raise InputError(f"{path} is a drawing without a size")
-    return Picture(sizes[0], sizes[1], is_coloured=True, has_alpha=True)
+    return MaskPicture(sizes[0], sizes[1], is_coloured=True, has_alpha=True)
 
 
 def _pixels(text: str | None) -> float | None:

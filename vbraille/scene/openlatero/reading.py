@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.opened import FoundScene
-from vbraille.scene.openlatero.context import SURFACE_MM, Context
+from vbraille.scene.openlatero.context import SURFACE_MM, GenContext
 from vbraille.scene.openlatero.groups import (
     OPERATIONS,
     joined,
@@ -70,7 +70,7 @@ def read_gen(path: str | Path, *, as_shown: bool = False) -> FoundScene:
     path = Path(path)
     remarks = Remarks()
     root = read_tree(read_bytes(path, MOST_BYTES), str(path), remarks)
-    context = Context(path.parent, as_shown, TYPES)
+    context = GenContext(path.parent, as_shown, TYPES)
     made = _made(root, context, path)
     for element in root.unasked():
         what = f"{element.path or element.name} {element.attribute('type')}".strip()
@@ -85,7 +85,7 @@ def read_gen(path: str | Path, *, as_shown: bool = False) -> FoundScene:
     return FoundScene(scene, _lines(scene, context), remarks.listed())
 
 
-def _made(root: GenElement, context: Context, path: Path) -> AnyPattern | None:
+def _made(root: GenElement, context: GenContext, path: Path) -> AnyPattern | None:
     """Pattern that a file holds: the group of a scene, or a texture."""
     generator = root.one("Generator")
     if generator is None:
@@ -126,7 +126,7 @@ def _title(path: Path) -> str:
     return "".join(c for c in path.stem if c.isprintable())
 
 
-def _lines(scene: Scene, context: Context) -> dict[Steps, int]:
+def _lines(scene: Scene, context: GenContext) -> dict[Steps, int]:
     """Lines of the elements of a scene, and of the patterns in them."""
     lines: dict[Steps, int] = {}
     left: list[tuple[Steps, AnyPattern]] = [

@@ -15,9 +15,9 @@ from vbraille.scene.strokes import DotStyle, Markers, Vibration
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
-    from vbraille.scene.openlatero.context import Context
+    from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
-    from vbraille.scene.openlatero.strokes import Drawn
+    from vbraille.scene.openlatero.strokes import StrokeLook
     from vbraille.scene.patterns import AnyPattern, Fill
 
 _OPERATIONS = ("multiply", "add", "max", "blend", "overwrite", "reactive")
@@ -30,7 +30,7 @@ _SPANS = {
 }
 
 
-def read_line(element: GenElement, context: Context) -> AnyPattern | None:
+def read_line(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Line of an element; None if there is nothing to show.
 
     Raises
@@ -48,7 +48,7 @@ def read_line(element: GenElement, context: Context) -> AnyPattern | None:
     )
 
 
-def read_circle(element: GenElement, context: Context) -> AnyPattern | None:
+def read_circle(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Circle of an element; None if there is nothing to show.
 
     Raises
@@ -72,7 +72,7 @@ def read_circle(element: GenElement, context: Context) -> AnyPattern | None:
     )
 
 
-def read_polygon(element: GenElement, context: Context) -> AnyPattern | None:
+def read_polygon(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Polygon of an element; None if there is nothing to show.
 
     Raises
@@ -122,7 +122,7 @@ def _say_tight(element: GenElement, polygon: Polygon) -> None:
 def _path(
     element: GenElement,
     vertices: tuple[Point, ...],
-    look: Drawn,
+    look: StrokeLook,
     fill: Fill | None,
     markers: Markers | None,
 ) -> Path:
@@ -139,7 +139,7 @@ def _path(
     )
 
 
-def read_dots(element: GenElement, context: Context) -> AnyPattern | None:
+def read_dots(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Dots of an element; None if there are none.
 
     Raises
@@ -200,7 +200,7 @@ def _vertices(element: GenElement) -> tuple[Point, ...]:
     return tuple(kept)
 
 
-def _markers(corner: GenElement, context: Context, look: Drawn) -> Markers | None:
+def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> Markers | None:
     """Markers at the vertices of a polygon."""
     span = corner.word("span", _SPANS, "circle intercept")
     kind = corner.word("type", ("solid", "invert vib"), "solid")
@@ -218,7 +218,7 @@ def _markers(corner: GenElement, context: Context, look: Drawn) -> Markers | Non
     return Markers(span=_SPANS[span], angle_deg=angle, blend_mm=blend, vibration=swing)  # pyright: ignore[reportArgumentType]
 
 
-def _fill(element: GenElement, context: Context, look: Drawn) -> Fill | None:
+def _fill(element: GenElement, context: GenContext, look: StrokeLook) -> Fill | None:
     fill = filling(element, context)
     if fill is not None and fill.blended and look.dots is not None:
         element.say("dots stand in the place of the fill there, and are blended into it here")

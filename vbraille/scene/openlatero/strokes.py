@@ -14,7 +14,7 @@ from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Stroke, Vib
 from vbraille.scene.textures import LinearGrating
 
 if TYPE_CHECKING:
-    from vbraille.scene.openlatero.context import Context
+    from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
 
 _CUES = ("none", "inherent", "superposed", "suppressed", "vibration", "blend")
@@ -24,7 +24,7 @@ _MOST_CYCLES = 49  # on one side of a stroke
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class StrokeLook:
     """How a shape is drawn.
 
     Parameters
@@ -32,7 +32,7 @@ class Drawn:
     intensity
         Factor of the stroke, and of the fill with it.
     stroke, dots
-        Its stroke, or the dots in its place; neither if nothing of it can be felt.
+        The stroke, or the dots in its place; neither if nothing of it can be felt.
     """
 
     intensity: float
@@ -40,7 +40,7 @@ class Drawn:
     dots: Dotting | None
 
 
-def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -> Drawn:
+def drawn(shape: GenElement, context: GenContext, *, corners_swing: bool = False) -> StrokeLook:
     """How the stroke of a shape is drawn.
 
     Parameters
@@ -71,7 +71,7 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
     if width < LEAST_MM:
         element.forget()
         element.say(f"stroke width is {width:g}, so there is no stroke")
-        return Drawn(intensity, None, None)
+        return StrokeLook(intensity, None, None)
     if is_dotted:
         _speed(element, fill, None)
         if fill is not None:
@@ -86,14 +86,14 @@ def drawn(shape: GenElement, context: Context, *, corners_swing: bool = False) -
             vibration=swing,
         )
         dots = Dotting(dot=dot, separation_mm=spacing, vertex_vibration=corners)
-        return Drawn(intensity, None, dots)
+        return StrokeLook(intensity, None, dots)
     row.forget()
     stroke = _stroke(fill, context, Stroke(width_mm=width, edge_mm=edge, across=across), swing)
     along = None if stroke is None else stroke.along
     speed = _speed(element, fill, along)
     if stroke is not None and along is not None and speed:
         stroke = replace(stroke, along=replace(along, velocity_mm_s=speed))
-    return Drawn(intensity, stroke, None)
+    return StrokeLook(intensity, stroke, None)
 
 
 def edge_of(ridge: GenElement, default: float) -> float:
@@ -112,7 +112,7 @@ def across_of(ridge: GenElement) -> Across | None:
     return Across(amplitude=amplitude, cycles=2 * cycles + 1) if amplitude else None
 
 
-def filling(shape: GenElement, context: Context) -> Fill | None:
+def filling(shape: GenElement, context: GenContext) -> Fill | None:
     """What fills a closed shape; None for nothing."""
     element = shape.part("fill_texture")
     if not element.switch("enable", False):
@@ -145,7 +145,7 @@ def _profiled(ridge: GenElement, width: float) -> float:
 
 
 def _stroke(
-    fill: GenElement | None, context: Context, plain: Stroke, swing: Vibration | None
+    fill: GenElement | None, context: GenContext, plain: Stroke, swing: Vibration | None
 ) -> Stroke | None:
     """Stroke with the texture along it; None if nothing of it can be felt."""
     along = None
@@ -224,7 +224,7 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
     Parameters
     ----------
     grating
-        Its element.
+        Element of the grating.
     unit
         "mm", or "°" for an axial grating.
     cycle
@@ -244,7 +244,7 @@ def speed_of(grating: GenElement, unit: str, cycle: float, most: float = _MOST_S
     return max(-most, min(most, speed))
 
 
-def _against(above: GenElement, context: Context) -> Vibration:
+def _against(above: GenElement, context: GenContext) -> Vibration:
     """Vibration of dots on vertices, which swing where the others do not."""
     element = above.part("vibration")
     if element.children and element.switch("enable", True):

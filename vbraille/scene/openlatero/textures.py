@@ -22,7 +22,7 @@ from vbraille.wording import nearest
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.scene.openlatero.context import Context
+    from vbraille.scene.openlatero.context import GenContext
     from vbraille.scene.openlatero.elements import GenElement
     from vbraille.scene.patterns import AnyPattern
 
@@ -36,7 +36,7 @@ _CUES = (
 )
 
 
-def read_texture(element: GenElement, context: Context) -> AnyPattern | None:
+def read_texture(element: GenElement, context: GenContext) -> AnyPattern | None:
     """Texture of an element; None if there is nothing to show.
 
     Raises
@@ -61,38 +61,38 @@ def read_texture(element: GenElement, context: Context) -> AnyPattern | None:
     return pattern
 
 
-def _null(element: GenElement, context: Context) -> AnyPattern:
+def _null(element: GenElement, context: GenContext) -> AnyPattern:
     """Nothing, which has no changes either."""
     del context
     element.forget()
     return Uniform(level=0.0)
 
 
-def _plain(element: GenElement, context: Context) -> AnyPattern:
+def _plain(element: GenElement, context: GenContext) -> AnyPattern:
     element.skip("motion")  # the same everywhere
     return _changed(Uniform(), element, context)
 
 
-def _vibration(element: GenElement, context: Context) -> AnyPattern:
+def _vibration(element: GenElement, context: GenContext) -> AnyPattern:
     element.skip("motion")
     hertz = element.number("freq", MOST_FREQUENCY_HZ, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, "Hz")
     return _changed(UniformVibration(frequency_hz=timed(hertz, context)), element, context)
 
 
-def _linear(element: GenElement, context: Context) -> AnyPattern | None:
+def _linear(element: GenElement, context: GenContext) -> AnyPattern | None:
     return _graded(read_linear, element, context)
 
 
-def _radial(element: GenElement, context: Context) -> AnyPattern | None:
+def _radial(element: GenElement, context: GenContext) -> AnyPattern | None:
     return _graded(read_radial, element, context)
 
 
-def _axial(element: GenElement, context: Context) -> AnyPattern | None:
+def _axial(element: GenElement, context: GenContext) -> AnyPattern | None:
     return _graded(read_axial, element, context)
 
 
 def _graded(
-    reader: Callable[[GenElement], AnyPattern | None], element: GenElement, context: Context
+    reader: Callable[[GenElement], AnyPattern | None], element: GenElement, context: GenContext
 ) -> AnyPattern | None:
     pattern = reader(element)
     if pattern is None:
@@ -105,7 +105,7 @@ def _graded(
     return _changed(moved or pattern, element, context)
 
 
-def _double(element: GenElement, context: Context) -> AnyPattern | None:
+def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
     gratings = read_double(element)
     if gratings is None:
         return None
@@ -113,14 +113,14 @@ def _double(element: GenElement, context: Context) -> AnyPattern | None:
     return None if pattern is None else _unread(pattern, element, context)
 
 
-def _combo(element: GenElement, context: Context) -> AnyPattern | None:
+def _combo(element: GenElement, context: GenContext) -> AnyPattern | None:
     parts = [context.pattern(part) for part in element.every("Pattern")]
     say_motion(element)
     pattern = joined(element, parts)
     return None if pattern is None else _changed(pattern, element, context)
 
 
-def _blend(element: GenElement, context: Context) -> AnyPattern | None:
+def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
     """A texture by the hand's movement, of which the first is shown."""
     parts = element.every("Pattern")
     element.say("it depends on the hand's movement there; its first texture is shown")
@@ -138,7 +138,7 @@ def _blend(element: GenElement, context: Context) -> AnyPattern | None:
     return None if pattern is None else _changed(pattern, element, context)
 
 
-def _motion(element: GenElement, context: Context) -> AnyPattern | None:
+def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
     cue = element.word("cue_type", _CUES, "none")
     element.skip("direction", "velocity")
     if cue != "none":
@@ -148,7 +148,7 @@ def _motion(element: GenElement, context: Context) -> AnyPattern | None:
     return None if pattern is None else _unread(pattern, element, context)
 
 
-def _tile(element: GenElement, context: Context) -> AnyPattern | None:
+def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
     width = element.number("grid_width", 20.0, 0.1, MOST_MM)
     height = element.number("grid_height", 20.0, 0.1, MOST_MM)
     found = element.one("Pattern")
@@ -166,14 +166,14 @@ def _tile(element: GenElement, context: Context) -> AnyPattern | None:
     return _unread(tile, element, context)
 
 
-def _changed(pattern: AnyPattern, element: GenElement, context: Context) -> AnyPattern:
+def _changed(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
     """Pattern with the changes that an element names."""
     amplitude = element.number("amplitude", 1.0, 0.0, 1.0, "share")
     inverted = element.switch("invert", False)
     return changed(pattern, amplitude, inverted, vibration(element, context))
 
 
-def _unread(pattern: AnyPattern, element: GenElement, context: Context) -> AnyPattern:
+def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
     """Pattern with changes that an element names, although OpenLatero does not read them there."""
     moves = isinstance(pattern, Tile)
     made = _changed(pattern, element, context)
@@ -198,7 +198,7 @@ def say_motion(element: GenElement) -> None:
         motion.forget()
 
 
-_READERS: dict[str, Callable[[GenElement, Context], AnyPattern | None]] = {
+_READERS: dict[str, Callable[[GenElement, GenContext], AnyPattern | None]] = {
     "Null": _null,
     "Plain": _plain,
     "Vibration": _vibration,

@@ -13,7 +13,7 @@ from vbraille.errors import InputError
 from vbraille.scene.patterns import Group
 from vbraille.scene.svg.looks import drawn, share_of
 from vbraille.scene.svg.numbers import AffineMap, fit, length_px, numbers_of, transform_of
-from vbraille.scene.svg.outlines import MOST_POINTS
+from vbraille.scene.svg.outlines import MOST_POINTS, TOO_FAR
 from vbraille.scene.svg.shapes import SHAPES, circle_of, outline, patterns_of
 from vbraille.scene.svg.style import classes_of, styled
 from vbraille.scene.svg.tree import (
@@ -131,6 +131,7 @@ class SvgDrawing:
     _notes: dict[str, list[tuple[int, str]]] = field(default_factory=lambda: defaultdict(list))
     _named: set[str] = field(default_factory=set)
     _used: list[str] = field(default_factory=list)
+    _met: set[str] = field(default_factory=set)  # the names that the scene says something of
     _elements: int = 0
     _points: int = 0
 
@@ -151,6 +152,11 @@ class SvgDrawing:
                 sentence += ", ".join(lines[:_NAMED_LINES])
                 sentence += " and others" * (len(lines) > _NAMED_LINES)
             said.append(sentence)
+        said += [
+            f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
+            for name in self.looks
+            if name not in self._met
+        ]
         return tuple(said)
 
     def inside(self, element: Element, place: _Place) -> list[DrawnNode]:
@@ -268,12 +274,11 @@ class SvgDrawing:
                 raise InputError(
                     f"{self.name} has more than {MOST_POINTS} places on its lines; simplify it"
                 )
-            if not contours:
-                self.note(element, "it has no size, and is left out")
-                return []
             notes: list[str] = []
             nonzero = place.style.get("fill-rule") != "evenodd"
             found += patterns_of(name, contours, how, nonzero=nonzero, notes=notes)
+            if not found:
+                self.note(element, "it has no size, and is left out")
             for what in notes:
                 self.note(element, what)
         if place.strength < 1.0:
@@ -345,7 +350,9 @@ class SvgDrawing:
         if not self.looks:
             return None
         names = (*classes_of(element), element.get(f"{INKSCAPE}label"), element.get("id"))
-        return next((self.looks[name] for name in names if name and name in self.looks), None)
+        known = [name for name in names if name and name in self.looks]
+        self._met.update(known)
+        return self.looks[known[0]] if known else None
 
     def _count(self, element: Element) -> None:
         self._elements += 1
@@ -360,8 +367,10 @@ class SvgDrawing:
         """Leave out an element that cannot be drawn, and say so."""
         try:
             yield
-        except (ValueError, OverflowError) as error:
+        except ValueError as error:
             self.note(element, f"{error}; it is left out")
+        except OverflowError:
+            self.note(element, f"{TOO_FAR}; it is left out")
 
 
 def start(matrix: AffineMap, style: Mapping[str, str], view: Point) -> _Place:

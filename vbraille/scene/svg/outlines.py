@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 FLATNESS_MM = 0.05
 MOST_POINTS = 500_000  # of a drawing
 _MOST_CHARACTERS = 2_000_000  # of the text of a path
+TOO_FAR = "it goes farther than 10 m from the drawing's corner"
 _NOT_UNDERSTOOD = "its text is not understood"
 # What may stand between commands, and how many numbers each command takes at a time. The flags of
 # arcs may stand without spaces, so theirs are not counted.
@@ -93,7 +94,7 @@ def _add(contours: list[Contour], places: list[complex], *, closed: bool) -> Non
     for place in places:
         x, y = round(place.real, _DECIMALS) + 0.0, round(place.imag, _DECIMALS) + 0.0
         if not (abs(x) <= MOST_MM and abs(y) <= MOST_MM):
-            raise ValueError("it goes farther than 10 m from the drawing's corner")
+            raise ValueError(TOO_FAR)
         if not points or points[-1] != (x, y):
             points.append((x, y))
     if closed or (len(points) > 3 and points[0] == points[-1]):
@@ -159,7 +160,7 @@ def _chords(segment: Any, matrix: AffineMap) -> list[complex]:
 def _shares(bend: float) -> list[float]:
     """Places between 0 and 1, the last 1, for a second derivative of at most ``bend`` mm."""
     if not math.isfinite(bend):
-        raise ValueError("it goes farther than 10 m from the drawing's corner")
+        raise ValueError(TOO_FAR)
     count = max(math.ceil(math.sqrt(bend / (8 * FLATNESS_MM))), 1)
     count = min(count, _MOST_CHORDS)
     return [number / count for number in range(1, count + 1)]

@@ -107,7 +107,7 @@ def _drawn(root: Element, path: Path) -> bytes:
             [sys.executable, "-I", "-c", _CHILD, *limits],
             input=etree.tostring(root, encoding="utf-8"),
             capture_output=True,
-            timeout=2 * MOST_S,  # the machine may be busy
+            timeout=6 * MOST_S,  # the machine may be busy
             check=False,
         )
     except subprocess.TimeoutExpired:

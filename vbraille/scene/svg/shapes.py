@@ -121,10 +121,11 @@ def patterns_of(
     shown = drawn.stroke is not None or drawn.dots is not None
     rings = [one.points_mm for one in contours if len(one.points_mm) >= 3]
     if drawn.fill is not None:
-        if any(map(_crosses, rings)):
+        polygon = _is_polygon(name, contours)
+        if (nonzero or polygon) and any(map(_crosses, rings)):
             if nonzero:
                 notes.append(CROSSING)
-        elif _is_polygon(name, contours):
+        elif polygon:
             return [Polygon(vertices_mm=rings[0], fill=drawn.fill, **lines)]
         edges = _edges(rings) if nonzero and len(rings) > 1 else rings
         if edges and (not shown or (edges == rings and all(one.closed for one in contours))):
@@ -201,8 +202,7 @@ def _crosses(points_mm: tuple[Point, ...]) -> bool:
 
 def _is_convex(points_mm: tuple[Point, ...]) -> bool:
     """Whether a contour goes round once and always turns the same way; quick to find out."""
-    turned = 0.0
-    signs = set()
+    turned, side = 0.0, 0.0
     for before, here, after in zip(
         (points_mm[-1], *points_mm), points_mm, (*points_mm[1:], points_mm[0]), strict=False
     ):
@@ -211,9 +211,11 @@ def _is_convex(points_mm: tuple[Point, ...]) -> bool:
             (x1 - x0) * (y2 - y1) - (y1 - y0) * (x2 - x1),
             (x1 - x0) * (x2 - x1) + (y1 - y0) * (y2 - y1),
         )
-        signs.add(turn > 0)
+        if turn * side < 0:
+            return False
+        side = turn or side
         turned += turn
-    return len(signs) == 1 and abs(abs(turned) - 2 * math.pi) < 0.1
+    return abs(abs(turned) - 2 * math.pi) < 0.1
 
 
 def _edges(rings: list[tuple[Point, ...]]) -> list[tuple[Point, ...]]:

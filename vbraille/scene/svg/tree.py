@@ -20,7 +20,7 @@ XLINK = "{http://www.w3.org/1999/xlink}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 MOST_BYTES = 50 << 20
 MOST_ELEMENTS = 50_000
-MOST_DEPTH = 200
+MOST_DEPTH = 100
 _MOST_ENTITY = 256  # characters of an entity's text
 _MOST_DECLARED = 20_000  # characters; those of Adobe Illustrator are 2,000
 _PIECE = 1 << 16
@@ -57,7 +57,7 @@ def read_tree(path: Path) -> Element:
     ------
     InputError
         If the file cannot be read, is no SVG, is not well formed, has entities that are no plain
-        text, more than 50,000 elements, elements more than 200 deep, or is larger than 50 MB.
+        text, more than 50,000 elements, elements more than 100 deep, or is larger than 50 MB.
     """
     content = read_bytes(path, MOST_BYTES)
     if content.startswith(b"\x1f\x8b"):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.patterns import Label
 from vbraille.scene.svg.numbers import length_px
+from vbraille.scene.svg.outlines import TOO_FAR
 from vbraille.scene.svg.style import styled
 from vbraille.scene.svg.tree import INKSCAPE, name_of, text_of
 
@@ -112,7 +113,7 @@ def labels_of(
                 corner += down * (LINE_MM - below)
         before = corner
         if not (abs(corner.real) <= MOST_MM and abs(corner.imag) <= MOST_MM):
-            raise ValueError("it goes farther than 10 m from the drawing's corner")
+            raise ValueError(TOO_FAR)
         place = round(corner.real, 4) + 0.0, round(corner.imag, 4) + 0.0
         degrees = round(math.degrees(angle), 4) + 0.0
         yield line.element, Label(text=text, place_mm=place, angle_deg=degrees)

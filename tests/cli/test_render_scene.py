@@ -1,0 +1,114 @@
+"""``vbraille render`` and ``vbraille profile`` of a tactile picture, and its recording played."""
+
+import hashlib
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+
+from tests.feeling.felt import DISPLAY, SCENE
+from vbraille.playback.rendered import Rendered
+from vbraille.recording import poses_of, scene_of
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.reference import deflections
+from vbraille.scene.reading import open_scene
+
+MOVING = (
+    SCENE
+    + """
+[[elements]]
+kind = "vibration"
+id = "air"
+frequency_hz = 10
+amplitude = 0.5
+"""
+)
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """A picture that vibrates, in a file."""
+    path = tmp_path / "house.scene"
+    path.write_text(MOVING)
+    return path
+
+
+def test_each_frame_is_what_the_twin_has_at_its_pose_and_time(call, scene, tmp_path):
+    out = tmp_path / "house.h5"
+    hand = tmp_path / "hand.csv"
+    hand.write_text("t_s,x_mm,y_mm,theta_deg\n0,80,10,0\n0.3,90,30,20\n")
+    done = call("render", scene, "--path", f"recorded:{hand}", "--out", out, "--plain")
+    assert (done.code, done.err.splitlines()[-1]) == (0, "100 percent")
+    assert done.out == "rendered: 301 frames, 0.3 s on the path\n"
+    resolved = open_scene(scene).resolved
+    with h5py.File(out) as file:
+        assert file.attrs["format"] == 3
+        assert file.attrs["model"] == "stress2-8x8"
+        assert file.attrs["source_sha256"] == hashlib.sha256(MOVING.encode()).hexdigest()
+        assert not file["line"][:].any()
+        told = scene_of(file)
+        assert told.text == MOVING.encode()
+        assert (told.title, told.width_mm, told.height_mm) == ("A house", 120, 90)
+        assert told.map_png.startswith(b"\x89PNG")
+        poses, frames = poses_of(file), file["frames"][:]
+    right, down = DISPLAY.column_offsets_mm(), DISPLAY.row_offsets_mm()
+    right, down = np.meshgrid(right - right.mean(), down - down.mean())
+    parity = np.add.outer(np.arange(8), np.arange(8)) % 2
+    for n in range(0, 301, 23):
+        cos, sin = np.cos(poses.theta_rad[n]), np.sin(poses.theta_rad[n])
+        x_mm = poses.x_mm[n] + right * cos + down * sin
+        y_mm = poses.y_mm[n] + down * cos - right * sin
+        places = x_mm.ravel(), y_mm.ravel(), parity.ravel()
+        wanted = deflections(resolved, Assets(), *places, time_s=float(poses.t_s[n]))
+        np.testing.assert_allclose(frames[n].ravel(), wanted, atol=1e-6)
+
+
+def test_a_recording_of_a_picture_is_played_with_the_picture(call, scene, tmp_path):
+    out = tmp_path / "house.h5"
+    assert call("render", scene, "--path", "spot", "--seconds", "1", "--out", out).code == 0
+    played = Rendered(out)
+    state = played.state(1)
+    assert state.title == "A house"
+    assert (state.scene.width_mm, state.scene.height_mm) == (120, 90)
+    assert state.scene.image.startswith("data:image/png;base64,")
+    assert (state.lines, state.place, played.moments) == ([], "", [])
+    assert (state.array.travel_mm, state.array.height_mm) == (120, 90)
+    assert played.piece(0).ticks["y_mm"][0] == 45
+    assert played.program(1) is None
+    played.close()
+
+
+def test_what_frames_cost_is_said_and_written(call, scene, tmp_path):
+    out, drawn = tmp_path / "cost.csv", tmp_path / "cost.png"
+    path = ("--path", "spot", "--seconds", "0.2")
+    done = call("profile", scene, *path, "--elements", "--out", out, "--map", drawn)
+    assert done.code == 0, done.err
+    said = SimpleNamespace(lines=done.out.splitlines())
+    for begun in ("frames: 192", "timed: ", "clock: ", "frame: median", "most: ", "actuator: "):
+        assert any(line.startswith(begun) for line in said.lines), begun
+    assert "of the 15.6 µs" in done.out
+    assert sum(line.startswith("element ") for line in said.lines) == 3
+    assert out.read_text().startswith("x_mm,y_mm,frame_us\n")
+    assert drawn.read_bytes().startswith(b"\x89PNG")
+    assert "is there already" in call("profile", scene, *path, "--out", out).err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("render {scene} --path round --out {out}", "there is no path 'round'"),
+        ("render {scene} --radius 3 --out {out}", "--radius is not for the path wide"),
+        ("render {text} --radius 3 --out {out}", "--radius is for the path over a tactile picture"),
+        ("render {none} --path wide --out {out}", "No such file"),
+        ("profile {scene} --out {text}", "does not end in .csv"),
+        ("profile {scene} --path spot --seconds 0", "duration is 0 s"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(call, scene, tmp_path, text, arguments, said):
+    names = {"scene": scene, "out": tmp_path / "o.h5", "text": text, "none": tmp_path / "n.scene"}
+    done = call(*arguments.format(**names).split())
+    assert done.code == 2
+    assert said in done.err
+    assert done.err.count("\n") == 1
+    assert not (tmp_path / "o.h5").exists()

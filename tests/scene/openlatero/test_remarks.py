@@ -1,0 +1,185 @@
+"""What is said of what OpenLatero's files hold: left out, or shown differently."""
+
+import pytest
+
+from tests.scene.openlatero.files import (
+    circle,
+    fill,
+    grating,
+    line,
+    polygon,
+    stroke,
+    texture,
+    waves,
+)
+from vbraille.scene.patterns import Circle
+
+LEFT_OUT = {
+    "an unknown type": ('<Pattern type="Cirkel"/>', 'type of this pattern is "Cirkel"'),
+    "no type": ("<Pattern/>", "type of this pattern is missing"),
+    "an unknown texture": (texture("Linear"), 'subtype of this texture is "Linear"'),
+    "an image without a texture": ('<Pattern type="Image"><mask/></Pattern>', "has no texture"),
+    "an image without a picture": (
+        f'<Pattern type="Image">{grating()}<mask/></Pattern>', "picture is not named",
+    ),
+    "a picture that is not there": (
+        f'<Pattern type="Image">{grating()}<mask><imgfile>no.png</imgfile></mask></Pattern>',
+        "no.png does not exist",
+    ),
+    "no ridges": (grating(ridge=0), "its ridges are 0 mm"),
+    "no ridges in degrees": (texture("AxialGrating", waves(0.1, 0)), "its ridges are 0.1 °"),
+    "no ridges in a double grating": (
+        texture("DoubleLinearGrating", "<secondary_scale>0</secondary_scale>"), "are below 0.05 mm",
+    ),
+    "two vertices": (polygon(stroke(), ("1,1", "9,9")), "vertices are 2; there must be 3 or more"),
+    "no vertices": ('<Pattern type="Polygon"/>', "vertices are 0"),
+    "a line without a length": (line(stroke(), ("5,5", "5,5")), "a line needs two places"),
+    "a circle without a radius": (circle(stroke(), radius=0), "radius is 0 mm"),
+    "no stroke and no fill": (circle(stroke(width=0)), "nothing of it can be felt"),
+    "no dots": ('<Pattern type="Dots"/>', "it has no dots"),
+    "an empty group": ('<Pattern type="Group"/>', "it has no patterns"),
+    "a blend of two": (
+        f'<Pattern type="Group"><operation>blend</operation>{circle()}{line()}</Pattern>',
+        "a blend is of 3 patterns, and this has 2",
+    ),
+    "half a toggle": (f'<Pattern type="Toggle">{circle()}</Pattern>', "a toggle is of 2 patterns"),
+    "sounds": ('<Pattern type="Audio"><sound/><sound/></Pattern>', "its 2 sounds are not played"),
+    "a product with nothing": (
+        f'<Pattern type="Group"><operation>multiply</operation>{circle()}{grating(ridge=0)}'
+        "</Pattern>",
+        "a part of a product is left out",
+    ),
+    "tiles of nothing": (texture("Pattern", grating(ridge=0)), "its ridges are 0 mm"),
+}  # fmt: skip
+
+
+def said(found):
+    return "\n".join(found.warnings)
+
+
+@pytest.mark.parametrize("name", LEFT_OUT)
+def test_what_cannot_be_shown_is_said_and_left_out(read, name):
+    text, message = LEFT_OUT[name]
+    found = read(text, circle(stroke()))
+    assert [type(element) for element in found.scene.elements] == [Circle]
+    assert message in said(found)
+    assert "left out" in said(found)
+    assert all(warning.startswith("line ") for warning in found.warnings)
+
+
+DIFFERENT = {
+    "a reactive group": (
+        f'<Pattern type="Group"><operation type="reactive"><Modulator type="Velocity"/></operation>'
+        f"{circle(stroke())}{line()}</Pattern>",
+        "depends on the hand's movement there; its first pattern is shown",
+    ),
+    "a blend by movement": (
+        texture("Blend", f'<Modulator type="Directional"/>{grating()}{grating(angle=9)}'),
+        "its first texture is shown",
+    ),
+    "a toggle": (f'<Pattern type="Toggle">{circle()}{line()}</Pattern>', "the first is shown"),
+    "a cue": (
+        line(stroke(9, "<motion><cue>superposed</cue></motion>")),
+        'the motion cue "superposed" is not shown',
+    ),
+    "moving bands": (
+        texture("Motion", f"<cue_type>vibration bands</cue_type>{grating()}"),
+        'the moving bands of its cue "vibration bands" are not shown',
+    ),
+    "a still display": (grating(inside="<td_centric>5,5</td_centric>"), "td_centric"),
+    "a moving texture": (
+        texture("RadialGrating", "<motion><enable>yes</enable></motion>"),
+        "its motion is not shown",
+    ),
+    "moving dots": (
+        line(stroke(4, "<dots><enable>yes</enable></dots><motion><cue>inherent</cue></motion>")),
+        "the dots stand still here",
+    ),
+    "an inverted texture along a stroke": (
+        line(stroke(9, f"<fill>{waves(inside='<invert>yes</invert>')}</fill>")),
+        "fill Grating is inverted",
+    ),
+    "a slope round a circle": (
+        texture(
+            "AxialGrating",
+            '<Grating><PitchModulator type="slope"><enable>yes</enable></PitchModulator></Grating>',
+        ),
+        "has no slope here",
+    ),
+    "dots that overlap": (
+        '<Pattern type="Dots"><dot>1,1</dot><dot>2,1</dot><dot_radius>3</dot_radius></Pattern>',
+        "dots that overlap add up in OpenLatero",
+    ),
+    "dots put together otherwise": (
+        '<Pattern type="Dots"><dot>1,1</dot><dot>2,1</dot><operation type="multiply"/></Pattern>',
+        'by "maximum" here, and by "multiply" there',
+    ),
+    "two widths": (
+        '<Pattern type="Line"><stroke><width>8</width><ridge><width>6</width></ridge></stroke>'
+        "</Pattern>",
+        "stroke ridge width is 6 and stroke width 8; the stroke is 6 mm wide here",
+    ),
+    "markers inwards": (
+        polygon("<corner><enable>yes</enable><blend>in</blend></corner>" + stroke()),
+        "markers blend outwards here",
+    ),
+    "dots over a fill beneath": (
+        circle(stroke(4, "<dots><enable>yes</enable></dots>") + fill(grating(), -1)),
+        "dots stand in the place of the fill there",
+    ),
+    "short edges": (
+        polygon(stroke(9, f"<fill>{waves(3, 0)}</fill>"), ("0,0", "9,0", "9,9", "0,9")),
+        "an edge is too short for the round joints at its ends",
+    ),
+    "a texture on top": (
+        f'<Pattern type="Group"><operation>overwrite</operation>{circle()}{grating()}</Pattern>',
+        "a texture hides all below it here",
+    ),
+    "a vertex twice": (polygon(stroke(), ("0,0", "9,0", "9,0", "9,9")), "this vertex is where"),
+    "a last vertex that is the first": (
+        polygon(stroke(), ("0,0", "9,0", "9,9", "0,0")), "the last vertex is where the first is",
+    ),
+    "an amplitude of 80 %": (
+        grating(inside='<amplitude units="%">80</amplitude>'),
+        "amplitude is 80, and shares are 0 to 1; 1 is taken",
+    ),
+    "a fast vibration": (
+        texture("Vibration", "<freq>75</freq>"),
+        "freq is 75, and it must be 0.1 to 50; 50 is taken",
+    ),
+    "fast ridges": (
+        texture("LinearGrating", waves(8, 0, '<velocity units="Hz">900</velocity>')),
+        "its ridges would move at 7200 mm/s; 1000 is taken",
+    ),
+    "an unknown element": (circle("<colour>red</colour>"), "colour is not known here, and ignored"),
+    "an unknown element below": (
+        circle("<stroke><cap>square</cap></stroke>"), "stroke cap is not known here, and ignored",
+    ),
+    "an unknown word": (
+        polygon('<corner><enable>yes</enable><type>texture</type></corner>'),
+        'corner type "texture" is not known, so "solid" is taken; the nearest is',
+    ),
+    "an unknown operation": (
+        f'<Pattern type="Group"><operation type="maks"/>{circle()}{line()}</Pattern>',
+        'operation "maks" is not known, so "max" is taken; the nearest is max',
+    ),
+    "an answer that is neither": (
+        grating(inside="<invert>perhaps</invert>"), 'invert is "perhaps", neither yes nor no',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DIFFERENT)
+def test_what_differs_is_said_once_and_the_rest_is_shown(read, name):
+    text, message = DIFFERENT[name]
+    found = read(text)
+    assert len(found.scene.elements) >= 1
+    assert message in said(found)
+    assert len(found.warnings) == 1
+
+
+def test_what_holds_for_many_is_said_once_with_their_lines(read):
+    found = read(*("\n" + circle("<colour>red</colour>") for _ in range(9)))
+    (warning,) = found.warnings
+    assert warning.startswith("line 7, Circle: colour is not known")
+    assert warning.endswith("(and lines 9, 11, 13, 15, 17 and 3 more)")
