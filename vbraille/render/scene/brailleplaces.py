@@ -76,8 +76,8 @@ class PackedLabel:
     Parameters
     ----------
     numbers : float64[COUNT]
-        The numbers, at the places that `braillenumbers` names; ``TABLE`` is 0, and has to be where its
-        words begin once they are part of a larger table.
+        The numbers, at the places that `braillenumbers` names; ``TABLE`` is 0, and has to be where
+        its words begin once they are part of a larger table.
     table : uint16[lines · STRIDE]
         A word for each cell of each line.
     """
