@@ -111,7 +111,7 @@ def label_warnings(
     scene
         A resolved scene.
     written
-        Its labels, from `write_labels`.
+        The cells of its labels, from `write_labels`.
     places
         Words for where each element is written; see `write_labels`.
 

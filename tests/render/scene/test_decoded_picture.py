@@ -48,7 +48,7 @@ class Drawn:
 
 def drawn(rng, center_mm):
     """A random shape around a place, and the pattern that is to be felt as it."""
-    x, y = center_mm = tuple(np.asarray(center_mm) + rng.uniform(-1, 1, 2))
+    x, y = center_mm = tuple((np.asarray(center_mm) + rng.uniform(-1, 1, 2)).tolist())
     shape = rng.choice(["circle", "square", "triangle", "line"])
     kind = "empty" if shape == "line" else rng.choice(["empty", "plain", "grating", "vibration"])
     wave_mm, wave_deg = rng.uniform(2.5, 5.0), rng.uniform(0, 180)
@@ -64,7 +64,7 @@ def drawn(rng, center_mm):
         look["fill"] = Fill(texture=texture, gap_mm=1.0)
 
     def corners(count, radius_mm):
-        angles = np.radians(turned_deg) + 2 * np.pi * np.arange(count) / count
+        angles = [math.radians(turned_deg) + 2 * math.pi * n / count for n in range(count)]
         return tuple((x + radius_mm * math.cos(a), y + radius_mm * math.sin(a)) for a in angles)
 
     if shape == "circle":

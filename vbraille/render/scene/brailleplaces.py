@@ -20,6 +20,31 @@ import numpy as np
 
 from vbraille.braille.dots import DOT_ROWS, PLACES
 from vbraille.render.braille.profiles import coefficients
+from vbraille.render.scene.braillenumbers import (
+    APART,
+    CELL_PITCH,
+    CELLS_PER_MM,
+    CONTRAST,
+    COSINE,
+    COUNT,
+    DOT_SPACING,
+    DOT_WIDTH,
+    DOTS_PER_MM,
+    FADE_MM,
+    HEIGHT,
+    LINE_PITCH,
+    LINES,
+    LINES_PER_MM,
+    PROFILE,
+    ROW_PITCH,
+    ROWS_PER_MM,
+    SHAPE,
+    SINE,
+    STRIDE,
+    WIDTH,
+    X0,
+    Y0,
+)
 from vbraille.scene.bounds import around
 
 if TYPE_CHECKING:
@@ -30,39 +55,6 @@ if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Label
 
-# Places of a label's numbers in their run.
-(
-    X0,  # corner of the first cell, mm
-    Y0,
-    COSINE,  # of the direction of its lines
-    SINE,
-    WIDTH,  # of the rectangle of its cells, mm
-    HEIGHT,
-    LINES,
-    LINE_PITCH,
-    LINES_PER_MM,
-    ROW_PITCH,
-    ROWS_PER_MM,
-    CELL_PITCH,
-    CELLS_PER_MM,
-    DOT_SPACING,
-    DOT_WIDTH,
-    DOTS_PER_MM,
-    CONTRAST,
-    PROFILE,
-    SHAPE,  # the 6 coefficients of the profile
-    _S1,
-    _S2,
-    _S3,
-    _S4,
-    _S5,
-    STRIDE,  # words of a line in the table: its cells, an empty one before them and one after
-    TABLE,  # first of its words in the table
-    APART,  # 1 if no two dots can be over one place
-    COUNT,  # how many numbers there are
-) = range(28)
-
-FADE_MM = 1.0  # over which the opacity of a label ends
 # By so much lines may reach into one another; a dot is less than 1e-9 up so near its edge.
 _SLACK_MM = 1e-6
 _ROWS = 3
@@ -84,8 +76,8 @@ class PackedLabel:
     Parameters
     ----------
     numbers : float64[COUNT]
-        Its numbers, at the places that this module names; ``TABLE`` is 0, and has to be where its
-        words begin once they are part of a larger table.
+        The numbers, at the places that `braillenumbers` names; ``TABLE`` is 0, and has to be where
+        its words begin once they are part of a larger table.
     table : uint16[lines · STRIDE]
         A word for each cell of each line.
     """
