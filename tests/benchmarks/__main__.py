@@ -28,6 +28,7 @@ PARTS = (
     "live",
     "conventional",
     "straying",
+    "scene",
     "feel",
 )
 

@@ -4,13 +4,12 @@ Kernels fill ``out`` and allocate nothing. `vbraille.render.braille.style` compi
 into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
 `vbraille.render.braille.reference` has the same functions in plain numpy.
 
-``scratch`` is float64[2, n], and more rows for scenes
-(`vbraille.render.scene.words`): room for the swing under each column of a block of positions, and for
-the slot that each is over. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
-with an empty cell before a line's first and one after its last. The table has a word for each slot
-of each line, whose bit r is set if actuator row r shows a dot there; a page has an empty line
-before its first and one after its last. Where each actuator shows what lies freely under it, bit r
-stands for row r of the dots instead.
+``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
+the slot that each is over; for scenes, too, it has more rows. A slot is one dot column of one cell:
+2 (cell + 1) + (0 left, 1 right), with an empty cell before a line's first and one after its last.
+The table has a word for each slot of each line, whose bit r is set if actuator row r shows a dot
+there; a page has an empty line before its first and one after its last. Where each actuator shows
+what lies freely under it, bit r stands for row r of the dots instead.
 
 The loops over a block are flat and without calls, so that they become vector instructions: hence
 the polynomials of `vbraille.render.waves` instead of the library's sine.
@@ -200,7 +199,7 @@ def seamless(numbers):
 
 @_compiled
 def patience(numbers):
-    """How long a picture is shown to a hand that does not move, s; infinite if that does not matter.
+    """How long a picture is shown to a hand that does not move, s; infinite for most.
 
     Vibration tires the skin (Lévesque 2009, 8.6), and a scene may have it anywhere.
     """

@@ -28,7 +28,7 @@ _HALF_PI = math.pi / 2
 
 @inlined
 def hump(d):
-    """Compute cos² πd from d, and 0 where |d| ≥ ½: ½ + ½ cos 2πd, a ridge of width 1; good to 1e-11."""
+    """Compute the ridge ½ + ½ cos 2πd, which is 0 from |d| = ½ on; good to 1e-11."""
     q = d * d
     q = q if q < 0.25 else 0.25
     high = _C5 + q * (_C6 + q * (_C7 + q * _C8))

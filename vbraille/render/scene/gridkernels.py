@@ -244,7 +244,7 @@ def _join_word(kind, pushes):
 
 @compiled
 def _joins(kind):
-    return kind == ADD or kind == MAXIMUM or kind == MULTIPLY or kind == OVER
+    return kind in (ADD, MAXIMUM, MULTIPLY, OVER)
 
 
 @compiled

@@ -253,7 +253,9 @@ def _say_places(shape: AnyShape, block: Block, parts: bool) -> list[int]:
     if fill_of(shape) is not None:
         block.say(words.INSIDE)
     if marked:
-        assert isinstance(shape, Polygon) and shape.markers is not None and stroke is not None
+        assert isinstance(shape, Polygon)
+        assert shape.markers is not None
+        assert stroke is not None
         block.say(words.MARKERS, stroke.width_mm / 2, 1.0 / shape.markers.blend_mm)
     return kept
 
@@ -295,7 +297,8 @@ def _segments_along(
     count = len(segments)
     texture = (0.0, 0.0, 0.0)
     if cycle is not None:
-        assert shape.stroke is not None and shape.stroke.along is not None
+        assert shape.stroke is not None
+        assert shape.stroke.along is not None
         texture = (cycle.ridge, cycle.length, shape.stroke.along.velocity_mm_s)
     corners = None
     marks: list[tuple[float, ...]] = [()] * count
@@ -313,7 +316,6 @@ def _segments_along(
     begin = 0.0
     for i, segment in enumerate(segments):
         length = segment[places.LENGTH]
-        right, down = segment[places.RIGHT], segment[places.DOWN]
         first, last = closed or i > 0, closed or i < count - 1
         before, after = segments[i - 1], segments[(i + 1) % count]
         half = _half(before, segment) if first else (0.0, 0.0)

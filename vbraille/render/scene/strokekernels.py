@@ -218,7 +218,7 @@ def fill(numbers, rows, at, top, count):
 
 @compiled
 def fill_blended(rows, top, count):
-    """Blend a stroke into a fill: fill, stroke, profile -> stroke + (1 - profile) fill, eq. 8.20."""
+    """Blend a stroke into a fill: fill, stroke, profile -> δ + (1 - profile) fill, eq. 8.20."""
     for n in range(count):
         share = (1.0 - rows[top + 1, n]) * rows[INSIDE_ROW, n]
         value = rows[top, n] + share * rows[top - 1, n]

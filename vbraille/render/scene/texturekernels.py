@@ -17,7 +17,7 @@ _WHOLE = 1.0 / 65_535.0
 
 @compiled
 def vibrate(numbers, rows, at, time, top, count):
-    """Vibration q, alone: eq. 8.1. Without a time it is what the signs say, which are noise then."""
+    """Vibration q, alone: eq. 8.1."""
     swing = 0.5 * phase(numbers[at], time)
     for n in range(count):
         rows[top, n] = 0.5 + swing * rows[SIGN_ROW, n]
@@ -26,7 +26,7 @@ def vibrate(numbers, rows, at, time, top, count):
 @compiled
 def phase(frequency, time):
     """Compute sin 2πft; 1 without a time."""
-    if not time == time:
+    if math.isnan(time):
         return 1.0
     turns = frequency * time
     return math.sin(2.0 * math.pi * (turns - math.floor(turns)))

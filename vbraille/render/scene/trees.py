@@ -282,7 +282,7 @@ def say_whole(node: Node, block: Block) -> None:
         block.say(operation, *constants)
 
 
-def _say_texture(pattern: AnyPattern, block: Block, parts: bool) -> list[int]:
+def _say_texture(pattern: AnyPattern, block: Block, _parts: bool) -> list[int]:
     match pattern:
         case Uniform():
             block.say(words.LEVEL, pattern.level)
@@ -299,7 +299,7 @@ def _say_texture(pattern: AnyPattern, block: Block, parts: bool) -> list[int]:
     return []
 
 
-def _say_one(block: Block, parts: bool) -> list[int]:
+def _say_one(block: Block, _parts: bool) -> list[int]:
     block.say(words.LEVEL, 1.0)
     return []
 
@@ -307,17 +307,17 @@ def _say_one(block: Block, parts: bool) -> list[int]:
 ONE = Node(NodeKind.LEAF, say=_say_one, one=True)
 
 
-def _say_bitmap(bitmap: Bitmap, block: Block, parts: bool) -> list[int]:
+def _say_bitmap(bitmap: Bitmap, block: Block, _parts: bool) -> list[int]:
     texturecode.say_bitmap(bitmap, block)
     return []
 
 
-def _say_label(word: int, packed: PackedLabel, block: Block, parts: bool) -> list[int]:
+def _say_label(word: int, packed: PackedLabel, block: Block, _parts: bool) -> list[int]:
     block.say_table(word, *packed.numbers.tolist(), at=TABLE, entries=packed.table)
     return []
 
 
-def _say_tile(tile: Tile, part: Node, block: Block, parts: bool) -> list[int]:
+def _say_tile(tile: Tile, part: Node, block: Block, _parts: bool) -> list[int]:
     block.say(words.WRAP, *tile.origin_mm, tile.width_mm, tile.height_mm)
     say_whole(part, block)
     block.say(words.UNWRAP)

@@ -1,0 +1,195 @@
+"""Tactile pictures: what a frame, a tick, a map and compiling them take."""
+
+from __future__ import annotations
+
+import statistics
+from time import perf_counter, perf_counter_ns
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+
+from tests.benchmarks.scenes import (
+    CANVAS,
+    DISPLAY,
+    masked,
+    nested,
+    shapes,
+    short_lines,
+    within_ten,
+)
+from tests.benchmarks.timing import Result, ratio, seconds
+from vbraille.engine.clock import ManualClock
+from vbraille.engine.loop import Loop
+from vbraille.render.program import nothing
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.canvas import SceneMap
+from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+from vbraille.simulation.simulated import SimulatedDevice
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from vbraille.render.program import Program
+    from vbraille.scene.scene import Scene
+
+MANY = 10_000
+PLACES = 1000
+TICKS = 5000
+PIXELS = 1000
+
+
+def run() -> Iterator[Result]:
+    """Measure, and compare with what is asked for."""
+    yield frame_from_python(masked(), "two gratings through an image mask", 15, 3)
+    yield frame_from_python(nested(), "ten parts in each other under every actuator", 60, 12)
+    yield from pruning()
+    yield many()
+    yield from compiling()
+    yield maps()
+    yield ticks()
+
+
+def frame_from_python(
+    scene: tuple[Scene, Assets], what: str, most: float, most_us: float
+) -> Result:
+    program = compile_scene(*scene_first(scene))
+    random = np.random.default_rng(1)
+    places = random.uniform((10, 10), (CANVAS.width_mm - 10, CANVAS.height_mm - 10), (PLACES, 2))
+    pairs, out = places.tolist(), np.zeros(DISPLAY.shape)
+
+    def frames() -> None:
+        frame = program.frame
+        for x_mm, y_mm in pairs:
+            frame(x_mm, out, y_mm=y_mm)
+
+    def fills() -> None:
+        fill = out.fill
+        for _ in pairs:
+            fill(0)
+
+    share, least = ratio(frames, fills, pairs=51)
+    least_us = least / PLACES * 1e6
+    return Result(
+        f"one frame from Python, 8 × 8, of {what}, against `out.fill(0)`",
+        f"≤ {most} ×, ≤ {most_us} µs",
+        f"{share:.1f} ×, {least_us:.2f} µs",
+        share <= most and least_us <= most_us,
+    )
+
+
+def scene_first(scene: tuple[Scene, Assets]) -> tuple[Scene, object, Assets]:
+    return scene[0], DISPLAY, scene[1]
+
+
+def pruning() -> Iterator[Result]:
+    """Fifteen short lines, near one of them and elsewhere: Lévesque 2009, 8.5.3."""
+    scene = short_lines()
+    ours, whole = compile_scene(scene, DISPLAY), compile_scene(scene, DISPLAY, pruned=False)
+    random = np.random.default_rng(2)
+    line = scene.elements[7]
+    middle = np.add(line.start_mm, line.end_mm) / 2
+    near = middle + random.uniform(-5, 5, (PLACES, 2))
+    elsewhere = near + np.array((22.0, 0.0))
+    for places, where, least in ((near, "near one", 6), (elsewhere, "elsewhere", 40)):
+        share, _ = ratio(poses_of(whole, places), poses_of(ours, places), pairs=51)
+        yield Result(
+            f"15 short lines without pruning, against the same with it, {where}, a frame",
+            f"≥ {least} ×",
+            f"{share:.1f} ×",
+            share >= least,
+        )
+
+
+def poses_of(program: Program, places: np.ndarray) -> Callable[[], object]:
+    x_mm, y_mm = places.T.copy()
+    return lambda: program.poses(x_mm, y_mm)
+
+
+def many() -> Result:
+    few, lots = (
+        poses_of(compile_scene(shapes(count), DISPLAY), within_ten(count, PLACES))
+        for count in (10, MANY)
+    )
+    share, least = ratio(lots, few, pairs=101)
+    return Result(
+        f"a frame of a picture of {MANY:,} shapes, against one of 10, at places all over it",
+        "≤ 1.1 ×",
+        f"{share:.2f} ×, {least / PLACES * 1e6:.2f} µs",
+        share <= 1.1,
+    )
+
+
+def compiling() -> Iterator[Result]:
+    scene = shapes(MANY)
+    compile_scene(shapes(10), DISPLAY)
+    taken = statistics.median(seconds(lambda: compile_scene(scene, DISPLAY)) for _ in range(5))
+    yield Result(f"compiling a picture of {MANY:,} shapes", "≤ 1 s", f"{taken:.2f} s", taken <= 1)
+    compiler, out = SceneCompiler(DISPLAY), np.zeros(DISPLAY.shape)
+    assets = Assets()
+    compiler.compile(scene, assets)
+    each = []
+    for n in range(21):
+        elements = list(scene.elements)
+        changed = msgspec.structs.replace(elements[n * 400], amplitude=0.5)
+        elements[n * 400] = changed
+        scene = msgspec.structs.replace(scene, elements=tuple(elements))
+        begun = perf_counter()
+        compiler.compile(scene, assets).frame(50.0, out, y_mm=50.0)
+        each.append(perf_counter() - begun)
+    taken_ms = statistics.median(each) * 1e3
+    yield Result(
+        f"from a change of one of {MANY:,} shapes to the first frame",
+        "≤ 50 ms",
+        f"{taken_ms:.0f} ms",
+        taken_ms <= 50,
+    )
+
+
+def maps() -> Result:
+    """Deflection maps of all of the scenes; the slowest counts."""
+    scenes = (masked(), nested(), (short_lines(), Assets()), (shapes(MANY), Assets()))
+    times = []
+    for scene, assets in scenes:
+        shown = SceneMap(scene, assets)
+        x_mm = (np.arange(PIXELS) + 0.5) * scene.canvas.width_mm / PIXELS
+        y_mm = (np.arange(PIXELS) + 0.5) * scene.canvas.height_mm / PIXELS
+        shown.deflections(x_mm[:1], y_mm[:1])
+        times.append(min(seconds(lambda: shown.deflections(x_mm, y_mm)) for _ in range(5)))  # noqa: B023
+    slowest = max(times)
+    return Result(
+        f"deflection map of {PIXELS} × {PIXELS}, the slowest of {len(scenes)} pictures",
+        "≤ 0.3 s",
+        f"{slowest:.2f} s",
+        slowest <= 0.3,
+    )
+
+
+def ticks() -> Result:
+    """Ticks of the engine with each picture, against those with a line."""
+    line_ns = tick_ns(nothing(DISPLAY))
+    scenes = (masked(), nested(), (short_lines(), Assets()), (shapes(MANY), Assets()))
+    shares = [tick_ns(compile_scene(scene, DISPLAY, assets)) / line_ns for scene, assets in scenes]
+    return Result(
+        f"one tick of the engine with any of {len(scenes)} pictures, 99th percentile, "
+        "against one with a line",
+        "≤ 2 ×",
+        f"{max(shares):.2f} ×",
+        max(shares) <= 2,
+    )
+
+
+def tick_ns(program: Program) -> float:
+    """99th percentile of the time of a tick with a program; the least of three runs."""
+    clock = ManualClock()
+    with SimulatedDevice(DISPLAY, clock.now_ns) as device:
+        loop = Loop(device, clock)
+        loop.show(program)
+        taken = np.empty((3, TICKS))
+        for row in taken:
+            for n in range(TICKS):
+                clock.advance_ns(1_000_000)
+                begun = perf_counter_ns()
+                loop.tick()
+                row[n] = perf_counter_ns() - begun
+        return float(np.percentile(taken, 99, axis=1).min())
