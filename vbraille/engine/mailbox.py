@@ -23,8 +23,8 @@ _HEADER_BYTES = 64
 # The words of 8 bytes that a slot begins with; the program's numbers and its table follow.
 _CHECKSUM, _NUMBER, _LINE, _NUMBERS, _WORDS = range(5)
 _SLOT_WORDS = 5
-# A piece of 256 kB is copied and summed up in some 50 µs.
-_PIECE_WORDS = 1 << 15
+# A piece of 512 kB is copied and summed up in some 0.1 ms.
+_PIECE_WORDS = 1 << 16
 _MODULUS = 1 << 64
 # Odd factors, so that the sum of a piece tells of any word that changed, and of words that changed
 # places; and a factor by which a sum goes into that of the next piece.

@@ -5,11 +5,11 @@ into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
 `vbraille.render.braille.reference` has the same functions in plain numpy.
 
 ``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
-the slot that each is over; it has more rows if it is for scenes, too. A slot is one dot column of one cell: 2 (cell + 1) + (0 left, 1 right),
-with an empty cell before a line's first and one after its last. The table has a word for each slot
-of each line, whose bit r is set if actuator row r shows a dot there; a page has an empty line
-before its first and one after its last. Where each actuator shows what lies freely under it, bit r
-stands for row r of the dots instead.
+the slot that each is over; for scenes, too, it has more rows. A slot is one dot column of one cell:
+2 (cell + 1) + (0 left, 1 right), with an empty cell before a line's first and one after its last.
+The table has a word for each slot of each line, whose bit r is set if actuator row r shows a dot
+there; a page has an empty line before its first and one after its last. Where each actuator shows
+what lies freely under it, bit r stands for row r of the dots instead.
 
 The loops over a block are flat and without calls, so that they become vector instructions: hence
 the polynomials of `vbraille.render.waves` instead of the library's sine.

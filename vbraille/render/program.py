@@ -42,7 +42,7 @@ class Program:
         Rows and columns of the display that the program was compiled for.
     """
 
-    __slots__ = ("_at", "_scratch", "numbers", "shape", "table")
+    __slots__ = ("_at", "_fill", "_scratch", "numbers", "shape", "table")
 
     def __init__(self, numbers: NDArray[np.float64], table: NDArray[np.uint16]) -> None:
         self.numbers = numbers
@@ -50,6 +50,7 @@ class Program:
         self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
         self._scratch = scratch_for(self.shape, self.kind)
         self._at = np.zeros(6)
+        self._fill = None  # the kernel, which loads numba
 
     @property
     def kind(self) -> ProgramKind:
@@ -127,12 +128,14 @@ class Program:
         ValueError
             If ``out`` has another shape than the array.
         """
-        from vbraille.render import kernels
+        if self._fill is None:
+            from vbraille.render import kernels
 
+            self._fill = kernels.frame
         at = self._at
         at[work.X], at[work.THETA], at[work.TIME] = x_mm, theta_rad, time_s
         at[work.Y] = self.own_y_mm if y_mm is None else y_mm
-        kernels.frame(self.numbers, self.table, self._scratch, part, at, out)
+        self._fill(self.numbers, self.table, self._scratch, part, at, out)
 
     def path(
         self, x_mm: NDArray[np.float64], out: NDArray[np.float32] | None = None
@@ -183,7 +186,7 @@ class Program:
         x_mm, y_mm, theta_rad : float64[n]
             Places of the array's centre, and angles by which the array is turned.
         time_s : float64[n]
-            Times of a picture that moves by itself, since its start.
+            The picture's own time at each, in seconds since its start.
 
         Returns
         -------

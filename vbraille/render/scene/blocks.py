@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _FAR = 1e30  # stands for infinity
-_EVERYWHERE = (-_FAR, -_FAR, _FAR, _FAR)
+EVERYWHERE = (-_FAR, -_FAR, _FAR, _FAR)
 
 
 class Placed(NamedTuple):
@@ -91,5 +91,8 @@ class Block:
         for begin, end in self._lists:
             constants[begin:end] = [place + first for place in constants[begin:end]]
         said = [operation + words.OPERATIONS * (place + first) for operation, place in self._words]
-        numbers = np.array([*(box or _EVERYWHERE), *said, words.RETURN, *constants])
+        within = (min(max(side, -_FAR), _FAR) for side in box or EVERYWHERE)
+        numbers = np.array([*within, *said, words.RETURN, *constants])
+        if not np.isfinite(numbers).all():
+            raise ValueError("a number of a pattern is not finite")
         return numbers, [Placed(first + at, entries) for at, entries in self._entries]

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
 
 _RATE_HZ = 1000.0
+_NO_ASSETS = Assets()
 
 
 def compile_scene(
@@ -73,7 +74,7 @@ class SceneCompiler:
 
     def compile(self, scene: Scene, assets: Assets | None = None) -> Program:
         """Compile a scene; see `compile_scene`."""
-        flat = self._elements.put_together(scene, assets or Assets(), self._rate_hz)
+        flat = self._elements.put_together(scene, assets or _NO_ASSETS, self._rate_hz)
         display = self._display
         radius_mm = 0.5 * math.hypot(display.span_mm, display.depth_mm)
         grid = Grid.over(scene.canvas, radius_mm, self._pruned)

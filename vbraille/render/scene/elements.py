@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.render.scene import words
-from vbraille.render.scene.flat import Flat, flatten, put_together
-from vbraille.render.scene.frequencies import check_rate, frequency_hz
+from vbraille.render.scene.flat import exchanged, flatten, put_together
+from vbraille.render.scene.frequencies import highest_hz
 from vbraille.render.scene.nodes import NodeKind
 from vbraille.render.scene.trees import deflection, layer
 
 if TYPE_CHECKING:
     from vbraille.render.scene.assets import Assets
+    from vbraille.render.scene.flat import Flat, Together
     from vbraille.scene.patterns import AnyPattern, Operation
     from vbraille.scene.scene import Scene
 
@@ -27,7 +28,9 @@ class FlatElements:
     """Elements of scenes that follow each other, most of which stay as they are."""
 
     def __init__(self) -> None:
-        self._known: dict[int, tuple[AnyPattern, Flat]] = {}
+        self._elements: tuple[AnyPattern, ...] = ()
+        self._parts: list[Flat] = []
+        self._whole: Together | None = None
         self._assets: Assets | None = None
         self._operation: Operation | None = None
 
@@ -48,32 +51,42 @@ class FlatElements:
             )
         if not scene.elements:
             return None
-        self._forget(scene.operation, assets)
-        laid = scene.operation == "overwrite"
-        known: dict[int, tuple[AnyPattern, Flat]] = {}
-        parts = []
-        for element in scene.elements:
-            found = self._known.get(id(element))
-            if found is None:
-                check_rate(element, len(parts) + 1, rate_hz)
-                tree = layer(element, assets) if laid else deflection(element, assets)
-                found = (element, flatten(tree, frequency_hz(element)))
-            # The element is kept, too, so that no other can be at its place in memory.
-            known[id(element)] = found
-            parts.append(found[1])
-        self._known = known
-        flat = put_together(parts, _KINDS[scene.operation])
-        check_depth(flat)
-        return flat
+        if scene.operation != self._operation:
+            self._elements, self._parts, self._whole = (), [], None
+        pairs = zip(self._elements, scene.elements, strict=False)
+        changed = [n for n, (old, new) in enumerate(pairs) if old is not new]
+        before = self._whole
+        same = len(self._elements) == len(scene.elements)
+        if before is not None and same and (assets is self._assets or not before.flat.entries):
+            parts = self._parts.copy()
+            for n in changed:
+                parts[n] = _flattened(scene, n, assets, rate_hz)
+            whole = exchanged(before, parts, changed)
+        else:
+            known = self._known(assets)
+            parts = [
+                known.get(id(element)) or _flattened(scene, n, assets, rate_hz)
+                for n, element in enumerate(scene.elements)
+            ]
+            whole = None
+        whole = whole or put_together(parts, _KINDS[scene.operation])
+        check_depth(whole.flat)
+        self._elements, self._parts, self._whole = scene.elements, parts, whole
+        self._assets, self._operation = assets, scene.operation
+        return whole.flat
 
-    def _forget(self, operation: Operation, assets: Assets) -> None:
-        """Forget what was made for another operation, or of other bitmaps and labels."""
-        if operation != self._operation:
-            self._known = {}
-        elif assets is not self._assets:
-            kept = self._known.items()
-            self._known = {place: found for place, found in kept if not found[1].entries}
-        self._operation, self._assets = operation, assets
+    def _known(self, assets: Assets) -> dict[int, Flat]:
+        """Arrays of the elements before, by their identity, but for other bitmaps and labels."""
+        pairs = zip(self._elements, self._parts, strict=True)
+        same = assets is self._assets
+        return {id(element): part for element, part in pairs if same or not part.entries}
+
+
+def _flattened(scene: Scene, n: int, assets: Assets, rate_hz: float) -> Flat:
+    element = scene.elements[n]
+    hz = highest_hz(element, n + 1, rate_hz)
+    laid = scene.operation == "overwrite"
+    return flatten(layer(element, assets) if laid else deflection(element, assets), hz)
 
 
 def check_depth(flat: Flat) -> None:

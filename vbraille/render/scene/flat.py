@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,7 +60,7 @@ def flatten(tree: Node, frequency_hz: float = 0.0) -> Flat:
     return Flat(
         np.array(flattening.nodes, np.float64).reshape(-1, g.NODE_COLUMNS),
         np.array(flattening.reach, np.float64).reshape(-1, g.REACH_COLUMNS),
-        np.concatenate(numbers) if numbers else np.empty(0),
+        numbers[0] if len(numbers) == 1 else np.concatenate([np.empty(0), *numbers]),
         np.array(flattening.changes, np.float64),
         tuple(flattening.entries),
         tree.depth,
@@ -108,7 +108,7 @@ class _Flattening:
         row[g.BLOCK], row[g.PARTED], row[g.ALWAYS] = self._size, node.parts, node.box is None
         self.entries += [entry._replace(at=entry.at + self._size) for entry in entries]
         self._keep(numbers)
-        if node.box is None:
+        if node.box is None or node.box.is_empty:
             return
         if not node.enclosed:
             self.reach.append((number, 0.0, Reach.BOX, *node.box, 0.0))
@@ -122,35 +122,86 @@ class _Flattening:
         self._size += numbers.size
 
 
-def put_together(parts: list[Flat], kind: NodeKind) -> Flat:
-    """Put elements together under one more node, which is the last."""
-    counts = np.array([len(part.nodes) for part in parts], np.int64)
-    nodes = np.concatenate([*(part.nodes for part in parts), np.zeros((1, g.NODE_COLUMNS))])
-    reach = np.concatenate([part.reach for part in parts])
-    changes = np.concatenate([part.changes for part in parts])
-    numbers = np.concatenate([part.numbers for part in parts])
-    node_starts = np.cumsum(counts) - counts
-    number_starts = _starts(part.numbers.size for part in parts)
-    change_starts = _starts(part.changes.size for part in parts)
-    nodes[:-1, g.BLOCK] += np.repeat(number_starts, counts)
-    nodes[:-1, g.CHANGES] += np.repeat(change_starts, counts)
-    reach[:, g.NODE] += np.repeat(node_starts, [len(part.reach) for part in parts])
-    changes += words.OPERATIONS * np.repeat(number_starts, [part.changes.size for part in parts])
-    uppermost = node_starts + counts - 1
-    nodes[uppermost, g.PARENT] = counts.sum() - uppermost
+@dataclass(frozen=True, slots=True, eq=False)
+class Together:
+    """Elements put together, and where each begins.
+
+    Parameters
+    ----------
+    flat
+        All of them, under one more node, which is the last.
+    nodes, reach, numbers, changes : int64[n]
+        Where the rows and numbers of each element begin.
+    """
+
+    flat: Flat
+    nodes: NDArray[np.int64]
+    reach: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    changes: NDArray[np.int64]
+
+
+def put_together(parts: list[Flat], kind: NodeKind) -> Together:
+    """Put elements together under one more node."""
+    columns = tuple(zip(*map(_arrays, parts), strict=True))
+    counts = [np.fromiter(map(len, column), np.int64) for column in columns]
+    starts = [np.cumsum(count) - count for count in counts]
+    top = np.zeros((1, g.NODE_COLUMNS))
+    top[0, g.KIND], top[0, g.CHILDREN] = kind, len(parts)
+    nodes = np.concatenate([*(part.nodes for part in parts), top])
+    reach, numbers, changes = map(np.concatenate, columns[1:])
+    nodes[:-1, g.BLOCK] += np.repeat(starts[2], counts[0])
+    nodes[:-1, g.CHANGES] += np.repeat(starts[3], counts[0])
+    reach[:, g.NODE] += np.repeat(starts[0], counts[1])
+    changes += words.OPERATIONS * np.repeat(starts[2], counts[3])
+    uppermost = starts[0] + counts[0] - 1
+    nodes[uppermost, g.PARENT] = len(nodes) - 1 - uppermost
     nodes[uppermost, g.ORDINAL] = np.arange(len(parts))
-    nodes[-1, g.KIND], nodes[-1, g.CHILDREN] = kind, len(parts)
     entries = tuple(
-        entry._replace(at=entry.at + int(start))
-        for part, start in zip(parts, number_starts, strict=True)
+        entry._replace(at=entry.at + int(starts[2][n]))
+        for n, part in enumerate(parts)
         if part.entries
         for entry in part.entries
     )
     depth = max(part.depth + (number > 0) for number, part in enumerate(parts))
-    most_hz = max(part.frequency_hz for part in parts)
-    return Flat(nodes, reach, numbers, changes, entries, depth, most_hz)
+    flat = Flat(nodes, reach, numbers, changes, entries, depth, _highest(parts))
+    return Together(flat, *starts)
 
 
-def _starts(sizes) -> NDArray[np.int64]:
-    sizes = np.fromiter(sizes, np.int64)
-    return np.cumsum(sizes) - sizes
+def exchanged(whole: Together, parts: list[Flat], changed: list[int]) -> Together | None:
+    """Exchange some of the elements; None if they do not fit into the places of those before."""
+    flat = whole.flat
+    if flat.entries or any(parts[n].entries for n in changed):
+        return None
+    arrays = tuple(array.copy() for array in _arrays(flat))
+    starts = (whole.nodes, whole.reach, whole.numbers, whole.changes)
+    for n in changed:
+        places = [int(start[n]) for start in starts]
+        # Where the next element begins; the one more node is no element's.
+        sizes = (len(flat.nodes) - 1, len(flat.reach), flat.numbers.size, flat.changes.size)
+        ends = [
+            int(start[n + 1]) if n + 1 < start.size else size
+            for start, size in zip(starts, sizes, strict=True)
+        ]
+        own = _arrays(parts[n])
+        if [len(array) for array in own] != [b - a for a, b in zip(places, ends, strict=True)]:
+            return None
+        for array, part, start, end in zip(arrays, own, places, ends, strict=True):
+            array[start:end] = part
+        nodes, reach, _, changes = arrays
+        nodes[places[0] : ends[0], g.BLOCK] += places[2]
+        nodes[places[0] : ends[0], g.CHANGES] += places[3]
+        reach[places[1] : ends[1], g.NODE] += places[0]
+        changes[places[3] : ends[3]] += words.OPERATIONS * places[2]
+        nodes[ends[0] - 1, g.PARENT] = len(nodes) - ends[0]
+        nodes[ends[0] - 1, g.ORDINAL] = n
+    depth = max(part.depth + (number > 0) for number, part in enumerate(parts))
+    return replace(whole, flat=Flat(*arrays, (), depth, _highest(parts)))
+
+
+def _arrays(part: Flat) -> tuple[NDArray[np.float64], ...]:
+    return part.nodes, part.reach, part.numbers, part.changes
+
+
+def _highest(parts: list[Flat]) -> float:
+    return max(part.frequency_hz for part in parts)

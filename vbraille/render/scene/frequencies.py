@@ -15,27 +15,33 @@ if TYPE_CHECKING:
     from vbraille.scene.strokes import Vibration
 
 
-def frequency_hz(pattern: AnyPattern) -> float:
-    """Highest frequency of what moves in a pattern by itself; 0 if nothing does."""
-    return max((hz for part in each(pattern) for hz in _frequencies(part)), default=0.0)
+def highest_hz(pattern: AnyPattern, number: int, rate_hz: float) -> float:
+    """Find the highest frequency of what moves in an element by itself; 0 if nothing does.
 
-
-def check_rate(pattern: AnyPattern, number: int, rate_hz: float) -> None:
-    """Compare the frequencies of an element with the rate of the frames that show it.
+    Parameters
+    ----------
+    pattern, number
+        The element, and its number in the scene, from 1.
+    rate_hz
+        Frames a second that show it.
 
     Raises
     ------
     ValueError
-        If one is above half of the rate, so that it would be shown as another.
+        If a frequency is above half of the rate, so that it would be shown as another.
     """
+    highest = 0.0
     for part in each(pattern):
         for hz in _frequencies(part):
             if hz > rate_hz / 2:
-                name = f'"{part.id or pattern.id}"' if part.id or pattern.id else f"number {number}"
+                name = part.id or pattern.id
+                named = f'"{name}"' if name else f"number {number}"
                 raise ValueError(
-                    f"element {name} moves at {hz:g} Hz; it can be at most half of the rate, "
+                    f"element {named} moves at {hz:g} Hz; it can be at most half of the rate, "
                     f"{rate_hz / 2:g} Hz"
                 )
+            highest = max(highest, hz)
+    return highest
 
 
 def _frequencies(pattern: AnyPattern) -> Iterator[float]:

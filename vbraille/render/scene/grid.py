@@ -14,6 +14,7 @@ import numpy as np
 
 from vbraille.render.scene import gridkernels as g
 from vbraille.render.scene import words
+from vbraille.render.scene.blocks import EVERYWHERE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
     from vbraille.render.scene.flat import Flat
     from vbraille.scene.scene import Canvas
 
-TILE_MM = 4.0
+# With what is not touched left out again by its box, tiles need not be smaller than the array.
+TILE_MM = 8.0
+_FAR_MM = 1e9
 _MOST_TILES = 40_000
 
 
@@ -39,6 +42,8 @@ class Grid:
         How many tiles there are.
     radius_mm
         How far arrays reach beyond the tile that their centre is in.
+    prunes
+        Whether what an array cannot touch is left out.
     """
 
     left_mm: float
@@ -47,6 +52,7 @@ class Grid:
     columns: int
     rows: int
     radius_mm: float
+    prunes: bool = True
 
     @classmethod
     def over(
@@ -58,7 +64,7 @@ class Grid:
         width_mm, height_mm = width_mm + 1e-6, height_mm + 1e-6
         if not pruned:
             side_mm = max(width_mm, height_mm)
-            return cls(-radius_mm, -radius_mm, side_mm, 1, 1, radius_mm + side_mm)
+            return cls(-radius_mm, -radius_mm, side_mm, 1, 1, _FAR_MM, prunes=False)
         tile_mm = max(tile_mm, math.sqrt(width_mm * height_mm / _MOST_TILES))
         columns, rows = math.ceil(width_mm / tile_mm), math.ceil(height_mm / tile_mm)
         return cls(-radius_mm, -radius_mm, tile_mm, columns, rows, radius_mm)
@@ -110,8 +116,9 @@ def assemble(
         nodes, changes, always, flat.reach, begins, listed, base + flat.numbers.size
     )
     numbers = np.concatenate([head, starts, flat.numbers, said])
-    if not np.isfinite(numbers[words.OWN :]).all():
-        raise ValueError("a number of the picture is not finite")
+    if not grid.prunes:
+        blocks = nodes[nodes[:, g.KIND] == g.LEAF, g.BLOCK].astype(np.int64)
+        numbers[blocks[:, None] + range(len(EVERYWHERE))] = EVERYWHERE
     return numbers, _table(numbers, flat, base)
 
 

@@ -18,14 +18,13 @@ _NO_BLOCK = 0
 
 
 @compiled
-def evaluate(numbers, table, rows, start, count, time):
+def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bottom_mm):
     """Compute the deflections at ``count`` places, which are in the rows X and Y, by words.
 
     The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
     it has noise from -1 to 1 that stands for vibrations. The deflections go to the row `STACK`.
+    All places are in the box that is given last.
     """
-    left, right = _span(rows, w.X_ROW, count)
-    top_mm, bottom_mm = _span(rows, w.Y_ROW, count)
     at = start
     block = _NO_BLOCK
     back, join = 0, 0
@@ -173,16 +172,6 @@ def evaluate(numbers, table, rows, start, count, time):
         elif operation == w.UNWRAP:
             top -= 2
             _unwrap(rows, top, count)
-
-
-@compiled
-def _span(rows, row, count):
-    least = most = rows[row, 0]
-    for n in range(1, count):
-        value = rows[row, n]
-        least = value if value < least else least
-        most = value if value > most else most
-    return least, most
 
 
 @compiled

@@ -26,11 +26,11 @@ _SIGNATURE = types.void(
     types.int64,
     types.int64,
     types.int64,
-    types.float64,
+    *(types.float64,) * 5,
 )
 
 
-def _evaluate_plainly(numbers, table, rows, width, start, count, time):
+def _evaluate_plainly(numbers, table, rows, width, start, count, time, left, right, top, bottom):
     # The machine stays within what was compiled; how long that is it does not ask.
     evaluate(
         carray(numbers, (_ANY,)),
@@ -39,19 +39,26 @@ def _evaluate_plainly(numbers, table, rows, width, start, count, time):
         start,
         count,
         time,
+        left,
+        right,
+        top,
+        bottom,
     )
 
 
 _ANY = 1 << 40
+_ROUNDING_MM = 1e-6
 
 
 @intrinsic
-def _call(_typing, _numbers, _table, _rows, _width, _start, _count, _time):
+def _call(
+    _typing, _numbers, _table, _rows, _width, _start, _count, _time, _left, _right, _top, _bottom
+):
     """Call `evaluate` by its name, with addresses of arrays."""
 
     def code(context, builder, _signature, arguments):
         doubles, words = _F64.as_pointer(), ir.IntType(16).as_pointer()
-        kinds = (doubles, words, doubles, _I64, _I64, _I64, _F64)
+        kinds = (doubles, words, doubles, _I64, _I64, _I64, *(_F64,) * 5)
         function = builder.module.globals.get(_NAME)
         if function is None:
             kind = ir.FunctionType(ir.VoidType(), kinds)
@@ -62,7 +69,7 @@ def _call(_typing, _numbers, _table, _rows, _width, _start, _count, _time):
         builder.call(function, given)
         return context.get_dummy_value()
 
-    return types.void(*(types.int64,) * 6, types.float64), code
+    return types.void(*(types.int64,) * 6, *(types.float64,) * 5), code
 
 
 if config.DISABLE_JIT:
@@ -75,7 +82,7 @@ else:
     binding.add_symbol(_NAME, _evaluate.address)
 
     @compiled
-    def run(numbers, table, rows, start, count, time):
+    def run(numbers, table, rows, start, count, time, left, right, top, bottom):
         """Do as `scenekernels.evaluate` does, which is not compiled into the caller."""
         _call(
             numbers.ctypes.data,
@@ -85,6 +92,10 @@ else:
             start,
             count,
             time,
+            left,
+            right,
+            top,
+            bottom,
         )
 
 
@@ -109,25 +120,32 @@ def show(numbers, table, rows, at, out):
     theta = at[THETA]
     if theta != 0.0:
         cosine, sine = math.cos(theta), math.sin(theta)
+    half_down = 0.5 * (above - 1) * numbers[w.ROW_MM]
+    half_aside = 0.5 * (across - 1) * numbers[w.COLUMN_MM]
     n = 0
     for i in range(above):
-        down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
+        down = i * numbers[w.ROW_MM] - half_down
         for j in range(across):
-            aside = (j - 0.5 * (across - 1)) * numbers[w.COLUMN_MM]
+            aside = j * numbers[w.COLUMN_MM] - half_aside
             rows[w.X_ROW, n] = x + aside * cosine + down * sine
             rows[w.Y_ROW, n] = y + down * cosine - aside * sine
             rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
             n += 1
-    run(numbers, table, rows, start, lanes, at[TIME])
-    n = 0
+    wide = half_aside * abs(cosine) + half_down * abs(sine) + _ROUNDING_MM
+    high = half_down * abs(cosine) + half_aside * abs(sine) + _ROUNDING_MM
+    x0, x1, y0, y1 = x - wide, x + wide, y - high, y + high
+    run(numbers, table, rows, start, lanes, at[TIME], x0, x1, y0, y1)
     left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
     top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
-    for i in range(above):
-        for j in range(across):
+    if not (left <= x0 and x1 <= right and top <= y0 and y1 <= bottom):
+        for n in range(lanes):
             px, py = rows[w.X_ROW, n], rows[w.Y_ROW, n]
             on = left <= px <= right and top <= py <= bottom
+            rows[w.STACK, n] = rows[w.STACK, n] if on else 0.0
+    n = 0
+    for i in range(above):
+        for j in range(across):
             value = rows[w.STACK, n]
             value = value if value > 0.0 else 0.0
-            value = value if value < 1.0 else 1.0
-            out[i, j] = value if on else 0.0
+            out[i, j] = value if value < 1.0 else 1.0
             n += 1

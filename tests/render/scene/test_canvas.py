@@ -1,0 +1,73 @@
+"""Rasters of scenes agree with frames, and with the equations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vbraille.display import Display
+from vbraille.render.scene.canvas import SceneMap
+from vbraille.render.scene.compiling import compile_scene
+from vbraille.scene.patterns import Circle, Group, Line
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.strokes import Stroke, Vibration
+from vbraille.scene.textures import LinearGrating, UniformVibration
+
+CANVAS = Canvas(width_mm=60.0, height_mm=40.0)
+SCENE = Scene(
+    canvas=CANVAS,
+    elements=(
+        LinearGrating(ridge_mm=7.0, gap_mm=1.0, wave_angle_deg=20.0),
+        Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke(vibration=Vibration())),
+        Line(start_mm=(0.0, 0.0), end_mm=(60.0, 40.0), stroke=Stroke(width_mm=2.0)),
+    ),
+)
+
+
+def test_a_raster_is_what_one_actuator_feels():
+    dot = Display("one", 1, 1, 1.0, 1.0, height_mm=40.0)
+    program = compile_scene(SCENE, dot)
+    x, y = np.linspace(-3, 63, 45), np.linspace(-2, 42, 31)
+    shown = SceneMap(SCENE).deflections(x, y, time_s=0.004)
+    felt = np.stack([program.poses(x, np.full(x.size, at), 0.0, 0.004)[1] for at in y])
+    assert np.array_equal(shown, felt[:, :, 0, 0])
+
+
+def test_the_other_parity_swings_the_other_way():
+    whole = SceneMap(Scene(canvas=CANVAS, elements=(UniformVibration(frequency_hz=50),)))
+    even, odd = (
+        whole.deflections(np.ones(1), np.ones(1), time_s=0.003, parity=parity) for parity in (0, 1)
+    )
+    assert np.allclose(even + odd, 1.0)
+    assert even > 0.9
+
+
+def test_noise_has_the_range_of_the_vibration():
+    swing = Vibration(amplitude=0.3)
+    part = LinearGrating(ridge_mm=8.0, amplitude=0.0, inverted=True, vibration=swing)
+    whole = SceneMap(Scene(canvas=CANVAS, elements=(part,)))
+    x, y = np.linspace(0, 60, 200), np.linspace(0, 40, 200)
+    noise = whole.deflections(x, y, noise_seed=5)
+    assert 0.7 <= noise.min() < 0.701
+    assert 0.999 < noise.max() <= 1.0
+    assert abs(np.corrcoef(noise[:, :-1].ravel(), noise[:, 1:].ravel())[0, 1]) < 0.02
+    assert np.array_equal(noise, whole.deflections(x, y, noise_seed=5))
+
+
+def test_opacity_is_what_hides():
+    x, y = np.linspace(0, 60, 61), np.linspace(0, 40, 41)
+    assert np.array_equal(SceneMap(SCENE).opacity(x, y), np.ones((41, 61)))
+    weak = Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke(amplitude=0.2))
+    full = Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke())
+    of_weak = SceneMap(Scene(canvas=CANVAS, elements=(weak,))).opacity(x, y)
+    of_full = SceneMap(Scene(canvas=CANVAS, elements=(full,))).deflections(x, y)
+    assert np.array_equal(of_weak, of_full)
+    both = SceneMap(Scene(canvas=CANVAS, operation="add", elements=(weak, weak))).opacity(x, y)
+    assert np.allclose(both, np.minimum(2 * of_weak, 1))
+
+
+def test_fine_and_coarse_rasters_agree():
+    whole = SceneMap(Scene(canvas=CANVAS, elements=(Group(parts=SCENE.elements),)))
+    x, y = np.linspace(0, 6, 1200), np.linspace(0, 4, 7)
+    fine = whole.deflections(x, y)
+    assert np.array_equal(fine[:, ::100], whole.deflections(x[::100], y))
+    assert whole.deflections(x[:0], y).shape == (7, 0)

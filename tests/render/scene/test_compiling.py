@@ -1,0 +1,208 @@
+"""Scenes compiled: closed forms, changes, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+import pytest
+
+from vbraille.display import Display
+from vbraille.render import kernels, work
+from vbraille.render.scene import words
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+from vbraille.scene.bitmap import Bitmap
+from vbraille.scene.patterns import Circle, Fill, Group, Image, Line, Tile
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.strokes import Along, Stroke, Vibration
+from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
+
+if TYPE_CHECKING:
+    from vbraille.render.program import Program
+
+DISPLAY = Display("latero", 8, 8, 1.2, 1.4, height_mm=80.0, turns=True)
+CANVAS = Canvas(width_mm=100.0, height_mm=80.0)
+
+
+def compiled(*elements, operation="overwrite", assets=None, display=DISPLAY) -> Program:
+    return compile_scene(
+        Scene(canvas=CANVAS, elements=elements, operation=operation), display, assets
+    )
+
+
+def frame(program: Program, x=50.0, y=40.0, *, theta=0.0, time_s=0.0) -> np.ndarray:
+    out = np.full(program.shape, np.nan)
+    program.frame(x, out, y_mm=y, theta_rad=theta, time_s=time_s)
+    return out
+
+
+def actuators(x=50.0, y=40.0, theta=0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Places of the actuators: `vbraille.pose`."""
+    row, column = np.mgrid[:8, :8]
+    right, down = (column - 3.5) * 1.2, (row - 3.5) * 1.4
+    cosine, sine = math.cos(theta), math.sin(theta)
+    return x + right * cosine + down * sine, y + down * cosine - right * sine
+
+
+def test_a_grating_is_a_cosine():
+    shown = frame(compiled(LinearGrating(ridge_mm=3.0)), 40.3, theta=0.4)
+    x, _ = actuators(40.3, theta=0.4)
+    assert np.allclose(shown, 0.5 - 0.5 * np.cos(2 * np.pi * x / 3), atol=1e-9)
+
+
+def test_the_array_is_turned_as_poses_say():
+    grating = LinearGrating(ridge_mm=9.0, wave_angle_deg=90.0)
+    shown = frame(compiled(grating), 40.0, 30.0, theta=1.1)
+    _, y = actuators(40.0, 30.0, 1.1)
+    assert np.allclose(shown, 0.5 - 0.5 * np.cos(2 * np.pi * y / 9), atol=1e-9)
+
+
+def test_neighbours_vibrate_against_each_other():
+    shown = frame(compiled(UniformVibration(frequency_hz=20.0)), time_s=0.0125)
+    row, column = np.mgrid[:8, :8]
+    assert np.allclose(shown, (row + column + 1) % 2)
+
+
+def test_a_line_hides_what_is_beneath_it():
+    line = Line(start_mm=(0.0, 40.0), end_mm=(100.0, 40.0), stroke=Stroke(width_mm=4.0))
+    shown = frame(compiled(Uniform(level=0.25), line))
+    _, y = actuators()
+    across = np.abs(y - 40)
+    profile = np.where(across < 1, 1.0, 0.5 + 0.5 * np.cos(np.pi * np.minimum(across - 1, 1)))
+    assert np.allclose(shown, profile + 0.25 * (1 - profile), atol=1e-9)
+
+
+def test_a_texture_on_top_hides_everything():
+    below = Circle(center_mm=(50.0, 40.0), radius_mm=5.0, stroke=Stroke())
+    whole, alone = (
+        compiled(*elements) for elements in ((below, Uniform(level=0.5)), (Uniform(level=0.5),))
+    )
+    assert np.array_equal(frame(whole), np.full((8, 8), 0.5))
+    # What is overwritten is never rendered: not even a word of it is said.
+    assert said(whole) == said(alone)
+
+
+def said(program: Program) -> int:
+    """How many words the tile under the middle of the canvas has."""
+    numbers = program.numbers
+    columns = int(numbers[words.GRID_COLUMNS])
+    tile_of = lambda at, first: int((at - first) * numbers[words.TILES_PER_MM])  # noqa: E731
+    row = tile_of(40.0, numbers[words.GRID_TOP_MM])
+    column = tile_of(50.0, numbers[words.GRID_LEFT_MM])
+    at = start = int(numbers[words.GRID + row * columns + column])
+    while int(numbers[at]) != words.END:
+        at += 1
+    return at - start
+
+
+def test_a_picture_masks_its_texture():
+    image = Image(file="half.png", texture=LinearGrating(ridge_mm=2.0))
+    half = Bitmap(np.full((8, 10), 32_768, np.uint16), (0.0, 0.0), 100.0, 80.0)
+    shown = frame(compiled(image, assets=Assets({image: half})), 51.0)
+    x, _ = actuators(51.0)
+    assert np.allclose(shown, (0.5 - 0.5 * np.cos(np.pi * x)) * 32_768 / 65_535, atol=1e-9)
+
+
+def test_a_tile_is_repeated_in_all_directions():
+    grating = LinearGrating(ridge_mm=10.0)
+    tile = Tile(width_mm=5.0, height_mm=3.0, origin_mm=(1.0, 2.0), part=grating)
+    shown = frame(compiled(tile))
+    x, _ = actuators()
+    assert np.allclose(shown, 0.5 - 0.5 * np.cos(2 * np.pi * np.mod(x - 1, 5) / 10), atol=1e-9)
+
+
+def test_beyond_the_canvas_there_is_nothing():
+    shown = frame(compiled(Uniform()), 0.0, 40.0)
+    x, _ = actuators(0.0)
+    assert np.array_equal(shown, np.where(x >= 0, 1.0, 0.0))
+    for x, y in ((-20.0, 40.0), (50.0, 95.0), (math.nan, 40.0), (50.0, math.nan), (math.inf, 0.0)):
+        assert not frame(compiled(Uniform()), x, y).any()
+
+
+def test_nothing_on_the_canvas_is_rest():
+    assert not frame(compiled()).any()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_poses_are_frames(dtype):
+    program = compiled(UniformVibration(), LinearGrating(ridge_mm=3.0, velocity_mm_s=20.0))
+    x, times = np.linspace(0, 100, 50), np.linspace(0, 2, 50)
+    _, frames = program.poses(x, np.full(50, 30.0), 0.2, times)
+    for k in range(50):
+        out = np.empty((8, 8), dtype)
+        program.frame(x[k], out, y_mm=30.0, theta_rad=0.2, time_s=times[k])
+        assert np.array_equal(frames[k], out.astype(np.float32))
+
+
+def test_a_change_gives_what_compiling_anew_gives():
+    elements = [
+        Line(
+            start_mm=(5.0 * n, 10.0),
+            end_mm=(5.0 * n + 8, 60.0),
+            stroke=Stroke(width_mm=2.0, along=Along() if n % 2 else None),
+        )
+        for n in range(15)
+    ]
+    compiler = SceneCompiler(DISPLAY)
+    compiler.compile(Scene(canvas=CANVAS, elements=tuple(elements)))
+    smaller = msgspec.structs.replace(elements[7], amplitude=0.5)
+    filled = Circle(center_mm=(40.0, 40.0), radius_mm=9.0, fill=Fill(texture=Uniform(level=0.3)))
+    for place, new in ((7, smaller), (3, filled), (0, elements[4]), (7, elements[7])):
+        elements[place] = new
+        scene = Scene(canvas=CANVAS, elements=tuple(elements))
+        changed, anew = compiler.compile(scene), compile_scene(scene, DISPLAY)
+        assert np.array_equal(changed.numbers, anew.numbers)
+        assert np.array_equal(changed.table, anew.table)
+
+
+def test_a_change_keeps_pictures_of_elements_that_stay():
+    image = Image(file="a.png")
+    bitmap = Bitmap(np.full((4, 4), 65_535, np.uint16), (0.0, 0.0), 100.0, 80.0)
+    compiler = SceneCompiler(DISPLAY)
+    scene = Scene(canvas=CANVAS, operation="add", elements=(image, Uniform(level=0.0)))
+    compiler.compile(scene, Assets({image: bitmap}))
+    dark = Bitmap(np.zeros((4, 4), np.uint16), (0.0, 0.0), 100.0, 80.0)
+    assert not frame(compiler.compile(scene, Assets({image: dark}))).any()
+
+
+def test_the_head_tells_what_moves():
+    still, moving = (
+        compiled(LinearGrating(ridge_mm=2.0)),
+        compiled(
+            Line(
+                start_mm=(0, 0), end_mm=(9, 9), stroke=Stroke(vibration=Vibration(frequency_hz=30))
+            )
+        ),
+    )
+    assert not still.moves
+    assert moving.numbers[work.FREQUENCY] == 30.0
+    assert math.isinf(moving.numbers[work.EXPOSURE])
+    assert kernels.patience(moving.numbers) == work.PATIENCE_S
+    assert math.isinf(kernels.patience(still.numbers))
+    assert compiled(LinearGrating(ridge_mm=2.0, gap_mm=3.0, velocity_mm_s=-20.0)).numbers[
+        work.FREQUENCY
+    ] == pytest.approx(4.0)
+
+
+def test_a_frequency_above_half_of_the_rate_is_refused():
+    scene = Scene(canvas=CANVAS, elements=(Uniform(), UniformVibration(frequency_hz=50, id="sea")))
+    with pytest.raises(ValueError, match=r'element "sea" moves at 50 Hz; .* 40 Hz'):
+        compile_scene(scene, DISPLAY, rate_hz=80.0)
+
+
+def test_patterns_may_not_stand_too_deep_in_each_other():
+    nested: Group | Uniform = Uniform(level=0.5)
+    for depth in range(40):
+        nested = Group(operation="maximum", parts=(Uniform(level=0.1), nested))
+        if depth == 20:
+            assert frame(compiled(nested)).min() == 0.5
+    with pytest.raises(ValueError, match="so deep"):
+        compiled(nested)
+
+
+def test_a_scene_is_no_weighted_sum():
+    with pytest.raises(ValueError, match="is for groups"):
+        compiled(Uniform(), operation="weighted")
