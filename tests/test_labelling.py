@@ -35,7 +35,9 @@ def warned(*elements, **more):
 def test_a_label_is_translated_as_a_book_is():
     written = write_label(label("the 3 houses", table="en-ueb-g2.ctb"), STYLE)
     page = lay_out_text("the 3 houses", 40, BrailleTable("en-ueb-g2.ctb"), keep_lines=True)
-    np.testing.assert_array_equal(written.lines[0], page.line(1).masks)
+    line = page.line(1)
+    assert line is not None
+    np.testing.assert_array_equal(written.lines[0], line.masks)
     assert braille(written) == ["⠮⠀⠼⠉⠀⠓⠳⠎⠑⠎"]
     assert written.style is STYLE
 
@@ -109,7 +111,7 @@ def test_a_label_beyond_the_canvas_is_said():
 
 def test_labels_that_stand_on_each_other_are_said():
     first = label("one", id="a")
-    for place, angle in (((5.0, 10.0), 0), ((14.0, 4.0), 60), ((30.0, 8.0), 180)):
+    for place, angle in (((5.0, 10.0), 0), ((14.0, 4.0), 60), ((30.0, 12.0), 180)):
         (sentence,) = warned(first, label("x", place_mm=place, angle_deg=angle, id="b"))
         assert sentence == (
             "elements, number 2, label 'b' stands on elements, number 1, label 'a'; "

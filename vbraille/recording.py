@@ -5,35 +5,49 @@
 
 from __future__ import annotations
 
-import io
 import json
-import os
-from contextlib import contextmanager
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
 
-from vbraille.errors import InputError, VbrailleError
-from vbraille.files import whole_file
+from vbraille.errors import InputError
 from vbraille.version import __version__
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from _typeshed import ReadableBuffer as Buffer
-    from _typeshed import WriteableBuffer
     from numpy.typing import NDArray
 
     from vbraille.display import Display
+    from vbraille.newfile import NewFile
     from vbraille.render.braille.models import Model
 
-FORMAT = 2
+FORMAT = 3
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
+
+
+class SceneRecorded(NamedTuple):
+    """A tactile picture, as a recording of it keeps it.
+
+    Parameters
+    ----------
+    text
+        Bytes of its file.
+    title, description
+        What it shows.
+    width_mm, height_mm
+        Size of its canvas.
+    map_png
+        Its deflection map as a PNG that covers the canvas; white is rest.
+    """
+
+    text: bytes
+    title: str
+    description: str
+    width_mm: float
+    height_mm: float
+    map_png: bytes
 
 
 class Recorder:
@@ -100,6 +114,53 @@ class Recorder:
             source=source,
             source_sha256=sha256,
             calibration=json.dumps(calibration),
+        )
+
+    def describe_scene(
+        self,
+        scene: SceneRecorded,
+        *,
+        model: str,
+        rate_hz: float,
+        source: str,
+        sha256: str,
+        path: str,
+    ) -> None:
+        """Write which tactile picture was rendered; it is the recording's one line, without cells.
+
+        Parameters
+        ----------
+        scene
+            The picture.
+        model
+            Name of the display.
+        rate_hz
+            Frames a second.
+        source, sha256
+            Name and SHA-256 of the picture's file.
+        path
+            Words for the path of the array.
+        """
+        self.add_line(np.zeros(0, np.uint8))
+        for name, written in (("scene/text", scene.text), ("scene/map", scene.map_png)):
+            self._file.create_dataset(name, data=np.frombuffer(written, np.uint8))
+        self._file["scene"].attrs.update(
+            title=scene.title,
+            description=scene.description,
+            width_mm=scene.width_mm,
+            height_mm=scene.height_mm,
+            path=path,
+        )
+        self._file.attrs.update(
+            model=model,
+            mapping="",
+            geometry="{}",
+            tuning="{}",
+            rate_hz=rate_hz,
+            first_line=1,
+            source=source,
+            source_sha256=sha256,
+            calibration=json.dumps(None),
         )
 
     @property
@@ -174,6 +235,29 @@ class Poses(NamedTuple):
     theta_rad: NDArray[np.float64]
 
 
+def scene_of(file: h5py.File) -> SceneRecorded | None:
+    """Read the tactile picture of a recording; None if lines of braille were recorded.
+
+    Raises
+    ------
+    InputError
+        If it is of a newer format.
+    """
+    _format_of(file)
+    if "scene" not in file:
+        return None
+    text, drawn = (_numbers(file, f"scene/{name}").tobytes() for name in ("text", "map"))
+    told = file["scene"].attrs
+    return SceneRecorded(
+        text,
+        str(told["title"]),
+        str(told["description"]),
+        float(np.asarray(told["width_mm"])),
+        float(np.asarray(told["height_mm"])),
+        drawn,
+    )
+
+
 def poses_of(file: h5py.File) -> Poses:
     """Read the poses of a recording of any format.
 
@@ -225,105 +309,3 @@ def _format_of(file: h5py.File) -> int:
             f"{FORMAT}; use the vbraille that made it, or a newer one"
         )
     return found
-
-
-@contextmanager
-def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
-    """Open an HDF5 file for writing, which gets its name only once it is whole.
-
-    If anything ends the writing early, nothing is left behind.
-
-    Parameters
-    ----------
-    path
-        Path of the file to make.
-    replace
-        Whether it may take the place of a file that is there.
-
-    Raises
-    ------
-    InputError
-        If no file can be made there, or one is there that may not be replaced.
-    VbrailleError
-        If writing fails, as on a full disk.
-    """
-    path = Path(path)
-    with whole_file(path, replace=True) as partial:
-        try:
-            if path.is_dir():
-                raise InputError(f"{path} is a directory; give the name of a file in it")
-            if not replace:
-                _refuse_existing(path)
-            target = _Target(partial)
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror}") from None
-        try:
-            with target, NewFile(target) as file:
-                yield file
-            target.check()
-        except _DiskError as error:
-            raise VbrailleError(f"{path} could not be written: {error}") from None
-        if not replace:  # somebody may have made one meanwhile
-            _refuse_existing(path)
-
-
-def _refuse_existing(path: Path) -> None:
-    if os.path.lexists(path):
-        raise InputError(
-            f"{path} is there already; choose another name, or replace it by {setting('force')}"
-        )
-
-
-class NewFile(h5py.File):
-    """A file that is being written."""
-
-    def __init__(self, target: _Target) -> None:
-        super().__init__(target, "w")
-        self.check = target.check
-
-
-class _DiskError(Exception):
-    """The system refused to write; the message says why."""
-
-
-class _Target(io.FileIO):
-    """A file for HDF5, which would crash the process some time after a failed write.
-
-    The first failure is kept for `check`, and what comes later goes nowhere.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self._error: OSError | None = None
-        super().__init__(path, "w+")
-
-    def check(self) -> None:
-        """Raise `_DiskError` if a write has failed."""
-        if self._error is not None:
-            raise _DiskError(self._error.strerror)
-
-    def write(self, data: Buffer) -> int:
-        view = memoryview(data).cast("B")
-        done = 0
-        while self._error is None and done < view.nbytes:
-            try:
-                done += super().write(view[done:])
-            except OSError as error:
-                self._error = error
-        return view.nbytes
-
-    def truncate(self, size: int | None = None) -> int:
-        if self._error is None:
-            try:
-                return super().truncate(size)
-            except OSError as error:
-                self._error = error
-        return size or 0
-
-    def readinto(self, buffer: WriteableBuffer) -> int:
-        # What was never written reads as zeros.
-        view = memoryview(buffer).cast("B")
-        count = super().readinto(view) or 0
-        if self._error is not None:
-            view[count:] = bytes(view.nbytes - count)
-            count = view.nbytes
-        return count

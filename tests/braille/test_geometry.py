@@ -42,7 +42,7 @@ class TestPresets:
         named = {"vbd": VBD, "stress2": STRESS2, "standard": STANDARD}
         assert named.items() <= PRESETS.items()
         assert {preset.travel_mm for preset in named.values()} == {300.0}
-        assert PRESETS.keys() - named.keys() == {"stress2-8x8", "latero"}
+        assert PRESETS.keys() - named.keys() == {"stress2-8x8", "pantograph", "latero"}
 
 
 class TestChecks:

@@ -5,11 +5,12 @@ import shlex
 
 import pytest
 
-from vbraille.cli.parser import COMMANDS, DEVICE_ACTIONS, SESSION_ACTIONS, parse
+from vbraille.cli.parser import COMMANDS, DEVICE_ACTIONS, SCENE_ACTIONS, SESSION_ACTIONS, parse
 
 ALL = {
     **COMMANDS,
     **{f"device {name}": action for name, action in DEVICE_ACTIONS.items()},
+    **{f"scene {name}": action for name, action in SCENE_ACTIONS.items()},
     **{f"session {name}": action for name, action in SESSION_ACTIONS.items()},
 }
 

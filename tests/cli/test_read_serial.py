@@ -52,6 +52,25 @@ def test_a_text_is_read_to_its_end_on_a_device_that_has_passed_its_mark(tmp_path
     assert "Traceback" not in done.stderr
 
 
+def test_a_slower_device_is_read_on_at_its_own_rate_unless_another_is_asked_for(
+    call, tmp_path, text
+):
+    with simulated(tmp_path, "--rate", "500") as (spec, device):
+        done = call("read", text, "--device", spec, "--lines", "1")
+        assert done.code == 0, done.err
+        seconds, ticks, late = (
+            float(re.search(rf"{what} ([\d.]+)", done.out)[1])
+            for what in ("seconds", " ticks", "late ticks")
+        )
+        assert abs(seconds - (ticks + late) / 500) < 0.1
+        done = call("read", text, "--device", spec, "--lines", "1", "--rate", "1000")
+        assert done.code == 2
+        assert "made for 500 frames a second and 1000 are asked for; choose --rate 500" in done.err
+        device.send_signal(signal.SIGTERM)
+        frames = int(re.search(r"frames (\d+)", device.communicate()[0])[1])
+    assert frames <= 500 * (seconds + 5)
+
+
 def test_an_unplugged_device_is_read_on_in_place_when_it_is_back(call, tmp_path, text):
     with simulated(tmp_path, "--unplug-every", "1s") as (spec, device):
         done = call("read", text, "--device", spec)

@@ -89,7 +89,7 @@ def test_the_file_holds_all_that_was_rendered(
         assert frames.dtype == np.float32
         assert frames.shape == (t_s.size, array.rows, array.columns)
         assert t_s.shape == x_mm.shape == line.shape == file["part"].shape
-        assert file.attrs["format"] == 2
+        assert file.attrs["format"] == 3
         assert not file["part"][:].any()
         poses = poses_of(file)
         np.testing.assert_array_equal(poses.t_s, t_s)

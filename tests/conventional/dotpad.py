@@ -1,11 +1,9 @@
 """A Dot Pad at a pseudo-terminal, written from its protocol's description alone."""
 
 import os
-import pty
-import select
 import struct
-import threading
-import tty
+
+from tests.conventional.plugged import PluggedDisplay
 
 PATIENCE_S = 20.0
 FEATURES = 0x80 | 0x40 | 0x08 | 0x04 | 0x02
@@ -29,8 +27,8 @@ def packet(command, content=b"", destination=0):
     return b"\xaa\x55" + struct.pack(">H", len(body) + 1) + body + bytes([checksum(body)])
 
 
-class SimulatedDotPad:
-    """The display, at a link to its pseudo-terminal for as long as it is plugged in.
+class SimulatedDotPad(PluggedDisplay):
+    """The display.
 
     Parameters
     ----------
@@ -43,38 +41,18 @@ class SimulatedDotPad:
     """
 
     def __init__(self, link, board=BOARD, answers=()):
-        self.link = link
+        super().__init__(link)
         self.lines = {}  # pins that stand on each line
         self.came = []  # destinations of lines, in order
         self.faults = []  # packets that a Dot Pad would not take
         self._board = board
         self._answers = list(answers)
-        self._changed = threading.Condition()
-        self._end = None
         self.plug()
 
     def plug(self):
         """Plug it in; nothing stands on it."""
-        self._master, self._port = pty.openpty()
-        tty.setraw(self._master)
-        tty.setraw(self._port)
         self.lines.clear()
-        self.link.unlink(missing_ok=True)
-        self.link.symlink_to(os.ttyname(self._port))
-        stop, self._end = os.pipe()
-        self._thread = threading.Thread(target=self._serve, args=(stop,))
-        self._thread.start()
-
-    def unplug(self):
-        """Take it away."""
-        if self._end is None:
-            return
-        os.write(self._end, b"x")
-        self._thread.join()
-        self.link.unlink()
-        for descriptor in (self._master, self._port, self._end):
-            os.close(descriptor)
-        self._end = None
+        super().plug()
 
     def press(self, group, number, size=4):
         """Press a key of a group, and let go of it."""
@@ -95,22 +73,16 @@ class SimulatedDotPad:
     def __exit__(self, *_):
         self.unplug()
 
-    def _serve(self, stop):
-        begun = b""
-        while True:
-            ready = select.select([self._master, stop], [], [])[0]
-            if stop in ready:
-                os.close(stop)
-                return
-            begun += os.read(self._master, 4096)
-            while len(begun) >= 4:
-                end = 4 + struct.unpack_from(">H", begun, 2)[0]
-                if len(begun) < end:
-                    break
-                self._answer(begun[:end])
-                begun = begun[end:]
-
     def _answer(self, told):
+        while len(told) >= 4:
+            end = 4 + struct.unpack_from(">H", told, 2)[0]
+            if len(told) < end:
+                break
+            self._answer_packet(told[:end])
+            told = told[end:]
+        return told
+
+    def _answer_packet(self, told):
         body = told[4:-1]
         if told[:2] != b"\xaa\x55" or told[-1] != checksum(body):
             self.faults.append(told)

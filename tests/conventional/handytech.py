@@ -5,17 +5,14 @@ Both are real parts but for the display's pins: BRLTTY's own driver speaks to th
 
 import ctypes
 import os
-import pty
-import select
 import shutil
 import socket
 import subprocess
-import threading
 import time
-import tty
 
 import pytest
 
+from tests.conventional.plugged import PluggedDisplay
 from vbraille.conventional.brlapi import LIBRARY
 
 PATIENCE_S = 30.0
@@ -42,8 +39,8 @@ def missing():
 needs_brltty = pytest.mark.skipif(bool(missing()), reason=missing())
 
 
-class HandyTech:
-    """The display, at a link to its pseudo-terminal for as long as it is plugged in.
+class HandyTech(PluggedDisplay):
+    """The display.
 
     Parameters
     ----------
@@ -54,34 +51,14 @@ class HandyTech:
     """
 
     def __init__(self, link, cells=40):
-        self.link = link
+        super().__init__(link)
         self.shown = []  # (time by the monotonic clock in ns, cells) of each change, in order
-        self._changed = threading.Condition()
-        self._end = self._thread = None
         self.plug(cells)
 
     def plug(self, cells):
         """Plug a display with so many cells in."""
         self.cells = cells
-        self._master, self._port = pty.openpty()
-        tty.setraw(self._master)
-        tty.setraw(self._port)
-        self.link.unlink(missing_ok=True)
-        self.link.symlink_to(os.ttyname(self._port))
-        stop, self._end = os.pipe()
-        self._thread = threading.Thread(target=self._serve, args=(stop,))
-        self._thread.start()
-
-    def unplug(self):
-        """Take the display away."""
-        if self._end is None:
-            return
-        os.write(self._end, b"x")
-        self._thread.join()
-        self.link.unlink()
-        for descriptor in (self._master, self._port, self._end):
-            os.close(descriptor)
-        self._end = None
+        super().plug()
 
     def press(self, key):
         """Press a key, and let go of it."""
@@ -104,15 +81,6 @@ class HandyTech:
             )
             assert came, (wanted, self.shown[-3:])
             return self.shown[-1][0]
-
-    def _serve(self, stop):
-        begun = b""
-        while True:
-            ready = select.select([self._master, stop], [], [])[0]
-            if stop in ready:
-                os.close(stop)
-                return
-            begun = self._answer(begun + os.read(self._master, 4096))
 
     def _answer(self, told):
         """Answer what BRLTTY has told, and give what of it is not complete."""

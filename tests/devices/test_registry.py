@@ -45,6 +45,8 @@ def test_another_package_joins_by_an_entry_point(tmp_path, monkeypatch):
         assert device.display.columns == 8
     with pytest.raises(InputError, match="made for 1000 frames a second and 2000 are"):
         open_device("other:bench8", info(rate_hz=2000), fits=False)
+    with open_device("other:bench8", info(rate_hz=2000), fits=False, often=False) as device:
+        assert device.display.rate_hz == 1000
 
 
 OTHER = (

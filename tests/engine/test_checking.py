@@ -156,7 +156,16 @@ def test_some_disabled_actuators_and_a_place_not_tested_are_said_with_the_verdic
     )
     assert said[0] == "actuator: row 1, column 1"
     assert "actuator: row 1, column 2" not in said
-    assert [line for line in said if line.startswith("place: not tested")]
+    assert "place: not tested, since its reader must show it the left stop" in said
+
+
+def test_a_device_of_two_axes_is_shown_a_corner_and_has_no_stop(checked):
+    plane = {"height_um": 60_000, "y_counts_per_m": 200_000}
+    _, said = checked(encoder=Encoder.INCREMENTAL, left_stop_count=0, **plane)
+    assert "place: not tested, since its reader must show it the far left corner" in said
+    _, said = checked(**plane)
+    (place,) = [line for line in said if line.startswith("place: ")]
+    assert place.startswith("place: 5.0 to 5.0 mm from the left edge, of 300 mm;")
 
 
 def test_a_slow_but_right_clock_and_a_carriage_at_its_stop_are_fit(checked):

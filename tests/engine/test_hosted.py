@@ -10,8 +10,10 @@ from vbraille.engine import shared
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.hosted import Hosted, warm_up
 from vbraille.engine.loop import Loop
+from vbraille.engine.mailbox import _PIECE_WORDS, Mailbox
 from vbraille.engine.record import Flag
 from vbraille.render import STRESS2
+from vbraille.render.program import Program
 from vbraille.simulation.hand import Sweep
 from vbraille.simulation.steering import ReadLine
 
@@ -140,3 +142,89 @@ def test_a_picture_that_does_not_fit_is_refused(bench):
 def test_warming_up_leaves_nothing_behind(bench):
     warm_up(bench.device.display, EXTENT)
     assert bench.mailbox.published == 0
+
+
+def large(number, words=400_000):
+    """A line whose program takes 3 MB: what its kernel does not look at is of no account."""
+    line = picture((number,) * 3)
+    numbers = np.concatenate((line.numbers, np.full(words, float(number))))
+    return Program(numbers, line.table)
+
+
+def roomy(number):
+    """A mailbox with room for such pictures, as both sides have it."""
+    room = large(number).nbytes
+    buffer = memoryview(bytearray(Mailbox.bytes_needed(room)))
+    return Mailbox(buffer, room), Mailbox(buffer, room), buffer
+
+
+def pieces(mailbox):
+    """Take a picture as the loop does; how many pieces that took, and the picture."""
+    for count in range(1, 100):
+        posted = mailbox.take_piece()
+        if posted is not None:
+            return count, posted
+    pytest.fail("the picture never came")
+
+
+def test_a_large_picture_is_taken_piece_by_piece_and_a_small_one_at_once():
+    ours, theirs, _ = roomy(1)
+    for number in (1, 2, 3):
+        program = large(number)
+        ours.post(program, number)
+        count, posted = pieces(theirs)
+        assert count == -(-(program.nbytes + 40) // (8 * _PIECE_WORDS))
+        assert (posted.number, posted.line) == (number, number)
+        np.testing.assert_array_equal(posted.program.numbers, program.numbers)
+        np.testing.assert_array_equal(posted.program.table, program.table)
+        whole = ours.take()
+        assert whole is not None
+        np.testing.assert_array_equal(whole.program.numbers, program.numbers)
+    ours.post(picture(), 9)
+    count, posted = pieces(theirs)
+    assert (count, posted.line) == (1, 9)
+
+
+def test_a_picture_that_is_shown_stays_whole_while_the_next_is_taken():
+    ours, theirs, _ = roomy(1)
+    ours.post(large(1), 1)
+    shown = pieces(theirs)[1].program
+    ours.post(large(2), 2)
+    pieces(theirs)
+    np.testing.assert_array_equal(shown.numbers, large(1).numbers)
+
+
+def test_of_pictures_posted_while_one_is_taken_the_last_comes_and_none_is_mixed():
+    ours, theirs, _ = roomy(1)
+    ours.post(large(1), 1)
+    for number in range(2, 12):
+        theirs.take_piece()
+        ours.post(large(number), number)
+    while (posted := pieces(theirs)[1]).number < 11:
+        assert set(posted.program.numbers[-400_000:]) == {float(posted.number)}
+    np.testing.assert_array_equal(posted.program.numbers, large(11).numbers)
+
+
+@pytest.mark.parametrize("at", [0, 1, 2, 3, 4, 5, 5000, 40_000, 399_999])
+def test_a_word_that_is_wrong_anywhere_keeps_a_picture_from_being_taken(at):
+    ours, theirs, buffer = roomy(1)
+    ours.post(large(1), 1)
+    words = buffer.cast("q")
+    slot = 8 + (len(words) - 8) // 2  # the first picture goes into the second slot
+    words[slot + at] ^= 1 << 40
+    for _ in range(30):
+        assert theirs.take_piece() is None
+    assert theirs.take() is None
+    words[slot + at] ^= 1 << 40
+    assert pieces(theirs)[1].number == 1
+
+
+def test_words_that_changed_places_are_seen():
+    ours, theirs, buffer = roomy(1)
+    program = large(1)
+    program.numbers[-2:] = 3.0, 4.0
+    ours.post(program, 1)
+    words = buffer.cast("q")
+    end = 8 + (len(words) - 8) // 2 + 5 + program.numbers.size
+    words[end - 2], words[end - 1] = words[end - 1], words[end - 2]
+    assert theirs.take() is None

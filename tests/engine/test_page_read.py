@@ -75,6 +75,36 @@ def decoded(ticks, model, size):
     ids=["stress2", "stress2-8x8", "latero"],
 )
 def test_a_page_is_read_along_a_wandering_path_without_a_next_line(rng, model, size, seed):
+    ticks, page, model = felt_of("fluent", rng, model, size, seed)
+    lines, pitch_mm = size[0], model.style.geometry.line_pitch_mm
+    assert np.ptp(ticks["theta_rad"]) > 0.1  # it wanders, and turns
+    assert np.abs(ticks["y_mm"] / pitch_mm % 1 - 0.5).max() > 0.1
+    np.testing.assert_array_equal(decoded(ticks, model, size), page)
+    # A line is come to by a fade: no actuator moves faster than that and the hand ask for.
+    assert (ticks["flags"] & int(Flag.CHANGED) != 0).sum() >= lines
+
+
+@pytest.mark.parametrize(
+    ("model", "size", "seed"),
+    [
+        (STRESS2, (LINES, CELLS), 4),
+        pytest.param(STRESS2_8X8, LARGE, 5, marks=heavy),
+        pytest.param(LATERO, LARGE, 6, marks=heavy),
+    ],
+    ids=["stress2", "stress2-8x8", "latero"],
+)
+def test_every_dot_that_a_hand_crosses_going_all_about_a_page_is_right(rng, model, size, seed):
+    ticks, page, model = felt_of("wander:60", rng, model, size, seed)
+    shown = (ticks["share"] == 1) & (ticks["flags"] & int(Flag.RESTING) == 0)
+    crossed = 0
+    for line, bit, cell, felt in over_dots(ticks[shown], model, size):
+        assert ((felt > 0.5) == (page[line, cell] >> bit & 1 == 1)).all(), (line, bit)
+        crossed += np.unique(cell).size
+    assert crossed > 6 * page.size / 4
+
+
+def felt_of(hand, rng, model, size, seed):
+    """What a hand feels of a page without texture: ticks, the page's masks, and the model."""
     lines, cells = size
     geometry = model.style.geometry
     pitch_mm, end_mm = geometry.line_pitch_mm, geometry.extent_mm(cells)
@@ -83,7 +113,7 @@ def test_a_page_is_read_along_a_wandering_path_without_a_next_line(rng, model, s
     model = replace(model, style=replace(model.style, tuning=Tuning(texture=0.0)))
     page = rng.integers(0, 64, size).astype(np.uint8)
     steering = Steering()
-    with SimulatedDevice(display, hand=parse_hand("fluent", seed), steering=steering) as device:
+    with SimulatedDevice(display, hand=parse_hand(hand, seed), steering=steering) as device:
         engine = BatchEngine(device, poll_ticks=20_000)
         engine.show(model.style.render_page(list(page), display), 1)
         steering.give(ReadPage(lines, pitch_mm, end_mm))
@@ -92,8 +122,4 @@ def test_a_page_is_read_along_a_wandering_path_without_a_next_line(rng, model, s
             parts.append(engine.poll())
     ticks = np.concatenate(parts)
     assert set(ticks["line"].tolist()) == {1}
-    assert np.ptp(ticks["theta_rad"]) > 0.1  # it wanders, and turns
-    assert np.abs(ticks["y_mm"] / pitch_mm % 1 - 0.5).max() > 0.1
-    np.testing.assert_array_equal(decoded(ticks, replace(model, display=display), size), page)
-    # A line is come to by a fade: no actuator moves faster than that and the hand ask for.
-    assert (ticks["flags"] & int(Flag.CHANGED) != 0).sum() >= lines
+    return ticks, page, replace(model, display=display)

@@ -18,7 +18,13 @@ PAGE = (Path(__file__).parents[2] / "docs/live-view.md").read_text()
 SECTIONS = dict(re.findall(r"^#{2,3} (.+?)\n(.*?)(?=^#{2,3} |\Z)", PAGE, re.M | re.S))
 REQUESTS = typing.get_args(messages.AnyRequest)
 ANSWERS = (messages.Welcome, messages.ViewState, messages.Refused)
-PARTS = (messages.ArrayShown, messages.LineShown, messages.KnobShown, messages.PlayedEvent)
+PARTS = (
+    messages.ArrayShown,
+    messages.LineShown,
+    messages.SceneShown,
+    messages.KnobShown,
+    messages.PlayedEvent,
+)
 _PLAIN = {str: "text", int: "integer", float: "number", bool: "true or false"}
 _NUMBERS = {"u1": "u8", "u2": "u16", "u4": "u32", "f4": "f32", "f8": "f64"}
 

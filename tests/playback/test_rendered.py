@@ -12,8 +12,9 @@ from tests.playback.written import RECORDINGS, asked, each
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError
 from vbraille.live.messages import Map, Next
+from vbraille.newfile import new_file
 from vbraille.playback import open_recording
-from vbraille.recording import Recorder, new_file, poses_of
+from vbraille.recording import Recorder, poses_of
 from vbraille.render import STRESS2
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from tests.render.scene.scenes import assets_of, bitmap_of, known_boxes, patterns, seeds
-from tests.tiers import examples
+from tests.render.scene.scenes import assets_of, bitmap_of, examples, known_boxes, patterns, seeds
 from vbraille.render.scene import reference
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.bounds import EMPTY, Box, bounds
@@ -121,7 +120,12 @@ def test_an_image_that_is_up_outside_is_everywhere():
     pixels = np.zeros((2, 2), np.uint16)
     assert bitmap_box(Bitmap(pixels, (0, 0), 2, 2, 0.1)) is None
     assert opaque(Bitmap(pixels, (0, 0), 2, 2, 0.1)).outside == 1
-    assert bitmap_box(Bitmap(pixels, (0, 0), 2, 2)) == EMPTY
+
+
+def test_an_image_of_nothing_has_the_box_of_a_point():
+    box = bitmap_box(Bitmap(np.zeros((2, 2), np.uint16), (5, 5), 2, 2))
+    assert box is not None
+    assert (box.right, box.bottom) == (box.left, box.top)
 
 
 def test_an_images_box_is_no_larger_than_its_mask():

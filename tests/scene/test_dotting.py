@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tiers import examples
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.patterns import Circle, Line, Path, Polygon
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
@@ -34,7 +35,11 @@ dottings = st.builds(
     Dotting, dot=st.builds(DotStyle, radius_mm=st.floats(0.1, 3)), separation_mm=st.floats(0, 5)
 )
 shapes = st.one_of(
-    st.builds(Polygon, vertices_mm=rings, dots=dottings),
+    st.builds(
+        Polygon,
+        vertices_mm=rings.filter(lambda ring: meeting_edges(ring) is None),
+        dots=dottings,
+    ),
     st.builds(
         Path,
         contours_mm=st.lists(rings, min_size=1, max_size=2).map(tuple),

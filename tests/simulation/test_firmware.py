@@ -28,19 +28,6 @@ from vbraille.simulation.described import describe
 from vbraille.simulation.firmware import MARK_MM, Controller
 
 
-@pytest.fixture(params=[INFO, INFO2], ids=["version 1", "version 2"])
-def bench(request):
-    bench = Bench(request.param)
-    bench.tick()
-    return bench
-
-
-@pytest.fixture
-def greeted(bench):
-    bench.send(bench.hello)
-    return bench
-
-
 def test_before_hello_it_is_silent_and_at_rest(bench):
     assert bench.frame() == []
     assert bench.tick(100) == []

@@ -8,7 +8,6 @@ import pytest
 from tests.controllers import ControllerOf20261121
 from tests.simulation.controlled import (
     INFO,
-    INFO2,
     REST,
     SWING,
     TOP,
@@ -19,19 +18,6 @@ from tests.simulation.controlled import (
 )
 from vbraille.devices.wire.codec import DELIMITER, Levels, encode
 from vbraille.devices.wire.messages import PLACED, RESTING, TRIPPED, Frame, Hello, Rest, Watchdog
-
-
-@pytest.fixture(params=[INFO, INFO2], ids=["version 1", "version 2"])
-def bench(request):
-    bench = Bench(request.param)
-    bench.tick()
-    return bench
-
-
-@pytest.fixture
-def greeted(bench):
-    bench.send(bench.hello)
-    return bench
 
 
 def ramp(begun, milliseconds):

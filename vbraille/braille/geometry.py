@@ -116,6 +116,8 @@ STRESS2 = Geometry(
 # are as far apart; rows of dots on every second row of actuators, 1.4 and 1.6125 mm apart. The line
 # pitch is ours, as much larger than the row spacing as there. The travel is the carrier's.
 STRESS2_8X8 = replace(STRESS2, row_spacing_mm=2.8, line_pitch_mm=11.0, travel_mm=220.0)
+# Lévesque 2009, 5.2 and 6.2: the same array on a carrier that goes less far.
+PANTOGRAPH = replace(STRESS2_8X8, travel_mm=113.0)
 LATERO = replace(STRESS2, row_spacing_mm=3.225, line_pitch_mm=12.5, travel_mm=281.0)
 # Embossed paper: 2.29 and 3.71 mm as in Lévesque 2009; the others are common values.
 STANDARD = Geometry(
@@ -130,6 +132,7 @@ PRESETS = {
     "vbd": VBD,
     "stress2": STRESS2,
     "stress2-8x8": STRESS2_8X8,
+    "pantograph": PANTOGRAPH,
     "latero": LATERO,
     "standard": STANDARD,
 }

@@ -28,8 +28,8 @@ HEIGHT_MM: Final = TRAY_MM[1] - DISC_MM
 # Place of the first joint in the tray's frame: 11.1 mm left of its right edge, 61.2 mm behind it.
 ROOT_X_MM: Final = TRAY_MM[0] - 11.1 - DISC_MM / 2
 ROOT_Y_MM: Final = -61.2 - DISC_MM / 2
-# Where the array is put when the encoders are reset: the lower left corner, not turned, so that
-# the third arm points straight at the reader.
+# Where the array is put when the encoders are reset: the lower left corner, not turned. The third
+# arm stands straight up there: from the array it goes straight away from the reader.
 RESET: Final = (0.0, HEIGHT_MM, 0.0)
 _RAD_A_COUNT: Final = 2 * math.pi / COUNTS_A_TURN
 _HALF, _WHOLE = 1 << 31, 1 << 32  # the encoders count modulo 2³²

@@ -1,4 +1,4 @@
-"""The live view of a reading, as ``vbraille read`` keeps it up."""
+"""The live view of a reading, as ``vbraille read`` keeps it up, and of a picture that is felt."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from vbraille.devices.events import Event
     from vbraille.engine.shared import Extent
+    from vbraille.feeling.feeler import Feeler
+    from vbraille.feeling.viewed import FeltView
     from vbraille.live.messages import PagePress, Turn
     from vbraille.reading.opened import OpenDevice
 
@@ -40,7 +42,7 @@ class LiveView:
         self._monitor = Monitor(host=arguments.host, port=arguments.port, pointer=self.pointer)
         self._said = Said()
         self._device: OpenDevice | None = None
-        self._viewed: Viewed | None = None
+        self._viewed: Viewed | FeltView | None = None
 
     def say(self, sentence: str) -> None:
         """Print a sentence, and show it on the pages."""
@@ -99,3 +101,19 @@ class LiveView:
 
     def __exit__(self, *_: object) -> None:
         self._monitor.close()
+
+
+class FeltLiveView(LiveView):
+    """The live view of a picture that is felt."""
+
+    def feel(self, device: OpenDevice, feeler: Feeler, hand: str) -> None:
+        """Show from now on what is felt on a device, a simulated one with this hand."""
+        from vbraille.feeling.viewed import FeltView
+
+        facts = [] if self.pointer is None else [("hand", hand)]
+        self._viewed = FeltView(device, feeler, self._said, facts)
+        self.tell()
+
+    def attend(self) -> None:
+        """Pass over what pages ask for but to be the hand: nothing can be turned."""
+        self._monitor.take()

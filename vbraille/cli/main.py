@@ -121,8 +121,10 @@ def _call(argv: Sequence[str] | None) -> int:
 
         keep(arguments.log)
     with ExitStack() as begun:
-        if arguments.command == "read":
-            arguments.pointer = _pointer() if arguments.monitor else None
+        if arguments.command in ("read", "feel"):
+            # A hand on a picture may stand still, and waits for somebody.
+            pointed = arguments.monitor or arguments.command == "feel"
+            arguments.pointer = _pointer() if pointed else None
             arguments.begun = _begin_host(arguments.file, arguments.pointer)
             if arguments.begun is not None:
                 begun.callback(arguments.begun[0].end)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from vbraille.cli.options import forecast, lab, live, reading
+from vbraille.cli.options import feeling, forecast, lab, live, pictures, reading, scenes
 from vbraille.errors import InputError
 from vbraille.version import __version__
 
@@ -22,6 +22,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Read a text on a device, line after line.",
         reading.read,
         "vbraille read book.txt --device serial:/dev/ttyACM0",
+    ),
+    "feel": (
+        "Feel a tactile picture on a device, or with a simulated hand.",
+        feeling.feel,
+        "vbraille feel house.scene --device latero:192.168.1.10",
     ),
     "books": (
         "List the books that were read, and where reading goes on.",
@@ -58,6 +63,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         reading.render,
         "vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
     ),
+    "profile": (
+        "Say what a frame of a tactile picture costs, place by place.",
+        feeling.profile,
+        "vbraille profile house.scene --path wide --out cost.csv",
+    ),
     "monitor": (
         "Play back a recording or a session in a browser, until Ctrl-C.",
         live.monitor,
@@ -67,6 +77,11 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         "Draw a picture of what the display does, or print its numbers.",
         reading.plot,
         "vbraille plot page book.txt --lines 1-4 --at 120 --out page.png",
+    ),
+    "map": (
+        "Draw a tactile picture: its deflections, what it is made of, or raised lines for paper.",
+        pictures.scene_map,
+        "vbraille map texts/scenes/gallery/layers.scene --array 22,16 --out layers.png",
     ),
     "simulate": (
         "Be a device, at a port that a program can read on, until Ctrl-C.",
@@ -98,10 +113,33 @@ COMMANDS: dict[str, tuple[str, Options, str]] = {
         forecast.predict,
         "vbraille predict grid.toml --out predicted --workers 2",
     ),
+    "scene": (
+        "Look through tactile pictures, and convert those of others.",
+        lambda parser: _add(parser, "action", "ACTION", SCENE_ACTIONS),
+        "vbraille scene check texts/scenes/house.scene",
+    ),
     "tables": (
         "List the braille tables that there are, and which a language takes.",
         reading.tables,
         "vbraille tables --language fr",
+    ),
+}
+SCENE_ACTIONS: dict[str, tuple[str, Options, str]] = {
+    "check": (
+        "Say what a tactile picture holds, what is ignored of its file, what will vibrate against "
+        "what, and what is hard to feel.",
+        scenes.check,
+        "vbraille scene check texts/scenes/house.scene",
+    ),
+    "convert": (
+        "Make a scene file of a file of OpenLatero's or a drawing, and say what differs.",
+        scenes.convert,
+        "vbraille scene convert umbrella.gen --out umbrella.scene",
+    ),
+    "schema": (
+        "Print the form of scene files as a JSON Schema, for editors that complete and check.",
+        reading.nothing,
+        "vbraille scene schema > scene.schema.json",
     ),
 }
 DEVICE_ACTIONS: dict[str, tuple[str, Options, str]] = {
@@ -192,7 +230,7 @@ class _Parser(argparse.ArgumentParser):
 
     def format_help(self) -> str:
         """Help as argparse has it, followed for reading by help on the keys."""
-        return super().format_help() + (_keys() if self.prog == "vbraille read" else "")
+        return super().format_help() + _keys(self.prog)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} ({self.prog} --help says what there is)")
@@ -255,10 +293,14 @@ def _add_log(command: argparse.ArgumentParser) -> None:
     )
 
 
-def _keys() -> str:
-    """Lines on what the keys do at a terminal, one for each key."""
-    from vbraille.reading.commands.table import COMMANDS as KEYS
-
+def _keys(program: str) -> str:
+    """Lines on what the keys of a command do at a terminal, one for each key; none without keys."""
+    if program == "vbraille read":
+        from vbraille.reading.commands.table import COMMANDS as KEYS
+    elif program == "vbraille feel":
+        from vbraille.feeling.commands import COMMANDS as KEYS
+    else:
+        return ""
     width = max(len(command.spoken_keys) for command in KEYS)
     lines = [f"  {command.spoken_keys:{width}}  {command.help}\n" for command in KEYS]
     return "\nkeys at a terminal:\n" + "".join(lines)

@@ -33,7 +33,9 @@ TRAVEL_TOLERANCE_MM = 0.01
 _log = logging.getLogger(__name__)
 
 
-def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Device:
+def open_device(
+    spec: str, wanted: Display | None, *, fits: bool = True, often: bool = True
+) -> Device:
     """Open the device of a spec.
 
     Parameters
@@ -43,8 +45,9 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
     wanted
         Actuators and travel that the page was laid out for; None if any will do.
     fits
-        Whether the device must have those actuators; otherwise they are a wish, and only the
-        rate is required.
+        Whether the device must have those actuators; otherwise they are a wish.
+    often
+        Whether the device must take so many frames a second; otherwise that is a wish, too.
 
     Raises
     ------
@@ -61,7 +64,8 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
             try:
                 if fits:
                     check_actuators(device.display, wanted)
-                _check_fast_enough(device.display, wanted.rate_hz)
+                if often:
+                    _check_fast_enough(device.display, wanted.rate_hz)
             except InputError:
                 device.close()
                 raise
@@ -70,7 +74,9 @@ def open_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Devi
 
 
 @contextmanager
-def opened_device(spec: str, wanted: Display | None, *, fits: bool = True) -> Iterator[Device]:
+def opened_device(
+    spec: str, wanted: Display | None, *, fits: bool = True, often: bool = True
+) -> Iterator[Device]:
     """Open the device of a spec; on leaving, close it.
 
     An exception of somebody else's driver in between names the driver, its file and its line.
@@ -81,7 +87,7 @@ def opened_device(spec: str, wanted: Display | None, *, fits: bool = True) -> It
         In the cases of `open_device`; `DeviceError` also for any exception of somebody else's
         driver.
     """
-    with naming(_driver(spec)), open_device(spec, wanted, fits=fits) as device:
+    with naming(_driver(spec)), open_device(spec, wanted, fits=fits, often=often) as device:
         yield device
 
 

@@ -94,8 +94,14 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
         return "place: move the carriage over its mark"
     if not display.height_mm:
         return f"place: move left to the stop, then {press}"
-    corner = "near" if display.shown_near else "far"
-    return f"place: move to the {corner} left corner, with the array straight, then {press}"
+    return f"place: move to {shown_place(display)}, with the array straight, then {press}"
+
+
+def shown_place(display: Display) -> str:
+    """Tell where a carriage is to be shown its place: the left stop, or a corner."""
+    if not display.height_mm:
+        return "the left stop"
+    return f"the {'near' if display.shown_near else 'far'} left corner"
 
 
 @singledispatch

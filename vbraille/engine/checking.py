@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.base import Placing
-from vbraille.devices.saying import told
+from vbraille.devices.saying import shown_place, told
 from vbraille.devices.wire.messages import RAMP_MS, WATCHDOG_MS
 from vbraille.engine.checkup import (
     NS_PER_S,
@@ -146,26 +146,25 @@ class _Check:
         return [f"its clock goes {rate.clock_s:.2f} times as fast as it should; see to its time_us"]
 
     def _place(self, rate: Rate) -> list[str]:
+        info = self._device.display
         if self._shown:
-            self._say(
-                "place: not tested, since its encoder must be shown the left stop by the reader"
-            )
+            self._say(f"place: not tested, since its reader must show it {shown_place(info)}")
             return []
         if math.isnan(rate.x_mm[0]):
             self._say("place: none was told")
             return []
-        info = self._device.display
+        edge = "left edge" if info.height_mm else "left stop"
         low_mm, high_mm = (round(x_mm + info.span_mm / 2, 1) + 0.0 for x_mm in rate.x_mm)
         self._say(
-            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the left stop, of "
+            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of "
             f"{info.travel_mm:g} mm; {_PLACE_SLACK_MM:g} mm beyond either end are allowed"
         )
         if low_mm >= -_PLACE_SLACK_MM and high_mm <= info.travel_mm + _PLACE_SLACK_MM:
             return []
         off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
         return [
-            f"its carriage is at {off_mm:.1f} mm from the left stop, where it cannot be; see to "
-            f"the left stop, the counts and their sign in its INFO"
+            f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
+            f"{shown_place(info)}, the counts and their sign in its INFO"
         ]
 
     def _round_trips(self) -> list[str]:

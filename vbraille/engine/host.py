@@ -60,6 +60,9 @@ class Host:
     room
         Bytes of the largest picture; None if pictures are made for the device that is found:
         `open` it, then tell `fit`, then `start`.
+    often
+        Whether the device must take frames at that rate; otherwise the loop goes at the device's
+        own rate where that is lower.
     pass_fds
         Descriptors that the process inherits, for its device: the spec names them.
     spawned
@@ -87,6 +90,7 @@ class Host:
         wanted: Display,
         room: int | None = None,
         *,
+        often: bool = True,
         pass_fds: Sequence[int] = (),
         spawned: Spawned | None = None,
     ) -> None:
@@ -98,6 +102,7 @@ class Host:
         self._device = device
         self._wanted = wanted
         self._room = room
+        self._often = often
         self._pass_fds = tuple(pass_fds)
         self._spawned = spawned
         self._info: Display | None = None
@@ -177,6 +182,7 @@ class Host:
             device=self._device,
             wanted=asdict(self._wanted),
             fits=self._room is not None,
+            often=self._often,
             log=kept(),
             settings=str(settings_path().absolute()),
         )

@@ -124,6 +124,7 @@ class Hosted:
         self._ended = False
         self._zeroed = 0
         self._taken = 0
+        mailbox.keep_room()
 
     def end(self, _signal: int, _frame: FrameType | None) -> None:
         """Handle a signal: the loop ends after this tick."""
@@ -140,7 +141,7 @@ class Hosted:
         # Looked at before the mailbox: what comes meanwhile ends the ticks that follow.
         mailbox.obeyed[:] = mailbox.orders
         if mailbox.published != self._taken:
-            posted = mailbox.take()
+            posted = mailbox.take_piece()
             if posted is None:
                 mailbox.obeyed[:] = -1  # look at it again, a tick later
             else:
@@ -243,18 +244,20 @@ def run(orders: RawIOBase, descriptor: int, parent: int, channel: Channel) -> No
         keep(config["log"])
     wanted = Display(**config["wanted"])
     _log.info("compiled, or loaded what was, in %.0f ms", compiled_ms)
-    with opened_device(config["device"], wanted, fits=config["fits"]) as device:
+    how = {name: config[name] for name in ("fits", "often")}
+    with opened_device(config["device"], wanted, **how) as device:
+        rate_hz = min(wanted.rate_hz, device.display.rate_hz)
         corrected = correct_by_kept(Path(config["settings"]), device)
         channel.say(opened=asdict(device.display), calibration=corrected and corrected.to_json())
-        told = wait_for_line(orders, device, wanted.rate_hz)
+        told = wait_for_line(orders, device, rate_hz)
         if not told:
             return  # the parent has gone, or given up
         extent = shared.Extent(**json.loads(told))
         mailbox, ring = shared.divide(shared.attach(descriptor, extent), extent)
         os.close(descriptor)
         refused = go_real_time()
-        rehearse(device, wanted.rate_hz)
-        loop = Loop(device, RealClock(), rate_hz=wanted.rate_hz, ring=ring)
+        rehearse(device, rate_hz)
+        loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring)
         hosted = Hosted(loop, mailbox, parent)
         signal.signal(signal.SIGTERM, hosted.end)
         channel.say(ready=True, event=refused and to_json(refused))

@@ -2,13 +2,14 @@
 
 One side posts, the other looks each tick; neither waits for the other. Programs
 go into two slots in turn, each with a checksum: one that is in the writing, or
-seen in the wrong order, is left for the next tick.
+seen in the wrong order, is left for the next tick. A picture may take some MB, of
+which a tick has time for a part only: so the loop takes it piece by piece.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
-from zlib import crc32
 
 import numpy as np
 
@@ -22,6 +23,13 @@ _HEADER_BYTES = 64
 # The words of 8 bytes that a slot begins with; the program's numbers and its table follow.
 _CHECKSUM, _NUMBER, _LINE, _NUMBERS, _WORDS = range(5)
 _SLOT_WORDS = 5
+# A piece of 256 kB is copied and summed up in some 50 µs.
+_PIECE_WORDS = 1 << 15
+_MODULUS = 1 << 64
+# Odd factors, so that the sum of a piece tells of any word that changed, and of words that changed
+# places; and a factor by which a sum goes into that of the next piece.
+_FACTORS = np.arange(1, 2 * _PIECE_WORDS, 2, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+_NEXT = 0xD1342543DE82EF95
 
 
 class Posted(NamedTuple):
@@ -40,6 +48,17 @@ class Posted(NamedTuple):
     number: int
     line: int
     program: Program
+
+
+@dataclass(slots=True)
+class _Taking:
+    """A picture of which some pieces were taken."""
+
+    number: int
+    into: NDArray[np.uint64]
+    words: int
+    taken: int
+    checksum: int = field(default=0)
 
 
 class Mailbox:
@@ -61,8 +80,10 @@ class Mailbox:
         self.obeyed = np.zeros(self.orders.size, np.int64)
         slot_bytes = _slot_bytes(room)
         starts = (_HEADER_BYTES, _HEADER_BYTES + slot_bytes)
-        self._slots = [np.frombuffer(buffer, np.uint8, slot_bytes, start) for start in starts]
+        self._slots = [np.frombuffer(buffer, np.uint64, slot_bytes // 8, at) for at in starts]
         self._room = slot_bytes - _SLOT_WORDS * 8
+        self._own: list[NDArray[np.uint64]] = []
+        self._taking: _Taking | None = None
 
     @staticmethod
     def bytes_needed(room: int) -> int:
@@ -88,26 +109,90 @@ class Mailbox:
             )
         number = self.published + 1
         slot = self._slots[number % 2]
-        words = slot[: _SLOT_WORDS * 8].view(np.int64)
+        words = slot[:_SLOT_WORDS].view(np.int64)
         words[_NUMBER], words[_LINE] = number, line
         words[_NUMBERS], words[_WORDS] = program.numbers.size, program.table.size
+        size = _words_of(program.numbers.size, program.table.size)
+        slot[size - 1] = 0  # the table may fill a part of the last word only
         numbers, table = _parts(slot, program.numbers.size, program.table.size)
         numbers[:], table[:] = program.numbers, program.table
-        words[_CHECKSUM] = _checksum(slot, program.nbytes)
+        slot[_CHECKSUM] = _checksum(slot[1:size])
         self._words[_PUBLISHED] = number
 
     def take(self) -> Posted | None:
-        """Copy the last picture posted; None if it is not whole, in which case try again later."""
+        """Copy the last picture posted; None if it is not whole, in which case try again later.
+
+        The picture has memory of its own. This takes as long as the picture is large.
+        """
         number = self.published
-        slot = self._slots[number % 2].copy()
-        words = slot[: _SLOT_WORDS * 8].view(np.int64)
+        slot = self._slots[number % 2]
+        size = self._size_of(slot, number)
+        if size is None:
+            return None
+        own = slot[:size].copy()
+        return self._whole(own, _checksum(own[1:])) if own[_NUMBER] == number else None
+
+    def keep_room(self) -> None:
+        """Have the memory that `take_piece` needs at hand, and that of the slots, too."""
+        if not self._own:
+            # Memory that is looked at for the first time costs a tick more than what is copied.
+            self._own = [slot.copy() for slot in self._slots]
+
+    def take_piece(self) -> Posted | None:
+        """Copy a piece of the last picture posted; the picture, if that was the last piece.
+
+        However large the picture is, this takes the time of one piece: call it tick after tick.
+        The picture stays whole until the picture after the next is taken.
+
+        Returns
+        -------
+        Posted or None
+            None if more is to come, or the picture is not whole: then try again later.
+        """
+        self.keep_room()
+        taking, published = self._taking, self.published
+        # While a slot is read, only the picture after the next one is written into it.
+        if taking is None or published > taking.number + 1:
+            slot = self._slots[published % 2]
+            size = self._size_of(slot, published)
+            if size is None:
+                return None
+            self._taking = taking = _Taking(published, self._own[0], size, 0)
+        slot = self._slots[taking.number % 2]
+        end = min(taking.taken + _PIECE_WORDS, taking.words)
+        piece = taking.into[taking.taken : end]
+        piece[:] = slot[taking.taken : end]
+        summed = piece if taking.taken else piece[1:]
+        taking.checksum = _added(taking.checksum, summed)
+        taking.taken = end
+        if end < taking.words:
+            return None
+        self._taking = None
+        if taking.into[_NUMBER] != taking.number:
+            return None
+        posted = self._whole(taking.into[: taking.words], taking.checksum)
+        if posted is not None:
+            self._own.reverse()  # what is shown stays as it is while the next one is taken
+        return posted
+
+    def _size_of(self, slot: NDArray[np.uint64], number: int) -> int | None:
+        """Number of words that a slot has in use; None if it does not hold that picture."""
+        words = slot[:_SLOT_WORDS].view(np.int64)
         numbers, table = int(words[_NUMBERS]), int(words[_WORDS])
-        size = numbers * 8 + table * 2
-        if words[_NUMBER] != number or numbers < 0 or table < 0 or size > self._room:
+        if words[_NUMBER] != number or numbers < 0 or table < 0:
             return None
-        if words[_CHECKSUM] != _checksum(slot, size):
+        return _words_of(numbers, table) if numbers * 8 + table * 2 <= self._room else None
+
+    def _whole(self, own: NDArray[np.uint64], checksum: int) -> Posted | None:
+        """Picture that was copied, if it is what its checksum says."""
+        if int(own[_CHECKSUM]) != checksum:
             return None
-        return Posted(number, int(words[_LINE]), Program(*_parts(slot, numbers, table)))
+        words = own[:_SLOT_WORDS].view(np.int64)
+        numbers, table = int(words[_NUMBERS]), int(words[_WORDS])
+        if _words_of(numbers, table) != own.size:
+            return None
+        program = Program(*_parts(own, numbers, table))
+        return Posted(int(words[_NUMBER]), int(words[_LINE]), program)
 
     @property
     def paused(self) -> bool:
@@ -141,15 +226,30 @@ def _slot_bytes(room: int) -> int:
     return _SLOT_WORDS * 8 + -(-room // 8) * 8
 
 
+def _words_of(numbers: int, table: int) -> int:
+    """Words of a slot that a program takes with what stands before it."""
+    return _SLOT_WORDS + numbers + -(-table // 4)
+
+
 def _parts(
-    slot: NDArray[np.uint8], numbers: int, table: int
+    slot: NDArray[np.uint64], numbers: int, table: int
 ) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
     """Views of a slot that hold the numbers and the table of its program."""
-    start = _SLOT_WORDS * 8
-    middle = start + numbers * 8
-    return slot[start:middle].view(np.float64), slot[middle : middle + table * 2].view(np.uint16)
+    middle = _SLOT_WORDS + numbers
+    end = middle + -(-table // 4)
+    return slot[_SLOT_WORDS:middle].view(np.float64), slot[middle:end].view(np.uint16)[:table]
 
 
-def _checksum(slot: NDArray[np.uint8], size: int) -> int:
-    """Checksum of all that a slot holds but the checksum; the program has so many bytes."""
-    return crc32(slot[8 : _SLOT_WORDS * 8 + size].data)
+def _checksum(words: NDArray[np.uint64]) -> int:
+    """Checksum of all that a slot has in use but the checksum."""
+    checksum, start = 0, _PIECE_WORDS - 1  # pieces begin where those of the whole slot do
+    checksum = _added(checksum, words[:start])
+    while start < words.size:
+        checksum = _added(checksum, words[start : start + _PIECE_WORDS])
+        start += _PIECE_WORDS
+    return checksum
+
+
+def _added(checksum: int, piece: NDArray[np.uint64]) -> int:
+    """Checksum of words and one piece more."""
+    return (checksum * _NEXT + int(np.dot(piece, _FACTORS[: piece.size]))) % _MODULUS

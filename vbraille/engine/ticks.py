@@ -42,7 +42,7 @@ from vbraille.engine.record import (
     Y,
 )
 from vbraille.render import work
-from vbraille.render.kernels import blend, frame, part_of, seamless, too_far
+from vbraille.render.kernels import blend, frame, part_of, patience, seamless, too_far
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
@@ -159,8 +159,11 @@ def _wanted(state, now_ns, taking, numbers):
         return 0
     if now["turned"]:
         return 0
-    # A picture that moves by itself is felt without moving the hand.
-    if numbers[work.FREQUENCY] == 0.0 and now_ns - now["moved_ns"] > now["idle_ns"]:
+    # A picture that moves by itself is felt without moving the hand, though not without end.
+    still_ns = now_ns - now["moved_ns"]
+    if numbers[work.FREQUENCY] == 0.0 and still_ns > now["idle_ns"]:
+        return 0
+    if still_ns > patience(numbers) * NS_PER_S:
         return 0
     return now["serial"]
 

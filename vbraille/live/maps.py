@@ -29,6 +29,7 @@ _BLACK = {8: 255, 16: 65_535}
 # A single row of actuators is drawn so high, as a share of the distance between lines.
 _SINGLE_ROW = 0.4
 _BAR_MM = 10.0
+_MAPLESS = "a {} has no map of lines; vbraille map draws tactile pictures"
 _NOTE = "White is rest, black is full deflection."
 
 
@@ -93,7 +94,7 @@ def line_map(
         If the places are no stretch of the canvas, are too many, or the picture is no braille.
     """
     if program.kind not in (ProgramKind.LINE, ProgramKind.PAGE):
-        raise ValueError(f"a {program.kind.name.lower()} has no map: it is alike everywhere")
+        raise ValueError(_MAPLESS.format(program.kind.name.lower()))
     if not (step_mm > 0 and end_mm >= start_mm and np.isfinite([start_mm, end_mm]).all()):
         raise ValueError(
             f"a map from {start_mm:g} to {end_mm:g} mm in steps of {step_mm:g} mm is not possible"
@@ -144,7 +145,7 @@ def picture(program: Program, form: str, title: str, note: str = "") -> bytes:
     if form not in ("png", "svg"):
         raise ValueError(f"a map is a png or an svg, not {form!r}")
     if program.kind not in (ProgramKind.LINE, ProgramKind.PAGE):
-        raise ValueError(f"a {program.kind.name.lower()} has no map: it is alike everywhere")
+        raise ValueError(_MAPLESS.format(program.kind.name.lower()))
     cell_mm = float(program.numbers[work.CELL_PITCH]) or _BAR_MM  # no braille, no cells
     cells = max(int(program.numbers[work.SLOTS]) // 2 - 2, 0)
     shape = shape_of(program, -cell_mm)

@@ -228,6 +228,27 @@ class KnobShown(msgspec.Struct, frozen=True):
     fixed: str = ""
 
 
+class SceneShown(msgspec.Struct, frozen=True):
+    """A tactile picture that is felt, as a page draws it behind the array.
+
+    Parameters
+    ----------
+    title, description
+        What the picture shows.
+    width_mm, height_mm
+        Size of the canvas, whose upper left corner is the origin.
+    image
+        Address of its deflection map, as a rule with the PNG in it (``data:``); white is rest, and
+        black is full deflection. Empty where there is none.
+    """
+
+    title: str
+    description: str
+    width_mm: float
+    height_mm: float
+    image: str = ""
+
+
 class PlayedEvent(msgspec.Struct, frozen=True):
     """Something that happened at a time of a recording.
 
@@ -313,6 +334,8 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
         Whether stimuli are hidden, since somebody is to answer about them.
     done
         Whether reading is over.
+    scene
+        Tactile picture that is felt; None where lines are read, and in a blind session.
     """
 
     number: int
@@ -333,6 +356,7 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     facts: list[tuple[str, str]] = []
     blind: bool = False
     done: bool = False
+    scene: SceneShown | None = None
 
 
 class Refused(msgspec.Struct, frozen=True, tag_field="tell", tag="refused"):

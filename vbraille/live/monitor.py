@@ -227,4 +227,7 @@ def _fewer(state: ViewState) -> Iterator[ViewState]:
     yield state
     under = [line for line in state.lines if line.under]
     yield msgspec.structs.replace(state, lines=under)
+    if state.scene is not None:
+        pale = msgspec.structs.replace(state.scene, image="")
+        yield msgspec.structs.replace(state, lines=under, scene=pale)
     yield ViewState(state.number, place=state.place, device=_TOO_LARGE, blind=state.blind)

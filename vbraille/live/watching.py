@@ -86,7 +86,7 @@ class Watching:
         """Have pages be told another state, without the stimuli if those are hidden."""
         self.blind = self.blind or state.blind
         if self.blind:
-            state = msgspec.structs.replace(state, lines=[], rows_shown=[], blind=True)
+            state = msgspec.structs.replace(state, lines=[], rows_shown=[], scene=None, blind=True)
         self._title = state.title
         self.told = state.number, msgspec.json.encode(state)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from bisect import bisect_right
 from dataclasses import replace
@@ -13,12 +14,12 @@ import numpy as np
 from vbraille.braille.geometry import Geometry
 from vbraille.display import Display
 from vbraille.errors import InputError
-from vbraille.live.messages import PlayedEvent, ViewState
+from vbraille.live.messages import PlayedEvent, SceneShown, ViewState
 from vbraille.live.states import array_shown, geometry_shown, rows_shown
 from vbraille.playback.changes import changes
 from vbraille.playback.reels import PLAYED, Piece
 from vbraille.playback.shown import line_shown
-from vbraille.recording import anchor_mm
+from vbraille.recording import anchor_mm, scene_of
 from vbraille.render import MAPPINGS, MODELS, STRESS2, Tuning, single_row
 
 if TYPE_CHECKING:
@@ -119,11 +120,12 @@ class Rendered:
             array=array_shown(self._display),
             geometry={} if style is None else geometry_shown(style.geometry),
             rows_shown=[] if style is None else rows_shown(style, self._display),
-            lines=self._lines(scene - 1) if scene else [],
-            place=self._name(scene - 1) if scene else "",
-            mapping=f"mapping: {self._told('mapping', 'not known')}",
+            lines=self._lines(scene - 1) if scene and self._picture is None else [],
+            place=self._name(scene - 1) if scene and self._picture is None else "",
+            mapping="" if self._picture else f"mapping: {self._told('mapping', 'not known')}",
             device="recording",
             facts=self._facts,
+            scene=self._picture,
         )
 
     def program(self, scene: int) -> tuple[Program, str] | None:
@@ -154,10 +156,13 @@ class Rendered:
         self._count, self._pieces = count, -(-count // _PIECE_FRAMES)
         self._rate_hz = float(self._told("rate_hz", "nan"))
         self._style, self._display = self._describe(*offsets_mm)
+        self._picture = self._find_picture()
         self._right_mm = 0.0 if "y_mm" in found else self._display.span_mm / 2
         self._first_line = max(int(self._told("first_line", "1")), 0)
         self._lengths = found["page/length"][:].astype(np.int64)
         self._title = self._told("source", self._path.name)
+        if self._picture is not None:
+            self._title = self._picture.title or self._title
         self._facts = [
             ("model", self._told("model", "not known")),
             ("recorded by", f"vbraille {self._told('vbraille_version', 'not known')}"),
@@ -174,7 +179,7 @@ class Rendered:
         if self._paged and self._style is not None:
             height_mm = self._style.geometry.line_pitch_mm * np.diff(self._page(0)).item()
             self._display = replace(self._display, height_mm=height_mm)
-        self.moments = self._find_moments(starts, lines)
+        self.moments = [] if self._picture else self._find_moments(starts, lines)
 
     def _describe(
         self, columns_mm: NDArray[np.float64], rows_mm: NDArray[np.float64]
@@ -199,6 +204,17 @@ class Rendered:
         style = replace(model.style, mapping=mapping, geometry=geometry, tuning=tuning)
         style.rows_on(display)
         return style, replace(display, name=model.title)
+
+    def _find_picture(self) -> SceneShown | None:
+        """Tactile picture that was recorded; None where lines were. The carriage goes over it."""
+        scene = scene_of(self._file)
+        if scene is None:
+            return None
+        self._display = replace(
+            self._display, travel_mm=scene.width_mm, height_mm=scene.height_mm, turns=True
+        )
+        image = f"data:image/png;base64,{base64.b64encode(scene.map_png).decode()}"
+        return SceneShown(scene.title, scene.description, scene.width_mm, scene.height_mm, image)
 
     def _told(self, name: str, otherwise: str) -> str:
         return str(self._file.attrs.get(name, otherwise))

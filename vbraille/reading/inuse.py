@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.display import Display
+    from vbraille.engine.engine import Engine
     from vbraille.engine.host import Host
     from vbraille.engine.local import LocalEngine
     from vbraille.engine.tally import Tally
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.simulation.pointing import Pointer
+    from vbraille.simulation.steering import Steering
 
 
 class DeviceInUse:
@@ -44,6 +46,16 @@ class DeviceInUse:
     def held(self) -> bool:
         """Whether somebody holds the simulated hand."""
         return self._hand.held
+
+    @property
+    def engine(self) -> Engine:
+        """Engine that drives the device, for whoever shows pictures that are no lines."""
+        return self._engine
+
+    @property
+    def steering(self) -> Steering | None:
+        """Channel of orders to the simulated hand; None if a person moves the device."""
+        return self._hand.steering
 
     @property
     def display(self) -> Display:

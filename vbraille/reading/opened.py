@@ -68,6 +68,9 @@ class OpenDevice(DeviceInUse):
     wanted
         Display and rate that are asked for: a simulated device is made like this, a real device is
         what it is.
+    often
+        Whether a device of a spec must take frames at the rate that is asked for; otherwise it is
+        sent them at its own rate where that is lower.
     hand, seed
         Hand that moves the simulated device, and seed of what is random in it.
     clock
@@ -95,6 +98,7 @@ class OpenDevice(DeviceInUse):
         device: str | Device,
         wanted: Display,
         *,
+        often: bool = True,
         hand: str = HAND,
         seed: int = 1,
         clock: Clock | None = None,
@@ -138,6 +142,7 @@ class OpenDevice(DeviceInUse):
             self._engine = Host(
                 device_spec(device, hand, seed, self._hand.steering, self._hand.pointer),
                 wanted,
+                often=often,
                 pass_fds=self._hand.descriptors,
                 spawned=spawned,
             )
@@ -157,8 +162,15 @@ class OpenDevice(DeviceInUse):
             return self._wanted
         return self._engine.open() if isinstance(self._engine, Host) else self._engine.display
 
-    def start(self, model: Model) -> None:
+    def start(self, model: Model, room: int | None = None) -> None:
         """Drive the device, for lines that are shown in the style of a model.
+
+        Parameters
+        ----------
+        model
+            Display and style.
+        room
+            Bytes of the largest picture; None for lines of the style.
 
         Raises
         ------
@@ -167,9 +179,10 @@ class OpenDevice(DeviceInUse):
         """
         self._model = model
         if isinstance(self._engine, Host):
-            # Cells may come closer while somebody reads.
-            lines = MOST_LINES if model.display.height_mm else 1
-            self._engine.fit(model.display, model.style.room(model.display, MOST_CELLS, lines))
+            if room is None:  # cells may come closer while somebody reads
+                lines = MOST_LINES if model.display.height_mm else 1
+                room = model.style.room(model.display, MOST_CELLS, lines)
+            self._engine.fit(model.display, room)
         self._engine.start()
 
     def start_again(self) -> None:
@@ -177,7 +190,8 @@ class OpenDevice(DeviceInUse):
         self.placing = Placing.DONE
         self._closed = False
         self._engine.start()
-        self.reader.under.steer()
+        if self._reader is not None:
+            self._reader.under.steer()
 
     def show(
         self,

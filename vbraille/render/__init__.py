@@ -8,6 +8,7 @@ from vbraille.render.braille.mappings import MAPPINGS, Mapping, single_row
 from vbraille.render.braille.models import (
     LATERO,
     MODELS,
+    PANTOGRAPH,
     STRESS2,
     STRESS2_8X8,
     VBD,
@@ -23,6 +24,7 @@ __all__ = [
     "LATERO",
     "MAPPINGS",
     "MODELS",
+    "PANTOGRAPH",
     "STRESS2",
     "STRESS2_8X8",
     "VBD",

@@ -186,7 +186,7 @@ class Program:
         x_mm, y_mm, theta_rad : float64[n]
             Places of the array's centre, and angles by which the array is turned.
         time_s : float64[n]
-            The picture's own time at each, in seconds since its start.
+            Times of a picture that moves by itself, in seconds since its start.
 
         Returns
         -------

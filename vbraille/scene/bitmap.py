@@ -31,7 +31,7 @@ class Bitmap:
     width_mm, height_mm
         Size of the rectangle.
     outside
-        Intensity beyond it, from 0 to 1.
+        Intensity beyond it, from 0 to 1, in steps as fine as those of the others.
     """
 
     intensities: NDArray[np.uint16]

@@ -7,23 +7,25 @@ more, whose readers few people test.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.errors import InputError
 from vbraille.scene.bitmap import WHOLE
+from vbraille.scene.filebytes import read_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
     from PIL import Image as Pillow
 
+_MOST_FILE_BYTES = 100 << 20
 # What Pillow may take a file for, whatever its name ends with.
 KINDS = ("PNG", "GIF", "BMP", "JPEG")
-MOST_FILE_BYTES = 100 << 20
 # More than the largest cameras have; a picture of four channels takes 240 MB then, for a moment.
 MOST_PIXELS = 60_000_000
 # Each scan of a progressive JPEG goes over all of it again; programs write about ten.
@@ -31,39 +33,12 @@ _MOST_SCANS = 100
 _SCAN = b"\xff\xda"
 
 Channel = Literal["gray", "alpha"]
+# From an image's columns and rows, and from the size in mm that it gives itself if it does, to how
+# many columns and rows are wanted.
+ShapeOf = Callable[[int, int, "tuple[float, float] | None"], "tuple[int, int]"]
 
 
-def read_bytes(path: Path, most: int = MOST_FILE_BYTES) -> bytes:
-    """Content of a file that somebody drew.
-
-    Raises
-    ------
-    InputError
-        If it is not there, no file, empty, larger than ``most`` bytes, or cannot be read.
-    """
-    try:
-        if path.is_dir():
-            raise InputError(f"{path} is a directory; give the name of a file in it")
-        if not path.exists():
-            raise InputError(f"{path} does not exist; check its name")
-        if not path.is_file():
-            raise InputError(f"{path} is no ordinary file; give one that is")
-        with path.open("rb") as file:
-            content = file.read(most + 1)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except ValueError:  # a name with a null character
-        raise InputError(f"{str(path)!r} is no name of a file; mend it") from None
-    if len(content) > most:
-        raise InputError(f"{path} is larger than {most >> 20} MB; make it smaller")
-    if not content:
-        raise InputError(f"{path} is empty; give another file")
-    return content
-
-
-def intensities_of(
-    path: Path, channel: Channel, shape_of: Callable[[int, int], tuple[int, int]]
-) -> NDArray[np.uint16]:
+def intensities_of(path: Path, channel: Channel, shape_of: ShapeOf) -> NDArray[np.uint16]:
     """Intensities of an image file.
 
     A gray is the luminance of its colour (ITU-R 601, from the values as they are in the file), laid
@@ -74,12 +49,13 @@ def intensities_of(
     Parameters
     ----------
     path
-        PNG, GIF, BMP or JPEG file.
+        PNG, GIF, BMP, JPEG or SVG file. Of an SVG file texts and images within it are left out.
     channel
         What counts: "gray", or "alpha", by which what is opaque is up.
     shape_of
-        Function that says from the image's columns and rows, once it is turned, how many columns
-        and rows are wanted; where they are fewer, pixels are averaged.
+        Function that says from the image's columns and rows, once it is turned, and from the size
+        in mm that an SVG has, how many columns and rows are wanted; where they are fewer, pixels
+        are averaged.
 
     Returns
     -------
@@ -94,12 +70,17 @@ def intensities_of(
     """
     from io import BytesIO
 
-    content = BytesIO(read_bytes(path))
+    content = read_bytes(path, _MOST_FILE_BYTES)
+    drawn = _is_svg(content)
+    if drawn:
+        from vbraille.scene.svg.raster import png_of  # loads lxml
+
+        content = png_of(path, shape_of)
     with _refusing(path):
         from PIL import Image, ImageOps
 
         try:
-            image = Image.open(content, formats=KINDS)
+            image = Image.open(BytesIO(content), formats=KINDS)
         except Image.UnidentifiedImageError:
             raise InputError(
                 f"{path} is no PNG, GIF, BMP, JPEG or SVG file; save it as one of these"
@@ -110,11 +91,18 @@ def intensities_of(
                 f"{path} has {columns} × {rows} pixels; make it smaller, "
                 f"at most {MOST_PIXELS // 1_000_000} million"
             )
-        if image.format in ("JPEG", "MPO") and content.getvalue().count(_SCAN) > _MOST_SCANS:
+        if image.format in ("JPEG", "MPO") and content.count(_SCAN) > _MOST_SCANS:
             raise InputError(f"{path} has far too many scans for a JPEG file; save it again")
         image.load()
         image = ImageOps.exif_transpose(image)
-        return _intensities(image, channel, shape_of(*image.size), path)
+        shape = image.size if drawn else shape_of(*image.size, None)
+        return _intensities(image, channel, shape, path)
+
+
+def _is_svg(content: bytes) -> bool:
+    """Whether bytes begin as an SVG does, also a compressed one, of which its reader says more."""
+    begins = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
+    return begins or content[:2] in (b"\xff\xfe", b"\xfe\xff", b"\x1f\x8b")
 
 
 @contextmanager

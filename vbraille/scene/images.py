@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,8 @@ from vbraille.scene.patterns import Image
 from vbraille.scene.walking import each
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -88,15 +91,34 @@ def named(image: Image | ImageDots) -> str:
     return f"element {image.id}" if image.id else f"image {image.file}"
 
 
-def size_mm(image: Image | ImageDots, columns: int, rows: int) -> tuple[float, float]:
-    """Width and height of an image on the canvas, of which one may follow from its pixels.
+@contextmanager
+def naming(image: Image | ImageDots) -> Iterator[None]:
+    """Put the name of an element before what is said of its file."""
+    try:
+        yield
+    except InputError as error:
+        message = str(error)
+        if message.startswith(named(image)):
+            raise
+        raise InputError(f"{named(image)}: {message}") from None
+
+
+def size_mm(
+    image: Image | ImageDots, columns: int, rows: int, own_mm: tuple[float, float] | None = None
+) -> tuple[float, float]:
+    """Width and height of an image on the canvas.
+
+    If one is not given, it follows from the shape of the image's pixels; if neither is, they are
+    those that a drawing has itself.
 
     Raises
     ------
     InputError
-        If neither is given, or the one that follows is below 0.1 mm or above 10 m.
+        If neither is given nor known, or what follows is below 0.1 mm or above 10 m.
     """
     width, height = image.width_mm, image.height_mm
+    if width is None and height is None and own_mm is not None:
+        width, height = own_mm
     if width is None and height is None:
         raise InputError(f"{named(image)} has no size; give width_mm or height_mm")
     if width is None:
@@ -134,9 +156,9 @@ def _laid(image: Image, folder: Path) -> _Laid:
     if image.blur_mm:
         per_mm = min(per_mm, _WIDEST_BLUR / image.blur_mm)
 
-    def shape(columns: int, rows: int) -> tuple[int, int]:
+    def shape(columns: int, rows: int, own: tuple[float, float] | None) -> tuple[int, int]:
         nonlocal size
-        size = size_mm(image, columns, rows)
+        size = size_mm(image, columns, rows, own)
         if image.blur_mm > min(size):
             raise InputError(
                 f"{named(image)} has a blur of {image.blur_mm:g} mm, which is more than its width "
@@ -145,13 +167,8 @@ def _laid(image: Image, folder: Path) -> _Laid:
         most_columns, most_rows = shape_of(*size, per_mm)
         return min(columns, most_columns), min(rows, most_rows)
 
-    try:
+    with naming(image):
         intensities = intensities_of(Path(folder, image.file), image.channel, shape)
-    except InputError as error:
-        message = str(error)
-        if message.startswith(named(image)):
-            raise
-        raise InputError(f"{named(image)}: {message}") from None
     if image.inverted_source:
         intensities = WHOLE - intensities
     laid = _Laid(intensities, *size)

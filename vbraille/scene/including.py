@@ -1,16 +1,17 @@
-"""Scene files in TOML, together with those that they include."""
+"""Scene files together with those that they include."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label
-from vbraille.scene.resolving import said
+from vbraille.scene.opened import Origins
+from vbraille.scene.origins import ForeignOrigin, TomlOrigin
+from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.walking import with_children
@@ -18,31 +19,38 @@ from vbraille.toml.textfile import read_text
 from vbraille.toml.tomlfile import TomlFile
 
 if TYPE_CHECKING:
+    from vbraille.scene.opened import FoundScene, SceneOrigin
     from vbraille.scene.walking import Steps
 
-# A scene of 100,000 shapes; larger ones would take longer to read than anybody waits.
+# Scenes of 50,000 shapes; larger files would take longer to read than anybody waits.
 MOST_BYTES = 8_000_000
 MOST_FILES = 100
+UNSAID_LANGUAGE = "en"
+_SUFFIXES = {".svg": "svg", ".svgz": "svg", ".gen": "gen", ".tx": "gen"}
+_HEAD_BYTES = 4096
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Gathered:
-    """Elements and textures of a file and of those that it includes, and where each is written.
+    """What a file holds together with what it includes.
 
     Parameters
     ----------
     form
         What the file itself says.
     elements, textures
-        What it holds together with what it includes.
+        Its elements and named textures, and those that it includes.
     origins
-        Files, and places in them, of elements and textures by their places in the scene.
+        Where each of them is written.
+    warnings
+        What was ignored, or means something else here.
     """
 
     form: SceneFile
     elements: list[AnyPattern] = field(default_factory=list)
     textures: dict[str, AnyPattern] = field(default_factory=dict)
-    origins: dict[Steps, tuple[TomlFile, Steps]] = field(default_factory=dict)
+    origins: Origins = field(default_factory=Origins)
+    warnings: list[str] = field(default_factory=list)
 
     def scene(self, path: Path) -> Scene:
         """Scene of the file and what it includes.
@@ -62,33 +70,41 @@ class Gathered:
             canvas=form.canvas,
             title=form.title,
             description=form.description,
-            language=form.language or "en",
+            language=form.language or UNSAID_LANGUAGE,
             operation=form.operation,
             elements=tuple(self.elements),
             textures=self.textures,
         )
 
-    def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the scene for a problem at a place in it, with the file and the line.
+    def add(
+        self,
+        elements: tuple[AnyPattern, ...] | list[AnyPattern],
+        textures: dict[str, AnyPattern],
+        origins: Origins,
+        operation: Operation,
+    ) -> None:
+        """Add elements and textures after those that are there.
 
-        Raises
-        ------
-        InputError
-            In any case.
+        Elements that are put together in another way than this file's become one group.
         """
-        for depth in range(len(steps), 0, -1):
-            if steps[:depth] in self.origins:
-                file, there = self.origins[steps[:depth]]
-                file.fail((*there, *steps[depth:]), problem)
-        raise InputError(f"{said(steps)} {problem}")
-
-    def places(self) -> tuple[str, ...]:
-        """Files and lines of the elements."""
-        return tuple(self._place(("elements", number)) for number in range(len(self.elements)))
-
-    def _place(self, steps: Steps) -> str:
-        file, there = self.origins.get(steps) or self.origins[(*steps, "parts", 0)]
-        return f"{file.where} line {file.lines()[there]}"
+        for name, texture in textures.items():
+            origin, there = origins.places["textures", name]
+            if name in self.textures:
+                first = self.origins.place(("textures", name))
+                origin.fail(there, f"is called {name}, as is {first}; give it another name")
+            self.textures[name] = texture
+            self.origins.places["textures", name] = (origin, there)
+        start = len(self.elements)
+        apart = bool(elements) and operation != self.form.operation
+        for steps, origin in origins.places.items():
+            if steps[0] == "elements":
+                number = int(steps[1])
+                above = (start, "parts", number) if apart else (start + number,)
+                self.origins.places["elements", *above, *steps[2:]] = origin
+        if apart:
+            self.elements.append(Group(operation=operation, parts=tuple(elements)))
+        else:
+            self.elements.extend(elements)
 
 
 def gather(path: Path) -> Gathered:
@@ -109,27 +125,23 @@ class _Gathering:
     def __init__(self) -> None:
         self._read: set[Path] = set()
 
-    def gather(self, path: Path, name: Path, way: tuple[Path, ...]) -> Gathered:
-        """Read a file, which others call ``name``, on a way of files that include each other."""
-        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name))
+    def gather(self, name: Path, real: Path, way: tuple[Path, ...]) -> Gathered:
+        """Read a file, at the end of a way of files of which each includes the next."""
+        self._read.add(real)
+        form = form_of(name)
+        if form != "toml":
+            return _foreign(name, form)
+        file = TomlFile(read_text(name, "scene", MOST_BYTES), str(name), several_lines=True)
         textures = {
             key: file.read(AnyPattern, under=("textures", key))  # pyright: ignore[reportArgumentType]
             for key in file.names("textures")
         }
-        form = file.read(SceneFile)
-        gathered = Gathered(form)
-        self._read.add(path.resolve())
-        for number, included in enumerate(form.include):
-            self._include(gathered, file, number, included, name, (*way, path.resolve()))
-        for key, texture in textures.items():
-            if key in gathered.textures:
-                there = gathered.origins["textures", key][0]
-                file.fail(("textures", key), f"is in {there.where} too; give it another name")
-            gathered.origins["textures", key] = (file, ("textures", key))
-            gathered.textures[key] = texture
-        for number, element in enumerate(form.elements):
-            gathered.origins["elements", len(gathered.elements)] = (file, ("elements", number))
-            gathered.elements.append(element)
+        gathered = Gathered(file.read(SceneFile))
+        for number, included in enumerate(gathered.form.include):
+            self._include(gathered, file, number, included, name, (*way, real))
+        elements = gathered.form.elements
+        origins = _all_from(TomlOrigin(file), elements, textures)
+        gathered.add(elements, textures, origins, gathered.form.operation)
         return gathered
 
     def _include(
@@ -144,54 +156,90 @@ class _Gathering:
         """Add what an included file holds."""
         steps = ("include", number)
         if "://" in included or not included.strip():
-            file.fail(steps, f"is {included!r}; give the name of a file, nothing is fetched")
+            file.fail(steps, f"is {included!r}; give the name of a file, since nothing is fetched")
         path = name.parent / included
         try:
             real = path.resolve()
+            there = path.is_file()
         except (OSError, ValueError, RuntimeError):
-            file.fail(steps, f"is {included!r}, which is no name of a file; mend it")
+            there, real = False, path
+        if not there:
+            file.fail(steps, f"is {included!r}, which is no file; check the name")
         if real in way:
-            file.fail(steps, f"is {included}, which includes this file itself; leave it out")
-        if real in self._read:  # two banks may include a third
+            file.fail(steps, f"is {included!r}, which includes this file itself; leave it out")
+        if real in self._read:  # two scenes may include a third
             return
         if len(self._read) >= MOST_FILES:
-            file.fail(steps, f"is one file more than the {MOST_FILES} that a scene may include")
-        try:
-            found = self.gather(real, path, way)
-        except InputError as error:
-            if f"{path}" in str(error) and not str(error).startswith("there is"):
-                raise
-            file.fail(steps, f"is {included}, and {error}")
-        _add(into, found, Path(included).parent)
+            file.fail(steps, f"is one file more than the {MOST_FILES} that a scene can include")
+        found = self.gather(path, real, way)
+        folder, language = Path(included).parent, found.form.language
+        into.add(
+            [_seen_from(element, folder, language) for element in found.elements],
+            {key: _seen_from(one, folder, language) for key, one in found.textures.items()},
+            found.origins,
+            found.form.operation,
+        )
+        into.warnings.extend(found.warnings)
 
 
-def _add(into: Gathered, found: Gathered, folder: Path) -> None:
-    """Add elements and textures of an included file to those of the one that includes it."""
-    for key, texture in found.textures.items():
-        file, there = found.origins["textures", key]
-        if key in into.textures:
-            first = into.origins["textures", key][0]
-            file.fail(there, f"is in {first.where} too; give it another name")
-        into.textures[key] = _seen_from(texture, folder, found.form.language)
-        into.origins["textures", key] = (file, there)
-    elements = [_seen_from(element, folder, found.form.language) for element in found.elements]
-    start = len(into.elements)
-    apart = bool(elements) and found.form.operation != into.form.operation
-    for number in range(len(elements)):
-        origin = found.origins.get(("elements", number))
-        at = ("elements", start, "parts", number) if apart else ("elements", start + number)
-        if origin is not None:
-            into.origins[at] = origin
-    for steps, origin in found.origins.items():
-        if steps[0] == "elements" and len(steps) > 2:  # within a group that was made here
-            number = int(steps[1])
-            at = ("elements", start, "parts", number) if apart else ("elements", start + number)
-            into.origins[(*at, *steps[2:])] = origin
-    if apart:
-        operation = found.form.operation
-        into.elements.append(Group(operation=operation, parts=tuple(elements)))
-    else:
-        into.elements += elements
+def form_of(path: Path) -> str:
+    """Form of a scene's file by its suffix, or else by its beginning: "toml", "svg" or "gen"."""
+    form = _SUFFIXES.get(path.suffix.lower())
+    if form is not None:
+        return form
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD_BYTES)
+    except (OSError, ValueError):
+        return "toml"  # whose reader says what is wrong
+    if not head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
+        return "toml"
+    return "svg" if b"<svg" in head or b":svg" in head else "gen"
+
+
+def _foreign(path: Path, form: str) -> Gathered:
+    """Read a file of another format."""
+    found = _read_foreign(path, form)
+    scene = found.scene
+    gathered = Gathered(
+        SceneFile(
+            canvas=scene.canvas,
+            title=scene.title,
+            description=scene.description,
+            language="" if scene.language == UNSAID_LANGUAGE else scene.language,
+            operation=scene.operation,
+        ),
+        warnings=[
+            f"{path}{'' if one.startswith('line ') else ':'} {one}" for one in found.warnings
+        ],
+    )
+    origins = _all_from(ForeignOrigin(path, found), scene.elements, scene.textures)
+    gathered.add(scene.elements, scene.textures, origins, scene.operation)
+    return gathered
+
+
+def _about(path: Path, warning: str) -> str:
+    """Warning with the file that it is about; some begin with a line."""
+    return f"{path} {warning}" if warning.startswith("line ") else f"{path}: {warning}"
+
+
+def _read_foreign(path: Path, form: str) -> FoundScene:
+    if form == "svg":
+        from vbraille.scene.svg.reading import read_svg  # loads the library for SVG
+
+        return read_svg(path)
+    from vbraille.scene.openlatero import read_gen  # loads the library for XML
+
+    return read_gen(path)
+
+
+def _all_from(
+    origin: SceneOrigin, elements: tuple[AnyPattern, ...], textures: dict[str, AnyPattern]
+) -> Origins:
+    """Places of elements and textures of a file, which are all its own."""
+    steps: list[Steps] = [("textures", name) for name in textures]
+    steps += [("elements", number) for number in range(len(elements))]
+    return Origins({one: (origin, one) for one in steps})
 
 
 def _seen_from(pattern: AnyPattern, folder: Path, language: str) -> AnyPattern:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from vbraille.scene.bitmap import WHOLE, Bitmap
-from vbraille.scene.bounds import EMPTY, Box
+from vbraille.scene.bounds import Box
 
 _MOST_PIXELS, _MOST_MM = 5, 1.0
 
@@ -54,15 +54,16 @@ def bitmap_box(bitmap: Bitmap) -> Box | None:
     """Compute the rectangle outside which an image and its mask are 0; None for everywhere.
 
     Half a pixel beyond the last ones there is still something of them, since the image is bilinear.
+    Where there is nothing at all it is a corner.
     """
     if bitmap.outside > 0:
         return None
     mask = opaque(bitmap)
     rows, columns = np.nonzero(mask.intensities)
-    if rows.size == 0:
-        return EMPTY
     width, height = pixel_size_mm(mask)
     left, top = mask.place_mm
+    if rows.size == 0:
+        return Box(left, top, left, top)
     return Box(
         left + (float(columns.min()) - 0.5) * width,
         top + (float(rows.min()) - 0.5) * height,

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn, Protocol
+
+from vbraille.errors import InputError
+from vbraille.scene.naming import about, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,6 +37,63 @@ class FoundScene:
     warnings: tuple[str, ...] = ()
 
 
+class SceneOrigin(Protocol):
+    """A file that elements of a scene come from."""
+
+    @property
+    def where(self) -> str:
+        """Name of the file."""
+        ...
+
+    def place(self, steps: Steps) -> str:
+        """Name of the file, and the line of a place in the scene that it holds."""
+        ...
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the file for a problem at a place in the scene that it holds."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Origins:
+    """Where each element and named texture of a scene is written.
+
+    Parameters
+    ----------
+    places
+        Files, and places in them, by places of the scene.
+    """
+
+    places: dict[Steps, tuple[SceneOrigin, Steps]] = field(default_factory=dict)
+
+    def of(self, steps: Steps) -> tuple[SceneOrigin, Steps] | None:
+        """File that a place of the scene comes from, and the place in that file."""
+        for depth in range(len(steps), 0, -1):
+            if steps[:depth] in self.places:
+                origin, there = self.places[steps[:depth]]
+                return origin, (*there, *steps[depth:])
+        return None
+
+    def place(self, steps: Steps) -> str:
+        """File and line of a place of the scene, or words for it if it comes from no file."""
+        found = self.of(steps)
+        return said(steps) if found is None else found[0].place(found[1])
+
+    def fail(self, steps: Steps, problem: str) -> NoReturn:
+        """Refuse the scene for a problem at a place in it, with the file and the line.
+
+        Raises
+        ------
+        InputError
+            In any case.
+        """
+        found = self.of(steps)
+        if found is None:
+            raise InputError(about(steps, problem))
+        origin, there = found
+        origin.fail(there, problem)
+
+
 @dataclass(frozen=True, slots=True)
 class OpenedScene:
     """A scene from a file.
@@ -47,10 +107,10 @@ class OpenedScene:
     written
         The scene with its uses and names, and with what it includes.
     resolved
-        The same as it is shown, of `vbraille.scene.resolving`. It has the same elements in the same
-        order.
-    places
-        Where each element is written: the file's name and line, such as "house.scene line 12".
+        The same as it is shown; see `vbraille.scene.resolving`. It has the same elements in the
+        same order.
+    origins
+        Where its elements are written.
     warnings
         What was ignored, or means something else here, each in one sentence.
     """
@@ -59,5 +119,17 @@ class OpenedScene:
     folder: Path
     written: Scene
     resolved: Scene
-    places: tuple[str, ...] = ()
+    origins: Origins
     warnings: tuple[str, ...] = ()
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """File and line of each element."""
+        return tuple(self.place(number) for number in range(len(self.written.elements)))
+
+    def place(self, number: int) -> str:
+        """File and line of an element by its number from 0, such as "house.scene line 12"."""
+        steps: Steps = ("elements", number)
+        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
+        made_here = self.origins.of(steps) is None and self.origins.of(first) is not None
+        return self.origins.place(first if made_here else steps)

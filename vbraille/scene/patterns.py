@@ -10,6 +10,7 @@ import math
 from typing import Literal
 
 from vbraille.errors import check_range
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
     Point,
@@ -31,7 +32,23 @@ from vbraille.toml.tomlfile import Table
 
 
 class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):
-    """A pattern repeated over the canvas: δ(p mod (w, h)), from an origin; Lévesque 2009, 8.4.1."""
+    """A pattern repeated over the canvas: δ(p mod (w, h)); Lévesque 2009, 8.4.1.
+
+    Parameters
+    ----------
+    width_mm, height_mm
+        Size of a tile.
+    part
+        Pattern in each tile, seen from the tile's top left corner; what stands beyond the tile is
+        cut off.
+    origin_mm
+        Place of one tile's top left corner.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
 
     width_mm: float
     height_mm: float
@@ -95,9 +112,33 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
 class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     """Dots where a grayscale image has blobs: Lévesque 2009, 6.3.1 and eq. 6.1.
 
-    A blob is a connected set of pixels above ``threshold``. Its dot stands at its centre of mass,
-    has its largest gray as amplitude, and has its area where ``by_area`` says so, or else the
-    radius of ``dot``. How a blob becomes a dot is not in the source; this is ours to choose.
+    A blob is a connected set of bright pixels. Its dot stands at its centre of mass and has its
+    largest gray as amplitude. How a blob becomes a dot is not in the source; this is ours to
+    choose.
+
+    Parameters
+    ----------
+    file
+        Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
+    place_mm
+        Its top left corner on the canvas.
+    width_mm, height_mm
+        Its size; one of them follows from the other and the picture's shape if it is left out.
+    threshold
+        Gray, from 0 to 1, above which a pixel belongs to a blob.
+    by_area
+        Whether a dot has its blob's area, and not the radius of ``dot``.
+    dot
+        How the dots look.
+    cell_mm
+        Width and height of a cell: there is a dot in the middle of each cell of a grid over the
+        image instead, whose mean gray is its amplitude (5.3, with cells of 1.2 by 1.8 mm). No dot
+        is then larger than its cell. None for blobs.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
     """
 
     file: str
@@ -106,6 +147,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     height_mm: float | None = None
     threshold: float = 0.1
     by_area: bool = True
+    cell_mm: Point | None = None
     dot: DotStyle = DotStyle(plateau=0.25)
 
     def __post_init__(self) -> None:
@@ -114,6 +156,8 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)
         check_share("threshold", self.threshold)
+        for side in self.cell_mm or ():
+            check_length("cell", side, 0.1)
 
 
 class Fill(Table, frozen=True, kw_only=True):
@@ -173,7 +217,18 @@ class Shape(Pattern, frozen=True, kw_only=True):
 
 
 class Line(Shape, frozen=True, kw_only=True, tag="line"):
-    """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17."""
+    """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17.
+
+    Parameters
+    ----------
+    start_mm, end_mm
+        Its two ends; textures along it begin at the first.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both ends are one place.
+    """
 
     start_mm: Point
     end_mm: Point
@@ -188,7 +243,20 @@ class Line(Shape, frozen=True, kw_only=True, tag="line"):
 
 
 class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
-    """A circle, with or without a fill: Lévesque 2009, eqs. 8.18 and 8.19."""
+    """A circle, with or without a fill: Lévesque 2009, eqs. 8.18 and 8.19.
+
+    Parameters
+    ----------
+    center_mm, radius_mm
+        Its middle, and its radius to the middle of the stroke.
+    fill
+        What fills it; None for nothing.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
 
     center_mm: Point
     radius_mm: float
@@ -234,6 +302,13 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_points("vertices", self.vertices_mm, 3, closed=True)
+        edges = meeting_edges(self.vertices_mm)
+        if edges is not None:
+            first, second = edges
+            raise ValueError(
+                f"vertices make edges that cross or touch, those after number {first} and number "
+                f"{second}; set them in order around the shape"
+            )
         check_length("rounding offset", self.rounding_offset_mm, 0.0)
         _check_drawn(self, self.fill)
 
@@ -273,7 +348,20 @@ class Path(Shape, frozen=True, kw_only=True, tag="path"):
 
 
 class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
-    """Dots at any places, which share their look; where they overlap, the larger counts."""
+    """Dots at any places, which share their look; where they overlap, the larger counts.
+
+    Parameters
+    ----------
+    centers_mm
+        Their middles.
+    dot
+        How they look.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or a number is out of range.
+    """
 
     centers_mm: tuple[Point, ...]
     dot: DotStyle = DotStyle()

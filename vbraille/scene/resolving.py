@@ -10,26 +10,25 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.moving import LISTS, SEVERAL, moved
+from vbraille.scene.opened import Origins
 from vbraille.scene.patterns import Group, ImageDots, Use
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.walking import each, placed_children, with_children
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
     from vbraille.scene.walking import Steps
-
-    Fail = Callable[[Steps, str], NoReturn]
 
 # Uses of uses of uses can stand for more than any memory holds.
 MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000
 MOST_DEPTH = 32
 
 
-def resolve(scene: Scene, folder: Path | None = None, fail: Fail | None = None) -> Scene:
+def resolve(scene: Scene, folder: Path | None = None, origins: Origins | None = None) -> Scene:
     """Scene as it is shown, without names.
 
     Each `Use` is replaced by the pattern that it names, moved by value. Changes of its own stand
@@ -43,9 +42,8 @@ def resolve(scene: Scene, folder: Path | None = None, fail: Fail | None = None) 
         The scene.
     folder
         Folder that the names of image files are seen from; None for the present one.
-    fail
-        Function that refuses a scene for a problem at a place in it, which it is given as keys and
-        indices; None for one that names the place by them.
+    origins
+        Where its elements are written, for messages; None if it comes from no file.
 
     Raises
     ------
@@ -54,21 +52,7 @@ def resolve(scene: Scene, folder: Path | None = None, fail: Fail | None = None) 
         more than 32 deep, there are more than 200,000 patterns or 4,000,000 points, something is
         moved too far, or an image of dots cannot be read.
     """
-    return _Resolving(scene, folder or Path(), fail or _fail).scene()
-
-
-def said(steps: Steps) -> str:
-    """Words for a place in a scene.
-
-    >>> said(("elements", 3, "fill", "texture"))
-    'elements, number 4 fill texture'
-    """
-    words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
-    return "".join(words).strip()
-
-
-def _fail(steps: Steps, problem: str) -> NoReturn:
-    raise InputError(f"{said(steps)} {problem}")
+    return _Resolving(scene, folder or Path(), origins or Origins()).scene()
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +68,8 @@ class _Body:
 class _Resolving:
     """A scene that is being resolved, and how much it has become so far."""
 
-    def __init__(self, scene: Scene, folder: Path, fail: Fail) -> None:
-        self._written, self._folder, self._fail = scene, folder, fail
+    def __init__(self, scene: Scene, folder: Path, origins: Origins) -> None:
+        self._written, self._folder, self._origins = scene, folder, origins
         self._named: dict[str, tuple[Steps, AnyPattern]] = {}
         self._bodies: dict[str, _Body] = {}
         self._open: list[str] = []  # names whose uses are being replaced, outermost first
@@ -126,8 +110,8 @@ class _Resolving:
         if name.startswith(STOCK):
             self._fail(steps, f"is called {name}; only the program's own names begin with {STOCK}")
         if name in self._named and self._named[name][0] != steps:
-            first = said(self._named[name][0])
-            self._fail(steps, f"is called {name}, and so is {first}; give it another name")
+            first = self._origins.place(self._named[name][0])
+            self._fail(steps, f"is called {name}, as is {first}; give it another name")
         self._named[name] = steps, pattern
 
     def _count(self, steps: Steps, patterns: int, points: int) -> None:
@@ -145,33 +129,33 @@ class _Resolving:
         if isinstance(pattern, ImageDots):
             from vbraille.scene.blobs import dots_of  # loads the reading of images
 
-            return dots_of(pattern, self._folder)
+            try:
+                return dots_of(pattern, self._folder)
+            except InputError as error:
+                self._fail(steps, f": {error}")
         return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
 
     def _used(self, use: Use, steps: Steps) -> AnyPattern:
         """What a use stands for, with its changes."""
         body = self._body(use.name, steps)
         self._count(steps, body.patterns, body.points)
-        if body.depth + len(steps) > 4 * MOST_DEPTH:
-            self._fail(steps, f"nests more than {4 * MOST_DEPTH} deep; make it flatter")
         try:
             pattern = moved(body.pattern, use.move_mm)
         except ValueError as error:
             self._fail(steps, f"cannot be moved so far: {error}")
-        own = {
-            "id": use.id,
-            "title": use.title or pattern.title,
-            "description": use.description or pattern.description,
-        }
+        title = use.title or pattern.title
+        description = use.description or pattern.description
         if use.amplitude == 1.0 and not use.inverted and use.vibration is None:
-            return replace(pattern, **own)
+            return _called(pattern, use.id, title, description)
         return Group(
             operation="maximum",
-            parts=(replace(pattern, title="", description=""),),
+            parts=(_called(pattern, "", "", ""),),
             amplitude=use.amplitude,
             inverted=use.inverted,
             vibration=use.vibration,
-            **own,
+            id=use.id,
+            title=title,
+            description=description,
         )
 
     def _body(self, name: str, steps: Steps) -> _Body:
@@ -197,8 +181,13 @@ class _Resolving:
             stock = [f"{STOCK}{one}" for one in stock_textures()]
             self._fail_unknown(name, steps, [*self._named, *stock])
         body = _measured(_nameless(pattern))
+        if body.depth > MOST_DEPTH:
+            self._fail(steps, f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter")
         self._bodies[name] = body
         return body
+
+    def _fail(self, steps: Steps, problem: str) -> NoReturn:
+        self._origins.fail(steps, problem)
 
     def _fail_unknown(self, name: str, steps: Steps, names: Iterable[str]) -> NoReturn:
         self._fail(steps, f"name is {name!r}, which nothing here is called; {nearest(name, names)}")
@@ -214,7 +203,14 @@ def points_of(pattern: AnyPattern) -> int:
 def _nameless(pattern: AnyPattern) -> AnyPattern:
     """Pattern without ids, since each is the name of one thing."""
     inside = with_children(pattern, lambda _, part: _nameless(part))
-    return replace(inside, id="") if inside.id else inside
+    return _called(inside, "", inside.title, inside.description)
+
+
+def _called(pattern: AnyPattern, name: str, title: str, description: str) -> AnyPattern:
+    """Pattern with another id, title and description; made anew, and checked, only if need be."""
+    if (pattern.id, pattern.title, pattern.description) == (name, title, description):
+        return pattern
+    return replace(pattern, id=name, title=title, description=description)
 
 
 def _measured(pattern: AnyPattern) -> _Body:

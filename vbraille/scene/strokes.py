@@ -122,7 +122,7 @@ class Stroke(Table, frozen=True, kw_only=True):
     width_mm
         Width w of the stroke.
     edge_mm
-        Length ε of its edge, at most half of the width; None for all of it (a smooth stroke).
+        Length ε of its edge; half of the width, or more, or None, makes a smooth stroke.
     amplitude
         Deflection k of its middle, from 0 to 1.
     outlined
@@ -263,7 +263,7 @@ class Markers(Table, frozen=True, kw_only=True):
     blend_mm
         Distance over which a marker goes over into the stroke's texture.
     vibration
-        Vibration of the markers; None for plain ones.
+        Vibration of the markers; an amplitude of 0, or None, makes plain ones.
 
     Raises
     ------

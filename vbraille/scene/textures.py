@@ -102,7 +102,18 @@ class TurnPeak(Table, frozen=True, kw_only=True):
 
 
 class Uniform(Pattern, frozen=True, kw_only=True, tag="uniform"):
-    """The same deflection everywhere, ``level``, from 0 to 1; useful as a part of others."""
+    """The same deflection everywhere; useful as a part of others.
+
+    Parameters
+    ----------
+    level
+        The deflection, from 0 to 1.
+
+    Raises
+    ------
+    ValueError
+        If it is out of range.
+    """
 
     level: float = 1.0
 
@@ -112,7 +123,18 @@ class Uniform(Pattern, frozen=True, kw_only=True, tag="uniform"):
 
 
 class UniformVibration(Pattern, frozen=True, kw_only=True, tag="vibration"):
-    """The same vibration everywhere: Lévesque 2009, eqs. 8.1 and 8.2."""
+    """The same vibration everywhere: Lévesque 2009, eqs. 8.1 and 8.2.
+
+    Parameters
+    ----------
+    frequency_hz
+        Frequency of the swings, 0.1 to 50 Hz.
+
+    Raises
+    ------
+    ValueError
+        If it is out of range.
+    """
 
     frequency_hz: float = MOST_FREQUENCY_HZ
 
@@ -163,7 +185,24 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
 
 
 class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
-    """Rings of ridges around a place, ``center_mm``; the other fields are a linear grating's."""
+    """Rings of ridges around a place: Lévesque 2009, eq. 8.4 with a distance as abscissa.
+
+    Parameters
+    ----------
+    center_mm
+        Place around which they stand, and where a ridge begins.
+    ridge_mm, gap_mm
+        Width of a ring and of the gap around it.
+    distortion
+        Change of the spatial frequency outwards; None for none.
+    velocity_mm_s
+        Speed of the rings outwards (eq. 9.2); not beside a distortion.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
 
     center_mm: Point
     ridge_mm: float

@@ -25,8 +25,8 @@ def children(pattern: AnyPattern) -> tuple[AnyPattern, ...]:
 def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
     """Patterns that stand directly in a pattern, with the keys that lead from it to each.
 
-    >>> from vbraille.scene.patterns import Tile, UniformVibration
-    >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=UniformVibration()))]
+    >>> from vbraille.scene.patterns import Tile, Uniform
+    >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
     [('part',)]
     """
     if isinstance(pattern, Group):

@@ -20,7 +20,7 @@ from vbraille.simulation.pointing import Pointer
 from vbraille.simulation.pressing import MOST_BUTTONS, held, parse_presses
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, ReadLine, ReadPage, Steering
+from vbraille.simulation.steering import BeAt, GlideTo, ReadLine, ReadPage, Steering
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -247,6 +247,10 @@ class SimulatedDevice(Device):
         if isinstance(order, BeAt):
             x_mm = order.x_mm - self._info.span_mm / 2
             self._set_out([x_mm, order.y_mm, order.theta_rad], HELD_MM_S)
+        elif isinstance(order, GlideTo):
+            *_, theta_rad = self._hand_at(self._now_ns())
+            x_mm = order.x_mm - self._info.span_mm / 2
+            self._set_out([x_mm, order.y_mm, theta_rad], order.speed_mm_s)
         elif isinstance(hand, Still):
             self._set_out(self._hand_at(self._now_ns()), HELD_MM_S, least_s=STILL_S)
         elif isinstance(hand, Recorded):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from vbraille.errors import InputError
+from vbraille.simulation.exploring import parse_explorer
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
 from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
 from vbraille.simulation.recorded import load_recorded
@@ -29,7 +30,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     ----------
     spec
         ``sweep:SPEED`` in mm/s, ``slow`` (or ``device``), ``fluent``, ``wander:SPEED`` in mm/s,
-        ``recorded:FILE`` or ``still``.
+        ``recorded:FILE``, ``wide``, ``wide:SPACING``, ``spot:X,Y`` in mm, or ``still``.
     seed
         Seed of a hand that is drawn at random.
     pointed
@@ -52,6 +53,9 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
             return Sweep(_speed(rest, kind))
         if kind == "wander":
             return Wander(_speed(rest, kind), seed)
+        explorer = parse_explorer(spec)
+        if explorer is not None:
+            return explorer
     except ValueError as error:
         raise InputError(str(error)) from None
     if spec == STILL and pointed:
@@ -63,7 +67,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         )
     raise InputError(
         f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
-        f"or wander:SPEED to go about without reading"
+        f"wander:SPEED to go about without reading, or wide or spot:X,Y to go over a picture"
     )
 
 

@@ -94,8 +94,34 @@ class BeAt:
             raise ValueError(f"a hand cannot be at {astuple(self)}; it must be numbers")
 
 
-HandOrder = ReadLine | ReadPage | BeAt
-_KINDS: Final[tuple[type[HandOrder], ...]] = (ReadLine, ReadPage, BeAt)
+@dataclass(frozen=True, slots=True)
+class GlideTo:
+    """Order to glide straight to a place and stay there, as a hand does that keys steer.
+
+    Parameters
+    ----------
+    x_mm, y_mm
+        Place of the array's centre; the array stays turned as it is.
+    speed_mm_s
+        Speed of the way.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or the speed is not above 0.
+    """
+
+    x_mm: float
+    y_mm: float
+    speed_mm_s: float
+
+    def __post_init__(self) -> None:
+        if not all(map(math.isfinite, astuple(self))) or not self.speed_mm_s > 0:
+            raise ValueError(f"a hand cannot glide as {astuple(self)} says; it must be numbers")
+
+
+HandOrder = ReadLine | ReadPage | BeAt | GlideTo
+_KINDS: Final[tuple[type[HandOrder], ...]] = (ReadLine, ReadPage, BeAt, GlideTo)
 
 
 class Steering:

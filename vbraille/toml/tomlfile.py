@@ -24,6 +24,8 @@ _Value = TypeVar("_Value")
 # TOML readers differ on larger numbers, and no number of a protocol is so large.
 _MOST_WHOLE = 2**63 - 1
 _LONGEST_QUOTE = 60
+# Spaces without a break, which French has before its marks and Python does not call printable.
+_SPACES = {0xA0: " ", 0x202F: " "}
 # Names that msgspec has for types, and what a file must have where such a type is wanted.
 _WANTED = {
     "int": "a whole number",
@@ -34,6 +36,7 @@ _WANTED = {
     "object": "a table",
 }
 _EXPECTED = re.compile(r"Expected `([^`]*)`(?: of .*length (\d+))?, got")
+_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz)$")
 _STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
 _ABOUT = re.compile(r"(?:\[{1,2}(\w+)\]{1,2} )?(?:number (\d+) )?(.*)", re.DOTALL)
 
@@ -55,15 +58,17 @@ class TomlFile:
         Text of the file.
     where
         Name of the file, for messages.
+    several_lines
+        Whether its strings may have several lines.
 
     Raises
     ------
     InputError
-        If the text is not TOML, or has a string of several lines or a number that is far too
-        large.
+        If the text is not TOML, or has a string with control characters or a number that is far
+        too large.
     """
 
-    def __init__(self, text: str, where: str) -> None:
+    def __init__(self, text: str, where: str, *, several_lines: bool = False) -> None:
         self._text, self._where = text, where
         try:
             self._tree = tomllib.loads(text)
@@ -71,9 +76,11 @@ class TomlFile:
             raise InputError(f"{where} is not TOML: its brackets nest too deep; mend it") from None
         except ValueError as error:
             raise InputError(f"{where} is not TOML: {error}; mend it there") from None
+        spaces = {**_SPACES, 0x0A: " "} if several_lines else _SPACES
         for path, value in _leaves(self._tree):
-            if isinstance(value, str) and not value.isprintable():
-                self._refuse(path, "one line without control characters")
+            if isinstance(value, str) and not value.translate(spaces).isprintable():
+                lines = "text" if several_lines else "one line"
+                self._refuse(path, f"{lines} without control characters")
             if isinstance(value, int) and abs(value) > _MOST_WHOLE:
                 self._refuse(path, "a smaller number")
 
@@ -101,6 +108,8 @@ class TomlFile:
         """
         try:
             return msgspec.convert(self._at(under), kind, dec_hook=dec_hook)
+        except RecursionError:
+            raise InputError(f"{self._where} nests its tables too deep; make it flatter") from None
         except msgspec.ValidationError as error:
             message, _, steps = str(error).rpartition(" - at `$")
             if not message:  # msgspec names no place if it is the value as a whole
@@ -188,7 +197,8 @@ class TomlFile:
             self._fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
             items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
-            self._fail(path, f"has {len(value)} items; give {expected[2]}: {', '.join(items)}")
+            which_items = f": {', '.join(items)}" if items else ""
+            self._fail(path, f"has {len(value)} items; give {expected[2]}{which_items}")
         if expected and any(map(_is_tables, types)):
             self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
@@ -322,7 +332,7 @@ def _steps_of(problem: str, table: dict[str, Any]) -> Path:
     """Path to the key of a table, or item of it, whose words begin a problem; empty if none."""
     said = problem.lstrip("'\"").replace("_", " ")
     for key in sorted(table, key=len, reverse=True):
-        words = re.escape(key.removesuffix("_mm").replace("_", " "))
+        words = re.escape(_UNIT.sub("", key).replace("_", " "))
         named = re.match(rf"{words}(?!\w)(?:, number (\d+))?", said)
         if named:
             return (key, int(named[1]) - 1) if named[1] else (key,)

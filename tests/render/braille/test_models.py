@@ -11,6 +11,7 @@ from vbraille.render import LATERO as LATERO_MODEL
 from vbraille.render import (
     MAPPINGS,
     MODELS,
+    PANTOGRAPH,
     STRESS2,
     STRESS2_8X8,
     VBD,
@@ -19,13 +20,38 @@ from vbraille.render import (
     model_of,
     single_row,
 )
+from vbraille.render.braille.models import same_array
 
 
 def test_models_by_name():
-    named = {"vbd": VBD, "stress2": STRESS2, "stress2-8x8": STRESS2_8X8, "latero": LATERO_MODEL}
+    named = {
+        "vbd": VBD,
+        "stress2": STRESS2,
+        "stress2-8x8": STRESS2_8X8,
+        "pantograph": PANTOGRAPH,
+        "latero": LATERO_MODEL,
+    }
     assert named == MODELS
-    titles = [model.title for model in named.values()]
-    assert titles == ["VBD", "STReSS²", "STReSS² 8 × 8", "Latero"]
+    titles = {model.title for model in named.values()}
+    assert titles == {
+        "VBD",
+        "STReSS²",
+        "STReSS² 8 × 8",
+        "STReSS² 8 × 8 on the Pantograph",
+        "Latero",
+    }
+
+
+def test_the_pantograph_has_the_same_array_on_a_smaller_surface_and_measures_no_angle():
+    display, other = PANTOGRAPH.display, STRESS2_8X8.display
+    assert (display.travel_mm, display.height_mm, display.axes) == (113.0, 60.0, "xy")
+    assert display.counts_per_mm == pytest.approx(1 / 0.013)  # Lévesque 2009, 6.2
+    assert same_array(display, other)
+    assert PANTOGRAPH.style.geometry.travel_mm == 113.0
+    assert PANTOGRAPH.style.mapping is STRESS2_8X8.style.mapping
+    # What a reader has chosen for the array holds on either carrier.
+    assert model_of(display).name == "stress2-8x8"
+    assert model_of(display).display is display
 
 
 def test_the_vbd_as_the_source_has_it():

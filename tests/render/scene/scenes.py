@@ -7,17 +7,22 @@ ones: a place that is as near to one edge as to another belongs to either.
 import math
 import zlib
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from hypothesis import settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from tests.tiers import by_tier
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
 from vbraille.render.scene import reference
 from vbraille.render.scene.assets import Assets, Written
 from vbraille.render.scene.brailleplaces import box_of
+from vbraille.render.scene.compiling import compile_scene
 from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.opaque import bitmap_box
 from vbraille.scene.patterns import (
     Circle,
@@ -48,6 +53,11 @@ from vbraille.scene.walking import each
 SIDE_MM = 60
 STRESS2_8X8_ARRAY = STRESS2_8X8.display
 DISPLAYS = (STRESS2_8X8_ARRAY, Display("wide", 6, 10, 1.2, 1.8))
+
+
+def examples(count):
+    """Try a law on so many examples in `make test-all`, on a few and many more in the others."""
+    return settings(max_examples=by_tier(max(count // 8, 4), count, 50 * count))
 
 
 def numbers(least, most):
@@ -264,7 +274,9 @@ ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
 lines = st.builds(lambda own, look, change: Line(**own, **look, **change), ends, drawn, changes)
 round_fields = {"center_mm": points, "radius_mm": numbers(0.5, 30)}
 corner_fields = {
-    "vertices_mm": outlines().filter(apart),
+    "vertices_mm": outlines().filter(
+        lambda places: apart(places) and meeting_edges(places) is None
+    ),
     "join": st.sampled_from(["straight", "rounded"]),
     "rounding_offset_mm": st.just(0.0) | numbers(0, 6),
     "markers": st.none() | markers,
@@ -430,11 +442,10 @@ def scenes(draw, parts=patterns, most=4):
     )
 
 
-def scene_of(*elements, operation="overwrite"):
+def scene_of(*elements, operation="overwrite", side_mm=SIDE_MM):
     """A scene of these elements."""
-    return Scene(
-        canvas=Canvas(width_mm=SIDE_MM, height_mm=SIDE_MM), operation=operation, elements=elements
-    )
+    canvas = Canvas(width_mm=side_mm, height_mm=side_mm)
+    return Scene(canvas=canvas, operation=operation, elements=elements)
 
 
 # Poses
@@ -479,6 +490,17 @@ def twin(scene, display, pose, assets=None):
     return reference.deflections(scene, assets, x, y, parity, pose.time_s).reshape(display.shape)
 
 
+@lru_cache(maxsize=8)
+def _compiled(elements, operation, side_mm, display):
+    scene = scene_of(*elements, operation=operation, side_mm=side_mm)
+    return compile_scene(scene, display, assets_of(*elements))
+
+
 def shown(scene, display, pose):
-    """The frame of a scene."""
-    return twin(scene, display, pose)
+    """The frame of a scene by the kernels, which has to be the twin's, too."""
+    program = _compiled(scene.elements, scene.operation, scene.canvas.width_mm, display)
+    frame = np.full(display.shape, np.nan)
+    at = {"y_mm": pose.y_mm, "theta_rad": pose.theta_rad, "time_s": pose.time_s}
+    program.frame(pose.x_mm, frame, **at)
+    np.testing.assert_allclose(frame, twin(scene, display, pose), rtol=0, atol=1e-6)
+    return frame

@@ -19,6 +19,7 @@ from tests.render.scene.scenes import (
     actuators,
     assets_of,
     bounded,
+    examples,
     known_boxes,
     numbers,
     patterns,
@@ -28,7 +29,6 @@ from tests.render.scene.scenes import (
     seeds,
     shown,
 )
-from tests.tiers import examples
 from vbraille.render.scene import reference
 from vbraille.scene.bounds import bounds
 from vbraille.scene.fitting import axial_cycle
@@ -52,7 +52,7 @@ def same(one, other, atol=EXACT):
 # Kernel equals twin; values are deflections
 
 
-@examples(60)
+@examples(150)
 @given(scenes(), seeds, displays)
 def test_frames_are_deflections_and_equal_their_twin(scene, seed, display):
     for pose in some_poses(seed, 4):
@@ -92,7 +92,7 @@ def test_a_pattern_is_nowhere_above_its_opacity_mask(pattern, seed):
     assert (over <= 1).all()
 
 
-@examples(25)
+@examples(60)
 @given(patterns, patterns, seeds, displays)
 def test_a_texture_on_top_hides_all_below(below, other, seed, display):
     top = LinearGrating(ridge_mm=3, gap_mm=1, wave_angle_deg=20)
@@ -101,7 +101,7 @@ def test_a_texture_on_top_hides_all_below(below, other, seed, display):
         same(shown(covered, display, pose), shown(alone, display, pose))
 
 
-@examples(25)
+@examples(60)
 @given(patterns, seeds)
 def test_a_filled_shape_hides_what_is_under_its_inside(below, seed):
     disc = Circle(
@@ -116,7 +116,7 @@ def test_a_filled_shape_hides_what_is_under_its_inside(below, seed):
 # Pruning
 
 
-@examples(25)
+@examples(60)
 @given(st.lists(patterns, min_size=1, max_size=2), seeds, displays)
 def test_shapes_elsewhere_change_nothing(near, seed, display):
     rng = np.random.default_rng(seed)
@@ -136,7 +136,7 @@ def test_shapes_elsewhere_change_nothing(near, seed, display):
 # Composition
 
 
-@examples(25)
+@examples(60)
 @given(bounded, bounded, seeds)
 def test_a_sum_is_the_maximum_where_nothing_overlaps(one, other, seed):
     assets = assets_of(one, other)
@@ -150,11 +150,14 @@ def test_a_sum_is_the_maximum_where_nothing_overlaps(one, other, seed):
     for _ in range(2):
         x, y = rng.uniform(first.right - 4, first.right + 4), rng.uniform(first.top, first.bottom)
         pose = At(x, y, rng.uniform(0, 6), rng.uniform(0, 5))
-        added = shown(scene_of(one, other, operation="add"), STRESS2_8X8_ARRAY, pose)
-        same(shown(scene_of(one, other, operation="maximum"), STRESS2_8X8_ARRAY, pose), added)
+        added, most = (
+            shown(scene_of(one, other, operation=operation, side_mm=300), STRESS2_8X8_ARRAY, pose)
+            for operation in ("add", "maximum")
+        )
+        same(added, most)
 
 
-@examples(25)
+@examples(60)
 @given(patterns, patterns, seeds, st.booleans())
 def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second):
     by = Uniform(level=float(second))
@@ -164,7 +167,7 @@ def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second
         same(shown(blend, STRESS2_8X8_ARRAY, pose), shown(alone, STRESS2_8X8_ARRAY, pose))
 
 
-@examples(25)
+@examples(60)
 @given(patterns, seeds)
 def test_what_is_inverted_twice_is_as_it_was(pattern, seed):
     once = Group(operation="maximum", parts=(pattern,), inverted=True)
@@ -176,7 +179,7 @@ def test_what_is_inverted_twice_is_as_it_was(pattern, seed):
         )
 
 
-@examples(25)
+@examples(60)
 @given(st.lists(patterns, min_size=2, max_size=4), seeds, numbers(0, 1))
 def test_operations_are_what_they_say_of_their_parts(parts, seed, share):
     weights = (share, *[(1 - share) / (len(parts) - 1)] * (len(parts) - 1))
@@ -246,7 +249,7 @@ def _regular_shape(shape):
     return shape
 
 
-@examples(25)
+@examples(60)
 @given(st.lists(patterns, min_size=1, max_size=2), seeds)
 def test_a_period_later_it_is_the_same(parts, seed):
     scene = scene_of(*map(regular, parts), operation="maximum")
@@ -256,17 +259,20 @@ def test_a_period_later_it_is_the_same(parts, seed):
         same(shown(scene, STRESS2_8X8_ARRAY, early), shown(scene, STRESS2_8X8_ARRAY, later), 1e-5)
 
 
-@examples(25)
-@given(patterns, st.tuples(numbers(-300, 300), numbers(-300, 300)), seeds, displays)
+@examples(60)
+@given(patterns, st.tuples(numbers(0, 300), numbers(0, 300)), seeds, displays)
 def test_moving_the_picture_and_the_array_together_changes_nothing(pattern, move, seed, display):
-    there = moved(pattern, move)
+    # Both are on the canvas with all that the array can touch.
+    here = moved(pattern, (30.0, 30.0))
+    there = moved(here, move)
     for pose in some_poses(seed):
-        moved_pose = At(pose.x_mm + move[0], pose.y_mm + move[1], pose.theta_rad, pose.time_s)
-        before = shown(scene_of(pattern), display, pose)
-        same(shown(scene_of(there), display, moved_pose), before, 1e-5)
+        first = At(pose.x_mm + 30, pose.y_mm + 30, pose.theta_rad, pose.time_s)
+        other = At(first.x_mm + move[0], first.y_mm + move[1], pose.theta_rad, pose.time_s)
+        before = shown(scene_of(here, side_mm=500), display, first)
+        same(shown(scene_of(there, side_mm=500), display, other), before, 1e-5)
 
 
-@examples(25)
+@examples(60)
 @given(patterns, seeds)
 def test_the_same_place_gives_the_same_frame(pattern, seed):
     scene = scene_of(pattern)
@@ -278,6 +284,16 @@ def test_the_same_place_gives_the_same_frame(pattern, seed):
 
 def test_a_scene_of_nothing_is_at_rest():
     assert not shown(scene_of(), STRESS2_8X8_ARRAY, At(10, 10, 0, 1)).any()
+
+
+@examples(40)
+@given(patterns, seeds)
+def test_beside_the_canvas_actuators_are_at_rest(pattern, seed):
+    scene = scene_of(pattern)
+    for pose in poses(np.random.default_rng(seed), 2):
+        x, y, _ = actuators(STRESS2_8X8_ARRAY, pose)
+        beside = (x < 0) | (x > 60) | (y < 0) | (y > 60)
+        assert not shown(scene, STRESS2_8X8_ARRAY, pose).ravel()[beside].any()
 
 
 def test_actuators_lie_where_the_pose_says():

@@ -7,8 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.render.scene.scenes import bitmap_of, distortions, numbers, turn_peaks, vibrations
-from tests.tiers import examples
+from tests.render.scene.scenes import (
+    bitmap_of,
+    distortions,
+    examples,
+    numbers,
+    turn_peaks,
+    vibrations,
+)
 from vbraille.render.scene.reference import deflection, places
 from vbraille.render.scene.referencewaves import (
     distorted,

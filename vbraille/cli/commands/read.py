@@ -17,7 +17,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_height, check_travel
 from vbraille.devices.saying import placing_sentence
-from vbraille.display import check_rate
+from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_live_options(arguments)
     settings = settle(arguments)
     profile = chosen_profile(arguments, settings)
-    rate_hz = check_rate(arguments.rate)
+    rate_hz = USUAL_RATE_HZ if arguments.rate is None else check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     if arguments.cells is not None and arguments.cells < 1:
         raise InputError(f"--cells is {arguments.cells}; it must be 1 or more")
@@ -87,6 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
         device = OpenDevice(
             arguments.device,
             wanted,
+            often=arguments.rate is not None,
             hand=hand,
             seed=seed,
             say=hearing.say,
@@ -102,6 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.speech:
                 hearing.speak(language_of(opened.book, arguments.language))
             display = device.find()
+            rate_hz = min(rate_hz, display.rate_hz)
             if arguments.model is not None:
                 check_actuators(display, wanted)
             own = with_profile(settings, profile, model_of(display))

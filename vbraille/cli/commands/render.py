@@ -20,14 +20,16 @@ from vbraille.cli.build import (
     lay_out,
     note_unseen_dots,
 )
+from vbraille.cli.options.feeling import PATH_OPTIONS
 from vbraille.cli.progress import WorkProgress
 from vbraille.cli.settled import TRANSLATION, settle
 from vbraille.cli.stopping import EAR
 from vbraille.display import check_rate
 from vbraille.engine.advance import EndOfLine
 from vbraille.errors import InputError
+from vbraille.newfile import new_file
 from vbraille.reading.speed import too_fast_note
-from vbraille.recording import Recorder, new_file
+from vbraille.recording import Recorder
 from vbraille.render import MODELS
 from vbraille.simulation.motion import SLACK
 from vbraille.simulation.paging import Area
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
 
 _BLOCK_FRAMES = 16_384
+_SCENES = (".scene", ".svg", ".svgz", ".gen", ".tx")
 _MOST_HEIGHT_MM = 10_000.0
 # So many frames tell how well the rest can be compressed, and take less than half a second.
 _ESTIMATED_FROM = 100_000
@@ -56,8 +59,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the frames of every line asked for, and say how many."""
     if Path(arguments.out).suffix.lower() not in (".h5", ".hdf5"):
         raise InputError(f"{arguments.out} does not end in .h5; render writes HDF5")
+    if _is_scene(arguments):
+        from vbraille.cli.commands import renderscene  # loads what only pictures need
+
+        return renderscene.run(arguments)
     settle(arguments, TRANSLATION)
-    model = build_show(arguments, MODELS[arguments.model])
+    model = build_show(arguments, MODELS[arguments.model or "stress2"])
     rate_hz = check_rate(arguments.rate)
     hand = parse_hand(arguments.hand, arguments.seed)
     model = build_lengths(arguments, model)
@@ -117,6 +124,20 @@ def run(arguments: argparse.Namespace) -> int:
         f"{frames / rate_hz:.1f} s of reading"
     )
     return 0
+
+
+def _is_scene(arguments: argparse.Namespace) -> bool:
+    """Whether the file is a tactile picture; options of its path are for such files alone."""
+    suffix = Path(arguments.file).suffix.lower()
+    if suffix in _SCENES or arguments.path is not None:
+        return True
+    for name in PATH_OPTIONS:
+        if getattr(arguments, name) is not None:
+            raise InputError(
+                f"--{name} is for the path over a tactile picture; add --path, or leave "
+                f"--{name} out"
+            )
+    return False
 
 
 class _Stretch(NamedTuple):

@@ -138,7 +138,8 @@ def _display(arguments: argparse.Namespace) -> Display:
 def _height_mm(arguments: argparse.Namespace) -> float:
     """How far the carriage goes across the lines; 0 for one axis."""
     if "y" in arguments.axes:
-        height_mm = HEIGHT_MM if arguments.height is None else arguments.height
+        own_mm = MODELS[arguments.model].display.height_mm or HEIGHT_MM
+        height_mm = own_mm if arguments.height is None else arguments.height
         if not height_mm > 0:
             raise InputError(f"height is {height_mm:g} mm; it must be above 0")
         return height_mm

@@ -12,7 +12,7 @@ from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
 from vbraille.devices.saying import placing_sentence
-from vbraille.display import check_rate
+from vbraille.display import USUAL_RATE_HZ, check_rate
 from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.files import write_file
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Lead a reader through the choices, and save what comes of them."""
     settings = settle(arguments)
     profile = chosen_profile(arguments, settings)
-    rate_hz = check_rate(arguments.rate)
+    rate_hz = USUAL_RATE_HZ if arguments.rate is None else check_rate(arguments.rate)
     refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
     asked = MODELS[arguments.model or "stress2"]
     wanted = asked.on(asked.style.geometry, rate_hz)
@@ -62,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         device = OpenDevice(
             arguments.device,
             wanted,
+            often=arguments.rate is not None,
             hand=arguments.hand or HAND,
             seed=1 if arguments.seed is None else arguments.seed,
             say=say_line,

@@ -12,7 +12,7 @@ MAPPINGS = (
     *("alternate", "paired", "sheared", "split-columns", "row-sheared", "compact"),
     "eight-dots",
 )
-MODELS = ("stress2", "stress2-8x8", "latero", "vbd")
+MODELS = ("stress2", "stress2-8x8", "pantograph", "latero", "vbd")
 
 # Options of reading that a settings file may say.
 SETTLED = (
@@ -36,7 +36,8 @@ SETTLED = (
 HANDS = (
     "sweep:SPEED goes along each line at so many mm/s, slow reads as people do on such displays "
     "(device is its older name), fluent as on paper, recorded:FILE.csv moves as recorded, "
-    "wander:SPEED goes about without reading, and still moves only in the live view of --monitor"
+    "wander:SPEED goes about without reading, wide goes round a picture and inward, spot:X,Y "
+    "swings about a place of it, and still moves only in the live view of --monitor"
 )
 SPEC = "Name the device, such as serial:/dev/ttyACM0, latero:HOST, or sim for a simulated one"
 
@@ -147,8 +148,8 @@ def layout(parser: ArgumentParser) -> None:
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, "
-        "or the VBD (default: the device's own, or stress2).",
+        help="Lay out for this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
+        "Pantograph, the Latero, or the VBD (default: the device's own, or stress2).",
     )
     parser.add_argument(
         "--geometry",
@@ -234,7 +235,7 @@ def page(parser: ArgumentParser) -> None:
     )
 
 
-def hand(parser: ArgumentParser) -> None:
+def hand(parser: ArgumentParser, usual_rate: str = "1000") -> None:
     """Add the options of the hand that moves a simulated device."""
     parser.add_argument(
         "--hand",
@@ -254,5 +255,5 @@ def hand(parser: ArgumentParser) -> None:
         type=number,
         default=1000.0,
         metavar="HZ",
-        help="Have so many frames a second (default: 1000).",
+        help=f"Have so many frames a second (default: {usual_rate}).",
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.cli.options import groups
+from vbraille.cli.options import feeling, groups
 from vbraille.cli.options.groups import MODELS, SPEC
 from vbraille.cli.options.live import add_live_options
 from vbraille.cli.options.values import duration, number, whole
@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from argparse import ArgumentParser
 
 PLOTS = ("profile", "mapping", "wave", "strain", "page", "resolution")
+
+_OWN_RATE = "1000, or what the device takes if that is less"
 
 
 def nothing(_parser: ArgumentParser) -> None:
@@ -48,11 +50,11 @@ def tune(parser: ArgumentParser) -> None:
     parser.add_argument("--device", default="sim", metavar="SPEC", help=f"{SPEC} (default: sim).")
     parser.add_argument("--model", choices=MODELS, help="Refuse a device that is not this display.")
     groups.translation(parser)
-    groups.hand(parser)
+    groups.hand(parser, _OWN_RATE)
     parser.add_argument(
         "--again", action="store_true", help="Begin anew, and forget the choices made so far."
     )
-    parser.set_defaults(hand=None, seed=None)
+    parser.set_defaults(hand=None, seed=None, rate=None)
     groups.leave_to_settings(parser)
 
 
@@ -104,9 +106,9 @@ def _reading(parser: ArgumentParser) -> None:
         "--verbose", action="store_true", help="Say more, such as how far a search has come."
     )
     groups.page(parser)
-    groups.hand(parser)
+    groups.hand(parser, _OWN_RATE)
     # The model is the device's own, and only a simulated one has a hand.
-    parser.set_defaults(model=None, hand=None, seed=None)
+    parser.set_defaults(model=None, hand=None, seed=None, rate=None)
     groups.leave_to_settings(parser)
 
 
@@ -191,6 +193,8 @@ def render(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--force", action="store_true", help="Replace the file if it is there already."
     )
+    feeling.path(parser)
+    parser.set_defaults(model=None)  # which is another one for lines than for pictures
     parser.add_argument(
         "--plain", action="store_true", help="Print progress as lines, without a bar."
     )
@@ -241,8 +245,8 @@ def simulate(parser: ArgumentParser) -> None:
         "--model",
         choices=MODELS,
         default="stress2",
-        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, the Latero, or the VBD "
-        "(default: stress2).",
+        help="Be this display: the STReSS² of 10 × 6 or of 8 × 8 actuators, that on the "
+        "Pantograph, the Latero, or the VBD (default: stress2).",
     )
     groups.hand(parser)
     parser.set_defaults(rate=1000)
@@ -273,7 +277,8 @@ def simulate(parser: ArgumentParser) -> None:
         "--height",
         type=number,
         metavar="MM",
-        help="Let a carriage of two axes go so far across the lines (default: 200 mm).",
+        help="Let a carriage of two axes go so far across the lines (default: as the "
+        "display's own does, or 200 mm).",
     )
     parser.add_argument(
         "--protocol",

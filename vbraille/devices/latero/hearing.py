@@ -60,7 +60,8 @@ POWER, PLACE, ENCODERS, VERSION = 1, 2, 3, 4
 
 
 WHERE: Final = (
-    "the near left corner of a Latero is the lower left one, with its third arm straight up"
+    "the near left corner of a Latero is the lower left one, with its third arm straight up: from "
+    "the array it goes straight away from you"
 )
 NO_SWITCH: Final = (
     "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"

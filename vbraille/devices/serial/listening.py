@@ -328,7 +328,8 @@ class Listening:
         if before is None:
             self._placing = self.place.placing
         self._mind_placing(now_ns)
-        self.drive = Drive(info, now_ns, self._rate_hz or float(self.display.rate_hz))
+        own_hz = float(self.display.rate_hz)
+        self.drive = Drive(info, now_ns, min(self._rate_hz or own_hz, own_hz))
         self.drive.correct(self._calibration)
         self._rest_frame = np.zeros((info.rows, info.columns))
 

@@ -88,7 +88,8 @@ def begin(
         info = greet(port, conversation, now_ns, pause)
         if rate_hz is not None:
             _check_often_enough(info, rate_hz)
-            _check_baud(port.address, info, rate_hz)
+            # It is sent no more than it takes, whether or not that is enough for who asks.
+            _check_baud(port.address, info, min(rate_hz, info.rate_hz))
         return SerialDevice(port, conversation, now_ns, pause)
     except BaseException:  # a signal's exception, too
         port.close(pause)

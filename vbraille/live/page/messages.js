@@ -32,6 +32,13 @@ const MAP_BYTES = 8;
  * @property {[number, number][]} sources
  * @property {boolean} under
  *
+ * @typedef {object} SceneShown
+ * @property {string} title
+ * @property {string} description
+ * @property {number} width_mm
+ * @property {number} height_mm
+ * @property {string} image
+ *
  * @typedef {object} KnobShown
  * @property {string} name
  * @property {string} label
@@ -75,6 +82,7 @@ const MAP_BYTES = 8;
  * @property {[string, string][]} facts
  * @property {boolean} blind
  * @property {boolean} done
+ * @property {SceneShown | null} [scene]
  *
  * @typedef {object} Refused
  * @property {"refused"} tell

@@ -22,6 +22,17 @@ const TOP_PX = 46;
 const RIGHT_PX = 14;
 const LEAST_FINGER_PX = 32; // to be hit by a real finger
 
+/**
+ * A tactile picture from above, on its canvas.
+ * @param {import("./messages.js").SceneShown} scene
+ */
+function picture(scene) {
+  const { width_mm: width, height_mm: height, image: href } = scene;
+  const canvas = svg("rect", { class: "canvas", width, height });
+  return svg("g", { class: "scene" }, canvas,
+    ...(href ? [svg("image", { width, height, href, preserveAspectRatio: "none" })] : []));
+}
+
 export class Sheet {
   /** @type {State | null} */
   #state = null;
@@ -111,6 +122,7 @@ export class Sheet {
   #tallOf(state, d) {
     const array = /** @type {import("./messages.js").ArrayShown} */ (state.array);
     return Math.max(array.height_mm && !state.lines.length ? array.height_mm : 0, d?.line ?? 0,
+      state.scene?.height_mm ?? 0,
       state.lines.length ? 0 : array.rows * array.row_pitch_mm + 6);
   }
 
@@ -124,6 +136,7 @@ export class Sheet {
     const { right } = this.span ?? { right: 0 };
     const from = Math.min(0, ...state.lines.map((line) => line.start_mm));
     const group = svg("g", { "font-size": 12 * px });
+    if (state.scene) group.append(picture(state.scene));
     const end = Math.max(right, state.array?.travel_mm && !state.lines.length ? state.array.travel_mm : 0);
     for (const line of d ? state.lines : []) group.append(this.#line(/** @type {Distances} */ (d), line));
     group.append(ruler(Math.floor(from / 10) * 10, end, first - 6 * px, false, this.#px_mm));

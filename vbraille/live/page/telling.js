@@ -89,7 +89,7 @@ export class Telling {
     if (two) readings.push(["y", `${fixed(frame.y_mm)} mm`]);
     if (state.array?.turns) readings.push(["turned", `${degrees(frame.theta_rad)}°`]);
     readings.push(["speed", `${fixed(frame.vx_mm_s, 0)} mm/s`]);
-    if (!state.blind) {
+    if (!state.blind && !state.scene) {
       readings.push(
         ["line", here ? String(here.line.number) : ""],
         ["cell", here && here.cell >= 0 ? String(here.cell + 1) : ""],
@@ -99,7 +99,8 @@ export class Telling {
       );
     }
     this.#readout.show(readings);
-    this.#printed(here);
+    if (state.scene) write(byId("print"), state.scene.description);
+    else this.#printed(here);
     this.#time(state, frame);
   }
 

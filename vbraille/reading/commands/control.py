@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from vbraille.reading.context import Context
 
 if TYPE_CHECKING:
+    from vbraille.reading.keyed import Keyed
     from vbraille.reading.reader import Reader
 
 
@@ -26,19 +27,19 @@ def stop(reader: Reader) -> None:
     reader.quit()
 
 
-def learn(reader: Reader) -> None:
+def learn(reader: Keyed) -> None:
     """Have keys say what they do, and do nothing."""
     reader.context = Context.LEARNING
     reader.say("learn: a key says what it does; this key again or q ends it")
 
 
-def end_learning(reader: Reader) -> None:
+def end_learning(reader: Keyed) -> None:
     """Have keys do what they do again."""
     reader.context = Context.READING
     reader.say("learn: off")
 
 
-def enter(reader: Reader) -> None:
+def enter(reader: Keyed) -> None:
     """Take what was typed, and say it."""
     prompt = reader.prompt
     reader.prompt, reader.context = None, Context.READING
@@ -52,14 +53,14 @@ def enter(reader: Reader) -> None:
     prompt.then(typed)
 
 
-def give_up(reader: Reader) -> None:
+def give_up(reader: Keyed) -> None:
     """Forget what was typed."""
     prompt = reader.prompt
     reader.prompt, reader.context = None, Context.READING
     reader.say(f"{'text' if prompt is None else prompt.label}: given up")
 
 
-def erase(reader: Reader) -> None:
+def erase(reader: Keyed) -> None:
     """Take back the character that was typed last."""
     if reader.prompt is not None:
         reader.prompt.erase()

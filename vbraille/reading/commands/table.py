@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         structure,
         turning,
     )
+    from vbraille.reading.keyed import Keyed
     from vbraille.reading.reader import Reader
 else:
     asking, choosing, control, marking = map(Deferred, ("asking", "choosing", "control", "marking"))
@@ -59,7 +60,7 @@ def find(key: str, context: Context) -> Command | None:
     return BOUND.find(key, context)
 
 
-def press(reader: Reader, key: str) -> None:
+def press(reader: Keyed, key: str) -> None:
     """Call the command that a key stands for in the reader's context."""
     bound = reader.bound or BOUND
     text = pasted(key)
@@ -77,7 +78,7 @@ def press(reader: Reader, key: str) -> None:
             reader.say(f"no command: {key!r}; {reader.key('HELP', 'h')} says the keys")
 
 
-def _paste(reader: Reader, key: str, text: str) -> None:
+def _paste(reader: Keyed, key: str, text: str) -> None:
     """Put pasted text into what is being typed; elsewhere it is no command."""
     if reader.prompt is not None and reader.context is Context.PROMPT:
         reader.prompt.paste(text)
@@ -85,7 +86,7 @@ def _paste(reader: Reader, key: str, text: str) -> None:
         reader.say("paste: text that is pasted is passed over; type the keys")
 
 
-def press_button(reader: Reader, number: int) -> None:
+def press_button(reader: Keyed, number: int) -> None:
     """Call the command that a button of the device stands for."""
     _call(reader, f"button {number}", (reader.bound or BOUND).buttons.get(number))
 
@@ -101,7 +102,7 @@ def press_display_key(reader: Reader, name: str) -> None:
     _call(reader, f"display {name}", (reader.bound or BOUND).display_keys.get(name))
 
 
-def _call(reader: Reader, name: str, command: Command | None) -> None:
+def _call(reader: Keyed, name: str, command: Command | None) -> None:
     """Call the command of something that is pressed and is no key of the keyboard."""
     if reader.context is Context.LEARNING:
         _learn(reader, name, command)
@@ -138,14 +139,14 @@ def turn_knob(reader: Reader, number: int, share: float) -> str:
     return ""
 
 
-def say_keys(reader: Reader) -> None:
+def say_keys(reader: Keyed) -> None:
     """Say what the keys do."""
     for command in (reader.bound or BOUND).of(reader.context):
         if command.keys:
             reader.say(f"{command.spoken_keys}: {command.help}")
 
 
-def _learn(reader: Reader, name: str, command: Command | None) -> None:
+def _learn(reader: Keyed, name: str, command: Command | None) -> None:
     if command is not None and command.name in ("LEARN", "QUIT"):
         control.end_learning(reader)
     else:

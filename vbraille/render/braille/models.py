@@ -98,23 +98,30 @@ STRESS2 = Model(
 # Lévesque 2009, 6.2, on the Tactograph of ch. 7; contactors as in its author's later code. Of eight
 # rows every second one shows a row of dots: 2.8 mm apart, which comes nearest to the 2.5 mm of
 # paper (4.2 mm on every third row), and in the order of that code, from the far row on.
+_ARRAY_8X8 = Display(
+    name="simulated STReSS² 8 × 8",
+    rows=8,
+    columns=8,
+    column_pitch_mm=1.2,
+    row_pitch_mm=1.4,
+    levels=_LEVELS,
+    rest_side="right",
+    rate_hz=_RATE_HZ,
+    contactor_mm=(0.5, 1.2),
+)
 STRESS2_8X8 = Model(
     "stress2-8x8",
     "STReSS² 8 × 8",
-    carrier.TACTOGRAPH.under(
-        Display(
-            name="simulated STReSS² 8 × 8",
-            rows=8,
-            columns=8,
-            column_pitch_mm=1.2,
-            row_pitch_mm=1.4,
-            levels=_LEVELS,
-            rest_side="right",
-            rate_hz=_RATE_HZ,
-            contactor_mm=(0.5, 1.2),
-        )
-    ),
+    carrier.TACTOGRAPH.under(_ARRAY_8X8),
     replace(STRESS2.style, mapping=MAPPINGS["eight-dots"], geometry=geometry.STRESS2_8X8),
+)
+# The same array on the Pantograph of Lévesque 2009, 6.2, as in the experiments of 6.4: a smaller
+# surface, and an array that is kept upright and not measured.
+PANTOGRAPH = Model(
+    "pantograph",
+    "STReSS² 8 × 8 on the Pantograph",
+    carrier.PANTOGRAPH.under(_ARRAY_8X8),
+    replace(STRESS2_8X8.style, geometry=geometry.PANTOGRAPH),
 )
 # Not in the source: its successor, by the author's later code; 8 bits, of which it uses 0 … 150.
 LATERO = Model(
@@ -135,7 +142,7 @@ LATERO = Model(
     ),
     replace(STRESS2.style, mapping=MAPPINGS["eight-dots"], geometry=geometry.LATERO),
 )
-MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, LATERO, VBD)}
+MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, PANTOGRAPH, LATERO, VBD)}
 
 
 def same_array(one: Display, other: Display) -> bool:

@@ -71,7 +71,7 @@ def deflections(
     parity: ArrayLike = 0,
     time_s: float = 0.0,
 ) -> Values:
-    """Compute the deflections of a scene at places of its canvas.
+    """Compute the deflections of a scene at places, which are at rest beside its canvas.
 
     Parameters
     ----------
@@ -91,10 +91,14 @@ def deflections(
     float64[n]
         Deflections, 0 … 1.
     """
+    at = places(x_mm, y_mm, parity, time_s)
     if not scene.elements:
-        return np.zeros(np.shape(np.atleast_1d(x_mm)))
+        return np.zeros(at.x_mm.shape)
     whole = Group(operation=scene.operation, parts=scene.elements)
-    return deflection(whole, assets, places(x_mm, y_mm, parity, time_s))
+    width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
+    across = (at.x_mm >= 0) & (at.x_mm <= width_mm)
+    on_canvas = across & (at.y_mm >= 0) & (at.y_mm <= height_mm)
+    return np.where(on_canvas, deflection(whole, assets, at), 0.0)
 
 
 def opacity(

@@ -171,8 +171,9 @@ def axial_grating(grating: AxialGrating, at: ActuatorPlaces) -> Values:
 def intensity(bitmap: Bitmap, at: ActuatorPlaces) -> Values:
     """Compute the intensity of a bitmap, bilinear between the middles of its pixels: 8.4.2."""
     rows, columns = bitmap.intensities.shape
-    framed = np.full((rows + 2, columns + 2), bitmap.outside)
-    framed[1:-1, 1:-1] = bitmap.intensities / WHOLE
+    framed = np.full((rows + 2, columns + 2), round(bitmap.outside * WHOLE))
+    framed[1:-1, 1:-1] = bitmap.intensities
+    framed = framed / WHOLE
     dx, dy = at.from_point(*bitmap.place_mm)
     # The pixel with its middle at (0, 0) is the first of the frame around them.
     u = np.clip(dx / bitmap.width_mm * columns + 0.5, 0, columns + 1)

@@ -1,0 +1,218 @@
+"""``vbraille map``: its files, what it says, and what it refuses."""
+
+import csv
+import re
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+
+SCENE = """
+title = "A ring"
+description = "A ring that vibrates, and ridges."
+canvas = { width_mm = 40, height_mm = 30 }
+
+[[elements]]
+kind = "linear-grating"
+ridge_mm = 4
+amplitude = 0.5
+
+[[elements]]
+kind = "circle"
+id = "ring"
+center_mm = [20, 15]
+radius_mm = 8
+stroke = { width_mm = 4, vibration = { frequency_hz = 25 } }
+"""
+STILL = 'canvas = { width_mm = 40, height_mm = 30 }\nelements = [{ kind = "uniform", level = 0.5 }]'
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """A file of a picture of which one element vibrates."""
+    path = tmp_path / "ring.scene"
+    path.write_text(SCENE)
+    return path
+
+
+def pixels_of(path):
+    with Image.open(path) as image:
+        assert image.mode == "L"
+        return np.array(image, float)
+
+
+def test_a_map_has_a_gray_for_each_place_and_words(scene, call, tmp_path):
+    out = tmp_path / "ring.png"
+    done = call("map", scene, "--out", out)
+    assert (done.code, done.err) == (0, "")
+    pixels = pixels_of(out)
+    assert pixels.shape == (120, 160)
+    # eq. 8.4: a ridge of 4 mm begins at the left edge, and is half as high as it could be.
+    x_mm = (np.arange(160) + 0.5) / 4
+    ridges = 255 * (1 - 0.5 * (0.5 - 0.5 * np.cos(2 * np.pi * x_mm / 4)))
+    assert np.abs(pixels[0] - ridges).max() <= 1
+    ring = pixels[60, 44:52]  # 7 to 9 mm left of the middle: noise
+    assert ring.std() > 20
+    with Image.open(out) as image:
+        assert image.text["Title"] == "A ring"
+        assert "A ring that vibrates" in image.text["Description"]
+        assert image.info["dpi"][0] == pytest.approx(4 * 25.4, rel=1e-3)
+    lines = done.out.splitlines()
+    assert lines[:4] == [
+        f"drawn: {out}",
+        "shown: a deflection map, rest white and full swing black",
+        "pixels: 160 × 120, 4 a mm",
+        "vibration: as noise, seed 0",
+    ]
+    assert "size: 40 × 30 mm" in lines
+    assert lines[-1] == "vibrates: element ring, 25 Hz"
+    assert "elements: 2, one on top of the other" in lines
+
+
+def test_a_seed_is_a_picture(scene, call, tmp_path):
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        assert call("map", scene, "--out", tmp_path / f"{name}.png", "--seed", seed).code == 0
+    a, b, c = ((tmp_path / f"{name}.png").read_bytes() for name in "abc")
+    assert a == b
+    assert a != c
+
+
+def test_csv_has_a_row_for_each_pixel(scene, call, tmp_path):
+    out = tmp_path / "ring.csv"
+    assert call("map", scene, "--out", out, "--resolution", "0.5").code == 0
+    rows = list(csv.reader(out.read_text().splitlines()))
+    assert rows[0] == ["x_mm", "y_mm", "deflection"]
+    assert len(rows) == 1 + 20 * 15
+    x, y, deflection = map(float, rows[1])
+    assert (x, y) == (1, 1)
+    assert deflection == pytest.approx(0.5 * (0.5 - 0.5 * np.cos(2 * np.pi / 4)), abs=1e-6)
+
+
+@pytest.mark.parametrize("suffix", ["png", "gif"])
+def test_a_sequence_swings(scene, call, tmp_path, suffix):
+    out = tmp_path / f"ring.{suffix}"
+    options = ("--vibration", "sequence", "--frames", 4, "--resolution", 1)
+    done = call("map", scene, "--out", out, *options)
+    assert done.code == 0
+    assert "time between maps: 10 ms, of one slowest swing of 40 ms" in done.out
+    with Image.open(out) as image:
+        assert image.n_frames == 4
+        grays = []
+        for frame in range(4):
+            image.seek(frame)
+            grays.append(image.convert("L").getpixel((12, 15)))
+    # sin 2πft at the quarters of a swing, through δ¹ of an amplitude of 1 (eq. 8.1).
+    assert np.abs(np.array(grays) - [127.5, 0, 127.5, 255]).max() <= 3
+
+
+def test_parities_swing_against_each_other(scene, call, tmp_path):
+    for parity in (0, 1):
+        options = ("--vibration", "sequence", "--frames", 4, "--parity", parity)
+        assert call("map", scene, "--out", tmp_path / f"{parity}.png", *options).code == 0
+    with Image.open(tmp_path / "0.png") as one, Image.open(tmp_path / "1.png") as other:
+        one.seek(1)
+        other.seek(3)
+        assert np.abs(np.array(one, float) - np.array(other, float)).max() <= 1
+
+
+def test_the_array_is_drawn_where_it_is(scene, call, tmp_path):
+    plain, out = tmp_path / "plain.png", tmp_path / "array.png"
+    assert call("map", scene, "--out", plain).code == 0
+    done = call("map", scene, "--out", out, "--array", "20,15,30", "--model", "latero")
+    assert done.code == 0
+    assert "array: Latero, centre at (20, 15) mm, turned by 30°" in done.out
+    different = np.abs(pixels_of(plain) - pixels_of(out)) > 3
+    rows, columns = np.nonzero(different)
+    assert 8 < (rows.max() - rows.min()) / 4 < 20
+    assert abs((rows.max() + rows.min()) / 8 - 15) < 0.5
+    assert abs((columns.max() + columns.min()) / 8 - 20) < 0.5
+
+
+def test_a_drawing_in_svg_says_what_it_shows(scene, call, tmp_path):
+    for name, options in {
+        "map": ("--axes", "--array", "20,15"),
+        "abstract": ("--abstract",),
+        "raised": ("--raised", "--sheet", "letter"),
+    }.items():
+        out = tmp_path / f"{name}.svg"
+        done = call("map", scene, "--out", out, *options)
+        assert (done.code, done.err) == (0, "")
+        root = ElementTree.parse(out).getroot()
+        space = "{http://www.w3.org/2000/svg}"
+        assert root.find(f"{space}title").text == "A ring"
+        words = root.find(f"{space}desc").text
+        assert "vibrates: element ring, 25 Hz" in words
+        assert root.get("width").endswith("mm")
+    raised = (tmp_path / "raised.svg").read_text()
+    assert set(re.findall(r'(?:fill|stroke)="([^"]*)"', raised)) <= {
+        "#000000",
+        "#ffffff",
+        "#fff",
+        "none",
+    }
+    assert root.get("width") == "279.4mm"
+    assert "scale: 1 to 1" in done.out
+
+
+def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
+    out = tmp_path / "ring.pdf"
+    assert call("map", scene, "--out", out, "--raised").code == 0
+    content = out.read_bytes()
+    assert content.startswith(b"%PDF")
+    box = re.search(rb"/MediaBox \[ ?([0-9. ]+)\]", content)
+    width, height = map(float, box[1].split()[2:])
+    assert (width, height) == pytest.approx((40 / 25.4 * 72, 30 / 25.4 * 72), rel=1e-4)
+    assert b"A ring" in content or b"\\000A\\000 \\000r" in content
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--out", "a.bmp"), "--out a.bmp ends in .bmp, the nearest is"),
+        (("--out", "a"), "--out a has no suffix; end its name in one of .png, .svg"),
+        (("--out", "a.png", "--resolution", "0"), "--resolution is 0 pixels a mm; it must be"),
+        (("--out", "a.png", "--resolution", "nan"), "--resolution is nan pixels a mm"),
+        (("--out", "a.png", "--resolution", "400"), "there is room for 100 million; give --resol"),
+        (("--out", "a.csv", "--resolution", "100"), "there is room for 10 million; give --resol"),
+        (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
+        (("--out", "a.png", "--array", "nan,15"), "the array is not on the canvas"),
+        (("--out", "a.png", "--array", "5"), "'5' is no place; give X,Y in mm"),
+        (("--out", "a.png", "--abstract", "--raised"), "leave one of them out"),
+        (("--out", "a.csv", "--abstract"), "--abstract is no map; end --out in .svg"),
+        (("--out", "a.svg", "--vibration", "sequence"), "end --out in .png or .gif"),
+        (("--out", "a.gif"), "GIF is for --vibration sequence"),
+        (("--out", "a.png", "--frames", "4"), "--frames and --parity are for --vibration sequ"),
+        (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),
+        (("--out", "a.png", "--sheet", "a4"), "--sheet is for raised drawings; add --raised"),
+        (("--out", "a.csv", "--axes"), "CSV has the map's numbers alone"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_a_sentence(
+    options, words, scene, call, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    done = call("map", scene, *options)
+    assert done.code == 2
+    assert words in done.err
+    assert done.err.count("\n") == 1
+    assert sorted(tmp_path.iterdir()) == [scene]
+
+
+def test_a_sequence_of_what_stands_still_is_refused(call, tmp_path):
+    still = tmp_path / "still.scene"
+    still.write_text(STILL)
+    done = call("map", still, "--out", tmp_path / "a.png", "--vibration", "sequence")
+    assert done.code == 2
+    assert "vibrates or moves, so that all maps would be the same" in done.err
+
+
+def test_a_file_is_replaced_only_if_asked(scene, call, tmp_path):
+    out = tmp_path / "ring.png"
+    out.write_text("mine")
+    done = call("map", scene, "--out", out)
+    assert done.code == 2
+    assert "is there already" in done.err
+    assert out.read_text() == "mine"
+    assert call("map", scene, "--out", out, "--force").code == 0
+    assert pixels_of(out).shape == (120, 160)

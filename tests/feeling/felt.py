@@ -1,0 +1,71 @@
+"""A picture that is felt on a device in memory, by the engine's own loop on a manual clock."""
+
+from tests.engine.planar import Bench
+from vbraille.feeling.commands import BOUND
+from vbraille.feeling.composing import Composer
+from vbraille.feeling.feeler import Feeler
+from vbraille.feeling.loading import load_scene
+from vbraille.pose import Pose
+from vbraille.reading.commands.table import press
+from vbraille.render import MODELS
+
+DISPLAY = MODELS["stress2-8x8"].display
+SCENE = """
+title = "A house"
+canvas = { width_mm = 120, height_mm = 90 }
+
+[[elements]]
+kind = "circle"
+id = "sun"
+title = "Sun"
+description = "It shines."
+center_mm = [90, 20]
+radius_mm = 10
+stroke = { width_mm = 3 }
+fill = { texture = { kind = "linear-grating", ridge_mm = 2, gap_mm = 2 } }
+
+[[elements]]
+kind = "polygon"
+id = "wall"
+vertices_mm = [[20, 30], [60, 30], [60, 80], [20, 80]]
+stroke = { width_mm = 3 }
+"""
+
+
+class Felt:
+    """Somebody who feels a file; where the finger is, what was said, and the keys."""
+
+    def __init__(self, path, *, display=DISPLAY, steering=None, entering=False, room=1 << 22):
+        self.at = (10.0, 10.0)
+        self.bench = Bench(lambda _: (*self.at, 0.0), display)
+        self.said = []
+        style = MODELS["stress2-8x8"].style
+        self.loaded = load_scene(path, style)
+        composer = Composer(display)
+        self.feeler = Feeler(
+            self.loaded,
+            self.bench.engine,
+            where=lambda: None if self.at is None else Pose(0, *self.at),
+            composer=composer,
+            style=style,
+            say=self.said.append,
+            bound=BOUND,
+            room=room,
+            steering=steering,
+            entering=entering,
+        )
+        self.feeler.start(composer.compose(self.loaded))
+        self.said.clear()
+
+    def press(self, *keys):
+        """Press keys; what was said."""
+        for key in keys:
+            press(self.feeler, key)
+        said, self.said[:] = list(self.said), []
+        return said
+
+    def be_at(self, x_mm, y_mm, now_s=0.0):
+        """Have the finger come to a place; what was said."""
+        self.at = (x_mm, y_mm)
+        self.feeler.attend(now_s)
+        return self.press()

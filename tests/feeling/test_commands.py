@@ -1,0 +1,41 @@
+"""The table of keys of whoever feels a picture, against its document."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.feeling.felt import SCENE, Felt
+from vbraille.feeling.commands import BOUND, BUTTONS, COMMANDS
+from vbraille.reading.context import Context
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "feeling.md"
+
+
+def test_the_document_has_the_table():
+    rows = [
+        f"| `{command.name}` | {command.spoken_keys} | {command.help} "
+        f"| {', '.join(context.value for context in command.contexts)} |"
+        for command in COMMANDS
+    ]
+    table = [line for line in DOCUMENT.read_text().splitlines() if line.startswith("| `")]
+    assert table == rows
+
+
+@pytest.mark.parametrize("context", Context)
+def test_a_key_has_one_meaning_in_a_context(context):
+    keys = [key for command in BOUND.of(context) for key in command.keys]
+    assert len(set(keys)) == len(keys) > 0
+
+
+def test_every_command_says_something_or_moves_the_hand_or_ends(tmp_path):
+    path = tmp_path / "house.scene"
+    path.write_text(SCENE)
+    felt = Felt(path)
+    for command in BOUND.of(Context.READING):
+        if command.name not in ("CANCEL", "MIDDLE", "QUIT"):
+            felt.feeler.context = Context.READING
+            assert felt.press(command.keys[0]), command.name
+
+
+def test_buttons_call_commands_that_there_are():
+    assert {BOUND.buttons[int(number)].name for number in BUTTONS} == set(BUTTONS.values())

@@ -1,0 +1,94 @@
+"""The paths over a picture: where they go, how fast, and what is refused."""
+
+import numpy as np
+import pytest
+
+from vbraille.errors import InputError
+from vbraille.feeling.paths import PathOptions, path_of
+from vbraille.scene.scene import Canvas
+from vbraille.simulation.exploring import Disturbance, spiral, spot, wide
+
+CANVAS = Canvas(width_mm=100, height_mm=60)
+
+
+def lengths(course):
+    return np.hypot(np.diff(course.x_mm), np.diff(course.y_mm))
+
+
+@pytest.mark.parametrize("size", [(100, 60), (60, 100), (60, 60), (97, 55), (30, 8)])
+def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
+    width, height = size
+    x, y = spiral(*size, 10)
+    corners = [(0, 0), (width, 0), size, (0, height), (0, 0)]
+    assert list(zip(x[:5], y[:5], strict=True)) == corners
+    assert (x.min(), x.max(), y.min(), y.max()) == (0, width, 0, height)
+    course = wide(*size, spacing_mm=10)
+    t_s = np.arange(0, course.duration_s, 0.005)
+    gone = np.interp(t_s, course.t_s, course.x_mm), np.interp(t_s, course.t_s, course.y_mm)
+    for place in np.random.default_rng(1).uniform((0, 0), size, (200, 2)):
+        assert np.hypot(gone[0] - place[0], gone[1] - place[1]).min() <= 10 / np.sqrt(2) + 0.2
+    np.testing.assert_allclose(lengths(course) / np.diff(course.t_s), 60)
+
+
+def test_disturbances_sway_change_the_speed_and_go_back():
+    even = wide(100, 60)
+    swayed = wide(100, 60, disturbance=Disturbance(sway_mm=2))
+    assert swayed.duration_s == pytest.approx(even.duration_s, rel=0.01)
+    at = swayed.t_s < 100 / 60 - 0.1  # along the upper edge, beyond which nothing is
+    assert swayed.y_mm[at].max() == pytest.approx(2, abs=0.01)
+    assert swayed.y_mm.min() >= 0
+    unsteady = wide(100, 60, disturbance=Disturbance(speed_change=0.5))
+    speed = lengths(unsteady) / np.diff(unsteady.t_s)
+    assert (speed.min(), speed.max()) == pytest.approx((30, 90), rel=0.01)
+    back = wide(100, 60, disturbance=Disturbance(back_mm=10))
+    assert back.duration_s == pytest.approx(even.duration_s * 60 / 40, rel=0.05)
+    first = np.flatnonzero(np.diff(back.x_mm[:400]) < 0)
+    assert back.x_mm[first[0]] == pytest.approx(50)
+    assert (back.x_mm[-1], back.y_mm[-1]) == pytest.approx((even.x_mm[-1], even.y_mm[-1]), abs=0.5)
+
+
+def test_the_spot_path_fills_the_square_about_its_place():
+    course = spot(40, 30, radius_mm=5, duration_s=20)
+    assert abs(course.x_mm - 40).max() == pytest.approx(5, abs=0.01)
+    assert abs(course.y_mm - 30).max() == pytest.approx(5, abs=0.01)
+    counts, *_ = np.histogram2d(course.x_mm, course.y_mm, bins=5)
+    assert counts.min() > 0
+    speed = lengths(course) / np.diff(course.t_s)
+    assert speed.max() == pytest.approx(60, rel=0.01)
+
+
+def test_poses_are_those_of_the_path_at_even_times(tmp_path):
+    path = path_of(PathOptions("wide", spacing=20), CANVAS, 8.4, 500.0)
+    np.testing.assert_allclose(np.diff(path.t_s), 1 / 500)
+    assert (path.x_mm[0], path.y_mm[0]) == (0, 0)
+    assert path.x_mm.max() == pytest.approx(100, abs=0.2)
+    recorded = tmp_path / "hand.csv"
+    recorded.write_text("t_s,x_mm,y_mm,theta_deg\n0,0,5,0\n0.4,40,9,90\n")
+    path = path_of(PathOptions(f"recorded:{recorded}"), CANVAS, 8.4, 100.0)
+    assert path.x_mm[[0, -1]].tolist() == pytest.approx([4.2, 44.2])
+    assert path.y_mm[[0, -1]].tolist() == pytest.approx([5, 9])
+    assert path.theta_rad[-1] == pytest.approx(np.pi / 2)
+    recorded.write_text("0,0\n0.4,40\n")
+    path = path_of(PathOptions(f"recorded:{recorded}"), CANVAS, 8.4, 100.0)
+    assert set(path.y_mm) == {30.0}
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (PathOptions("round"), "there is no path 'round'; give wide, spot or recorded:FILE.csv"),
+        (PathOptions("wide", at="3,4"), "is not for the path wide"),
+        (PathOptions("spot", spacing=3.0), "is not for the path spot"),
+        (PathOptions("spot", at="3;4"), "the place is '3;4'; write it as X,Y in mm"),
+        (PathOptions("spot", at="3,nan"), "place is 'nan'; give a number in mm"),
+        (PathOptions("wide", spacing=0.1), "spacing is 0.1 mm; it must be 0.5 to 1000 mm"),
+        (PathOptions("wide", speed=0.0), "speed is 0 mm/s"),
+        (PathOptions("wide", unsteady=1.0), "change of speed is 1; it must be 0 to 0.9"),
+        (PathOptions("wide", back=60.0), "way back is 60 mm"),
+        (PathOptions("spot", seconds=1e9), "duration is 1e\\+09 s"),
+        (PathOptions("recorded:none.csv"), "there is no file none.csv"),
+    ],
+)
+def test_what_is_no_path_is_refused(options, said):
+    with pytest.raises(InputError, match=said):
+        path_of(options, CANVAS, 8.4, 1000.0)

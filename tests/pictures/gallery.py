@@ -1,0 +1,47 @@
+"""The pictures of docs/graphics.md; ``python -m tests.pictures.gallery`` draws them again."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from vbraille.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+SCENES = ROOT / "texts/scenes/gallery"
+PICTURES = ROOT / "docs/images/graphics"
+
+
+class Shown(NamedTuple):
+    """A picture of the gallery: its scene's name, what its file's name has more, and options."""
+
+    scene: str
+    more: str = ""
+    options: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return f"{self.scene}{self.more}.png"
+
+    def command(self, folder: Path) -> list[str]:
+        """Command that draws it into a folder."""
+        scene = SCENES / f"{self.scene}.scene"
+        return ["map", str(scene), "--out", str(folder / self.name), "--force", *self.options]
+
+
+COARSE = ("--resolution", "3")
+LARGE = {"distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
+GALLERY = [
+    *(
+        Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
+        for path in sorted(SCENES.glob("*.scene"))
+    ),
+    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE)),
+    Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
+    Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
+    Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
+    Shown("labelled", "-raised", ("--raised", "--resolution", "5")),
+]
+
+if __name__ == "__main__":
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for shown in GALLERY:
+        assert main(shown.command(PICTURES)) == 0

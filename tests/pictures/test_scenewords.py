@@ -1,0 +1,82 @@
+"""What a scene's picture shows, in words."""
+
+import pytest
+
+from vbraille.pictures.scenes import slowest_s
+from vbraille.pictures.scenewords import pattern_words, scene_lines
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, Image, Label, Line, Polygon, Tile
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.strokes import Along, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.textures import (
+    AxialGrating,
+    LinearGrating,
+    RadialGrating,
+    Uniform,
+    UniformVibration,
+)
+
+CANVAS = Canvas(width_mm=100, height_mm=80)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "words"),
+    [
+        (Uniform(level=0.5, id="a"), "a, uniform deflection 0.5"),
+        (UniformVibration(frequency_hz=20), "uniform vibration at 20 Hz"),
+        (
+            LinearGrating(ridge_mm=2, gap_mm=1, ridge_angle_deg=0, title="waves", id="w"),
+            "waves, ridges of 2 mm with gaps of 1 mm, the wave at 90°",
+        ),
+        (
+            RadialGrating(center_mm=(1, 2), ridge_mm=2, inverted=True),
+            "rings: ridges of 2 mm with gaps of 0 mm around (1, 2) mm, inverted",
+        ),
+        (
+            AxialGrating(center_mm=(1, 2), ridge_deg=20, amplitude=0.5),
+            "spokes of 20° with gaps of 0° around (1, 2) mm, amplitude 0.5",
+        ),
+        (
+            Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=3, along=Along())),
+            "line from (0, 0) mm to (9, 0) mm, stroke of 3 mm cut every 2 mm",
+        ),
+        (Dots(centers_mm=((1, 1), (2, 2))), "2 dots of radius 1 mm"),
+        (Label(text="sun\n", place_mm=(3, 4)), 'braille "sun " at (3, 4) mm'),
+        (
+            Tile(width_mm=5, height_mm=4, part=Uniform()),
+            "tiles of 5 × 4 mm with uniform deflection 1",
+        ),
+        (
+            Group(operation="multiply", parts=(Uniform(), UniformVibration())),
+            "2 parts, each masking the others (uniform deflection 1; uniform vibration at 50 Hz)",
+        ),
+        (Image(file="a\x1b.png"), "image a\\x1b.png at (0, 0) mm"),
+    ],
+)
+def test_each_pattern_has_words(pattern, words):
+    assert pattern_words(pattern) == words
+
+
+def test_a_scene_says_what_vibrates_once_for_each_element():
+    triangle = Polygon(
+        vertices_mm=((0, 0), (9, 0), (0, 9)),
+        id="roof",
+        stroke=Stroke(vibration=Vibration(frequency_hz=20)),
+        markers=Markers(),
+        fill=Fill(texture=UniformVibration(frequency_hz=20)),
+    )
+    ring = Circle(center_mm=(5, 5), radius_mm=4, dots=Dotting(vertex_vibration=None))
+    scene = Scene(canvas=CANVAS, title="House", elements=(ring, triangle), operation="maximum")
+    lines = scene_lines(scene)
+    assert lines[0] == "title: House"
+    assert lines[1] == "size: 100 × 80 mm"
+    assert lines[2] == "elements: 2, the largest of them"
+    assert lines[-1] == "vibrates: element roof, 20 Hz, 50 Hz"
+    assert slowest_s(scene) == pytest.approx(0.05)
+
+
+def test_a_scene_that_stands_still_says_so():
+    scene = Scene(canvas=CANVAS, elements=(LinearGrating(ridge_mm=3),))
+    assert scene_lines(scene)[-1] == "vibrates: nothing"
+    assert slowest_s(scene) is None
+    moving = Scene(canvas=CANVAS, elements=(LinearGrating(ridge_mm=3, velocity_mm_s=-6),))
+    assert slowest_s(moving) == pytest.approx(0.5)

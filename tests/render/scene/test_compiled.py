@@ -1,0 +1,82 @@
+"""One picture in several ways: pruned or not, compiled anew or after another, and as a map."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.render.scene.scenes import (
+    STRESS2_8X8_ARRAY,
+    assets_of,
+    examples,
+    patterns,
+    poses,
+    scene_of,
+    scenes,
+    seeds,
+)
+from vbraille.render.scene import reference
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.canvas import SceneMap
+from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+
+
+def frame(program, pose):
+    out = np.full(program.shape, np.nan)
+    program.frame(pose.x_mm, out, y_mm=pose.y_mm, theta_rad=pose.theta_rad, time_s=pose.time_s)
+    return out
+
+
+@examples(60)
+@given(scenes(), seeds)
+def test_pruning_changes_nothing(scene, seed):
+    assets = assets_of(*scene.elements)
+    pruned = compile_scene(scene, STRESS2_8X8_ARRAY, assets)
+    whole = compile_scene(scene, STRESS2_8X8_ARRAY, assets, pruned=False)
+    for pose in poses(np.random.default_rng(seed), 6):
+        np.testing.assert_allclose(frame(pruned, pose), frame(whole, pose), rtol=0, atol=1e-9)
+
+
+@examples(40)
+@given(st.lists(patterns, min_size=2, max_size=4), st.permutations(range(4)), seeds)
+def test_a_scene_after_another_is_as_if_it_were_the_first(parts, order, seed):
+    assets = assets_of(*parts)
+    compiler = SceneCompiler(STRESS2_8X8_ARRAY)
+    compiler.compile(scene_of(*parts), assets)
+    changed = scene_of(*(parts[n] for n in order if n < len(parts)), operation="maximum")
+    later, anew = (
+        compiler.compile(changed, assets),
+        compile_scene(changed, STRESS2_8X8_ARRAY, assets),
+    )
+    for pose in poses(np.random.default_rng(seed), 2):
+        np.testing.assert_array_equal(frame(later, pose), frame(anew, pose))
+
+
+@examples(60)
+@given(scenes(), seeds)
+def test_a_map_is_what_the_twin_shows(scene, seed):
+    rng = np.random.default_rng(seed)
+    assets = assets_of(*scene.elements)
+    x, y = np.sort(rng.uniform(-5, 65, 13)), rng.uniform(-5, 65, 7)
+    time_s, parity = float(rng.uniform(0, 10)), int(rng.integers(2))
+    got = SceneMap(scene, assets).deflections(x, y, time_s=time_s, parity=parity)
+    assert got.shape == (7, 13)
+    right, down = (grid.ravel() for grid in np.meshgrid(x, y))
+    want = reference.deflections(scene, assets, right, down, parity, time_s)
+    np.testing.assert_allclose(got.ravel(), want, rtol=0, atol=1e-6)
+
+
+@examples(60)
+@given(patterns, seeds)
+def test_a_map_of_opacity_is_what_the_twin_says(pattern, seed):
+    rng = np.random.default_rng(seed)
+    assets = assets_of(pattern)
+    x, y = np.sort(rng.uniform(0, 60, 13)), rng.uniform(0, 60, 7)
+    time_s, parity = float(rng.uniform(0, 10)), int(rng.integers(2))
+    got = SceneMap(scene_of(pattern), assets).opacity(x, y, time_s=time_s, parity=parity)
+    right, down = (grid.ravel() for grid in np.meshgrid(x, y))
+    want = reference.opacity(pattern, assets, right, down, parity, time_s)
+    np.testing.assert_allclose(got.ravel(), want, rtol=0, atol=1e-6)
+
+
+def test_a_map_of_nothing_is_at_rest():
+    assert not SceneMap(scene_of(), Assets()).deflections(np.arange(5.0), np.arange(3.0)).any()

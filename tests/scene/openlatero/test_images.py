@@ -1,0 +1,165 @@
+"""Pictures of OpenLatero's scenes: where they stand, how large, and what of them counts."""
+
+import numpy as np
+import pytest
+from PIL import Image as Pillow
+
+from tests.scene.openlatero.files import grating, scene, texture
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.reference import deflections
+from vbraille.scene.images import load_bitmaps
+from vbraille.scene.openlatero import read_gen
+from vbraille.scene.patterns import Image
+from vbraille.scene.reading import open_scene
+from vbraille.scene.textures import UniformVibration
+
+WIDE, HIGH = 289.9, 230.1875
+
+
+@pytest.fixture
+def folder(tmp_path):
+    Pillow.new("L", (400, 100), 255).save(tmp_path / "wide.png")
+    Pillow.new("L", (100, 200), 255).save(tmp_path / "high.png")
+    Pillow.new("RGB", (10, 10), (200, 10, 10)).save(tmp_path / "red.png")
+    clear = Pillow.new("RGBA", (10, 10), (255, 255, 255, 255))
+    clear.putpixel((3, 3), (255, 255, 255, 0))
+    clear.save(tmp_path / "clear.png")
+    (tmp_path / "drawing.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="4cm" height="20mm"><rect width="9"/></svg>'
+    )
+    return tmp_path
+
+
+def image(mask, part=None):
+    vibration = texture("Vibration") if part is None else part
+    return f'<Pattern type="Image">{vibration}<mask>{mask}</mask></Pattern>'
+
+
+def read(folder, mask, part=None, **settings):
+    (folder / "old.gen").write_text(scene(image(mask, part)))
+    found = read_gen(folder / "old.gen", **settings)
+    return (found.scene.elements or (None,))[0], "\n".join(found.warnings)
+
+
+# What stands in the mask beside the name, and place and size that follow.
+PLACED = {
+    "all as usual": ("wide", "", (0, (HIGH - WIDE / 4) / 2), (WIDE, WIDE / 4)),
+    "a high one": ("high", "", ((WIDE - HIGH / 2) / 2, 0), (HIGH / 2, HIGH)),
+    "shares of the largest": (
+        "wide",
+        '<position>centered</position><width units="%">0.5</width><height units="%">0.5</height>',
+        (WIDE / 4, (HIGH - WIDE / 8) / 2),
+        (WIDE / 2, WIDE / 8),
+    ),
+    "shares of the surface": (
+        "wide",
+        "<reference_maximized>no</reference_maximized>"
+        '<width units="%">0.5</width><height units="%">0.25</height>',
+        (WIDE / 4, HIGH * 3 / 8),
+        (WIDE / 2, HIGH / 4),
+    ),
+    "mm": (
+        "wide",
+        '<position units="mm">10,20.5</position><width units="mm">80</width>'
+        '<height units="mm">20</height><lock_aspect_ratio>yes</lock_aspect_ratio>',
+        (10, 20.5),
+        (80, 20),
+    ),
+    "a width alone": (
+        "wide", '<width units="mm">80</width>', ((WIDE - 80) / 2, (HIGH - WIDE / 4) / 2),
+        (80, WIDE / 4),
+    ),
+    "a drawing": ("drawing", "", (0, (HIGH - WIDE / 2) / 2), (WIDE, WIDE / 2)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PLACED)
+def test_pictures_stand_where_they_stood(folder, name):
+    file, mask, place, size = PLACED[name]
+    ending = "svg" if file == "drawing" else "png"
+    made, _ = read(folder, f"<imgfile>{file}.{ending}</imgfile>{mask}")
+    assert isinstance(made, Image)
+    assert made.place_mm == pytest.approx(place, abs=1e-6)
+    assert (made.width_mm, made.height_mm) == pytest.approx(size, abs=1e-6)
+    assert made.texture == UniformVibration()
+
+
+def test_a_blur_of_two_pixels_is_of_so_many_mm(folder):
+    made, said = read(folder, "<imgfile>wide.png</imgfile><blur>yes</blur>")
+    assert made.blur_mm == pytest.approx(2 * WIDE / 400, abs=1e-6)
+    assert "its blur is of 2 pixels of the picture" in said
+    _, said = read(
+        folder, "<imgfile>wide.png</imgfile><blur>yes</blur><height units='mm'>200</height>"
+    )
+    assert "its pixels are longer than wide" in said
+
+
+def test_a_plain_texture_makes_it_a_plain_map(folder):
+    made, _ = read(folder, "<imgfile>wide.png</imgfile>", texture("Plain"))
+    assert made.texture is None
+    weak = texture("Plain", "<amplitude>0.5</amplitude>")
+    made, _ = read(folder, "<imgfile>wide.png</imgfile>", weak)
+    assert made.texture.amplitude == 0.5
+
+
+def test_what_is_beyond_the_picture_is_kept(folder):
+    made, _ = read(folder, "<imgfile>wide.png</imgfile><default_alpha>0.3</default_alpha>")
+    assert made.outside == 0.3
+
+
+def test_alpha_is_the_mask_where_the_file_says_so(folder):
+    made, said = read(folder, '<imgfile type="alpha">clear.png</imgfile>')
+    assert made.channel == "alpha"
+    assert "red" not in said
+    made, said = read(folder, '<imgfile type="alpha">wide.png</imgfile>')
+    assert made is None
+    assert "imgfile has no alpha, which is to be its mask; left out" in said
+
+
+def test_colours_and_what_is_transparent_are_said(folder):
+    _, said = read(folder, '<imgfile type="gray">red.png</imgfile>')
+    assert "their luminance counts here, and their red there" in said
+    _, said = read(folder, '<imgfile type="gray">clear.png</imgfile>')
+    assert "what is transparent in its picture is down here" in said
+    _, said = read(folder, '<imgfile type="gray">wide.png</imgfile>')
+    assert said.count("\n") == 0
+    assert "bilinear" in said
+
+
+def test_a_picture_that_openlatero_lost_is_found_beside_the_scene(folder):
+    made, said = read(folder, "<imgfile>/wide.png</imgfile>")
+    assert made.file == "wide.png"
+    assert "/wide.png is not there, and wide.png beside this file is taken" in said
+    made, said = read(folder, "<imgfile>/wide.png</imgfile>", as_shown=True)
+    assert made is None
+    assert "/wide.png does not exist" in said
+
+
+def test_a_picture_that_is_none_is_left_out(folder):
+    (folder / "bad.png").write_bytes(b"no picture")
+    made, said = read(folder, "<imgfile>bad.png</imgfile>")
+    assert made is None
+    assert "line 8, Image: its picture is left out: bad.png is damaged, or no picture" in said
+
+
+def test_a_shape_through_a_mask_is_as_the_file_says_or_as_shown_nothing(folder):
+    shape = '<Pattern type="Circle"/>'
+    made, said = read(folder, "<imgfile>wide.png</imgfile>", shape)
+    assert made.texture is not None
+    assert "it is the mask of a Circle, as the file says" in said
+    assert read(folder, "<imgfile>wide.png</imgfile>", shape, as_shown=True)[0] is None
+
+
+def test_within_a_white_picture_there_is_its_texture_and_nothing_beyond(folder):
+    part = grating(4, 2, angle=30)
+    (folder / "old.gen").write_text(
+        scene(image("<imgfile>wide.png</imgfile><position>10,20</position>", part))
+    )
+    opened = open_scene(folder / "old.gen")
+    assets = Assets(bitmaps=load_bitmaps(opened.resolved, opened.folder))
+    x, y = np.linspace(12, 250, 40), np.linspace(22, 90, 40)
+    through = deflections(opened.resolved, assets, x, y)
+    alone = (folder / "alone.gen", scene(part))
+    alone[0].write_text(alone[1])
+    assert through == pytest.approx(deflections(read_gen(alone[0]).scene, Assets(), x, y))
+    assert not deflections(opened.resolved, assets, [5.0, 100.0], [50.0, 15.0]).any()

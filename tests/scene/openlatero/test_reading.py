@@ -1,0 +1,427 @@
+"""What is said about files of OpenLatero's, and what is made of odd ones."""
+
+import pytest
+
+from tests.scene.openlatero.files import (
+    circle,
+    fill,
+    grating,
+    line,
+    polygon,
+    scene,
+    stroke,
+    swings,
+    texture,
+    waves,
+)
+from vbraille.errors import InputError
+from vbraille.scene.openlatero import read_gen
+from vbraille.scene.patterns import Circle, Group, Line, Path, Tile
+from vbraille.scene.strokes import Along, Stroke, Vibration
+from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform
+
+
+@pytest.fixture
+def read(tmp_path):
+    def reader(*patterns, as_shown=False, name="old.gen", **settings):
+        text = patterns[0] if patterns[0].startswith(("<?xml", "<l", "<s")) else None
+        path = tmp_path / name
+        path.write_text(text or scene(*patterns, **settings), encoding="utf-8")
+        return read_gen(path, as_shown=as_shown)
+
+    return reader
+
+
+def said(found):
+    return "\n".join(found.warnings)
+
+
+def test_a_clean_scene_is_taken_over_without_a_word(read):
+    found = read(circle(stroke()), grating())
+    assert found.warnings == ()
+    assert found.scene.operation == "maximum"
+    assert (found.scene.canvas.width_mm, found.scene.canvas.height_mm) == (289.9, 230.1875)
+    assert found.scene.elements == (
+        Circle(center_mm=(50, 40), radius_mm=18, stroke=Stroke(width_mm=8, edge_mm=1.5)),
+        LinearGrating(ridge_mm=4, gap_mm=2, start_mm=(3.5, 1.25)),
+    )
+
+
+def test_lines_of_elements_and_of_their_parts_are_known(read):
+    found = read('<Pattern type="Group">\n' + circle() + "\n" + line() + "\n</Pattern>", circle())
+    assert found.lines == {
+        ("elements", 0): 6,
+        ("elements", 0, "parts", 0): 7,
+        ("elements", 0, "parts", 1): 8,
+        ("elements", 1): 10,
+    }
+
+
+@pytest.mark.parametrize("root", ["laterographics_xml", "stressr_xml", "anything"])
+def test_the_root_may_have_any_name(read, root):
+    found = read(scene(circle()).replace("laterographics_xml", root))
+    assert len(found.scene.elements) == 1
+    assert not found.warnings
+
+
+def test_a_library_file_is_a_scene_of_its_texture(read):
+    found = read(
+        f'<?xml version="1.0"?><laterographics_xml type="Texture">{grating()}</laterographics_xml>',
+        name="fine.tx",
+    )
+    assert found.scene.title == "fine"
+    assert [type(element) for element in found.scene.elements] == [LinearGrating]
+
+
+def test_stray_characters_are_said_and_harm_nothing(read):
+    found = read(scene(circle(stroke())).replace("</Generator>", "</Generator>\\"))
+    assert said(found) == 'line 2, laterographics_xml: the stray text "\\" is ignored'
+    odd = circle(stroke(), radius="18\\")
+    assert read(odd).scene.elements == read(circle(stroke())).scene.elements
+
+
+def test_an_operation_may_be_text_as_in_old_files(read):
+    assert read(circle(), line(), operation="<operation>add</operation>").scene.operation == "add"
+
+
+def test_a_group_without_an_operation_is_a_maximum(read):
+    assert read(circle(), line(), operation="").scene.operation == "maximum"
+
+
+def test_the_third_of_a_blend_weighs_the_first_which_is_our_second(read):
+    (group,) = read(circle(), line(), grating(), operation="<operation>blend</operation>") \
+        .scene.elements  # fmt: skip
+    assert isinstance(group, Group)
+    assert [type(part) for part in group.parts] == [Line, Circle]
+    assert isinstance(group.by, LinearGrating)
+
+
+DECIMALS = [
+    ("<radius>12,5</radius>", 12.5, 'radius "12,5" has a decimal comma; 12.5 is taken'),
+    ("<radius>12.5</radius>", 12.5, ""),
+    ("<radius> 1.25e1 </radius>", 12.5, ""),
+    ('<radius units="cm">3</radius>', 3, "radius is in mm, although its units say cm"),
+    ("<radius>12 mm</radius>", 12, 'radius has "mm" after its number, which is ignored'),
+    ("<radius>wide</radius>", 100, 'radius is "wide", which is no number; 100 is taken'),
+    ("<radius></radius>", 100, "radius is empty; 100 is taken"),
+    ("<radius>nan</radius>", 100, 'radius is "nan", which is no number; 100 is taken'),
+    ("<radius>1e999</radius>", 100, "radius is too large a number; 100 is taken"),
+    (
+        "<radius>99999</radius>",
+        10_000,
+        "radius is 99999, and it must be 0 to 10000; 10000 is taken",
+    ),
+    (
+        "<radius>5</radius><radius>6</radius>",
+        5,
+        "another radius is ignored, since the first counts",
+    ),
+]
+
+
+@pytest.mark.parametrize(("radius", "expected", "message"), DECIMALS)
+def test_numbers_are_read_in_every_locale(read, radius, expected, message):
+    found = read(f'<Pattern type="Circle">{radius}{stroke()}</Pattern>')
+    assert found.scene.elements[0].radius_mm == expected
+    assert said(found) == (f"line 6, Circle: {message}" if message else "")
+
+
+PLACES = [
+    ("12,5", (12, 5), False),
+    ("12.5, 7.25", (12.5, 7.25), False),
+    ("12,5,7,25", (12.5, 7.25), True),
+    ("12,5,7", (12.5, 7), True),
+    ("-1.5,2e1", (-1.5, 20), False),
+    ("here", (0, 0), True),
+    ("5", (0, 0), True),
+]
+
+
+@pytest.mark.parametrize(("text", "place", "is_said"), PLACES)
+def test_places_have_a_comma_between_x_and_y_and_some_have_decimal_commas(
+    read, text, place, is_said
+):
+    found = read(circle(stroke(), center=text))
+    assert found.scene.elements[0].center_mm == place
+    assert bool(found.warnings) == is_said
+
+
+LEFT_OUT = {
+    "an unknown type": ('<Pattern type="Cirkel"/>', 'type of this pattern is "Cirkel"'),
+    "no type": ("<Pattern/>", "type of this pattern is missing"),
+    "an unknown texture": (texture("Linear"), 'subtype of this texture is "Linear"'),
+    "an image without a texture": ('<Pattern type="Image"><mask/></Pattern>', "has no texture"),
+    "an image without a picture": (
+        f'<Pattern type="Image">{grating()}<mask/></Pattern>', "picture is not named",
+    ),
+    "a picture that is not there": (
+        f'<Pattern type="Image">{grating()}<mask><imgfile>no.png</imgfile></mask></Pattern>',
+        "no.png does not exist",
+    ),
+    "no ridges": (grating(ridge=0), "its ridges are 0 mm"),
+    "no ridges in degrees": (texture("AxialGrating", waves(0.1, 0)), "its ridges are 0.1 °"),
+    "no ridges in a double grating": (
+        texture("DoubleLinearGrating", "<secondary_scale>0</secondary_scale>"), "are below 0.05 mm",
+    ),
+    "two vertices": (polygon(stroke(), ("1,1", "9,9")), "vertices are 2; there must be 3 or more"),
+    "no vertices": ('<Pattern type="Polygon"/>', "vertices are 0"),
+    "a line without a length": (line(stroke(), ("5,5", "5,5")), "a line needs two places"),
+    "a circle without a radius": (circle(stroke(), radius=0), "radius is 0 mm"),
+    "no stroke and no fill": (circle(stroke(width=0)), "nothing of it can be felt"),
+    "no dots": ('<Pattern type="Dots"/>', "it has no dots"),
+    "an empty group": ('<Pattern type="Group"/>', "it has no patterns"),
+    "a blend of two": (
+        f'<Pattern type="Group"><operation>blend</operation>{circle()}{line()}</Pattern>',
+        "a blend is of 3 patterns, and this has 2",
+    ),
+    "half a toggle": (f'<Pattern type="Toggle">{circle()}</Pattern>', "a toggle is of 2 patterns"),
+    "sounds": ('<Pattern type="Audio"><sound/><sound/></Pattern>', "its 2 sounds are not played"),
+    "a product with nothing": (
+        f'<Pattern type="Group"><operation>multiply</operation>{circle()}{grating(ridge=0)}'
+        "</Pattern>",
+        "a part of a product is left out",
+    ),
+    "tiles of nothing": (texture("Pattern", grating(ridge=0)), "its ridges are 0 mm"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LEFT_OUT)
+def test_what_cannot_be_shown_is_said_and_left_out(read, name):
+    text, message = LEFT_OUT[name]
+    found = read(text, circle(stroke()))
+    assert [type(element) for element in found.scene.elements] == [Circle]
+    assert message in said(found)
+    assert "left out" in said(found)
+    assert all(warning.startswith("line ") for warning in found.warnings)
+
+
+DIFFERENT = {
+    "a reactive group": (
+        f'<Pattern type="Group"><operation type="reactive"><Modulator type="Velocity"/></operation>'
+        f"{circle(stroke())}{line()}</Pattern>",
+        "depends on the hand's movement there; its first pattern is shown",
+    ),
+    "a blend by movement": (
+        texture("Blend", f'<Modulator type="Directional"/>{grating()}{grating(angle=9)}'),
+        "its first texture is shown",
+    ),
+    "a toggle": (f'<Pattern type="Toggle">{circle()}{line()}</Pattern>', "the first is shown"),
+    "a cue": (
+        line(stroke(9, "<motion><cue>superposed</cue></motion>")),
+        'the motion cue "superposed" is not shown',
+    ),
+    "moving bands": (
+        texture("Motion", f"<cue_type>vibration bands</cue_type>{grating()}"),
+        'the moving bands of its cue "vibration bands" are not shown',
+    ),
+    "a still display": (grating(inside="<td_centric>5,5</td_centric>"), "td_centric"),
+    "a moving texture": (
+        texture("RadialGrating", "<motion><enable>yes</enable></motion>"),
+        "its motion is not shown",
+    ),
+    "moving dots": (
+        line(stroke(4, "<dots><enable>yes</enable></dots><motion><cue>inherent</cue></motion>")),
+        "the dots stand still here",
+    ),
+    "an inverted texture along a stroke": (
+        line(stroke(9, f"<fill>{waves(inside='<invert>yes</invert>')}</fill>")),
+        "fill Grating is inverted",
+    ),
+    "a slope round a circle": (
+        texture(
+            "AxialGrating",
+            '<Grating><PitchModulator type="slope"><enable>yes</enable></PitchModulator></Grating>',
+        ),
+        "has no slope here",
+    ),
+    "dots that overlap": (
+        '<Pattern type="Dots"><dot>1,1</dot><dot>2,1</dot><dot_radius>3</dot_radius></Pattern>',
+        "dots that overlap add up in OpenLatero",
+    ),
+    "dots put together otherwise": (
+        '<Pattern type="Dots"><dot>1,1</dot><dot>2,1</dot><operation type="multiply"/></Pattern>',
+        'by "maximum" here, and by "multiply" there',
+    ),
+    "two widths": (
+        '<Pattern type="Line"><stroke><width>8</width><ridge><width>6</width></ridge></stroke>'
+        "</Pattern>",
+        "stroke ridge width is 6 and stroke width 8; the stroke is 6 mm wide here",
+    ),
+    "markers inwards": (
+        polygon("<corner><enable>yes</enable><blend>in</blend></corner>" + stroke()),
+        "markers blend outwards here",
+    ),
+    "dots over a fill beneath": (
+        circle(stroke(4, "<dots><enable>yes</enable></dots>") + fill(grating(), -1)),
+        "dots stand in the place of the fill there",
+    ),
+    "short edges": (
+        polygon(stroke(9, f"<fill>{waves(3, 0)}</fill>"), ("0,0", "9,0", "9,9", "0,9")),
+        "an edge is too short for the round joints at its ends",
+    ),
+    "a texture on top": (
+        f'<Pattern type="Group"><operation>overwrite</operation>{circle()}{grating()}</Pattern>',
+        "a texture hides all below it here",
+    ),
+    "a vertex twice": (polygon(stroke(), ("0,0", "9,0", "9,0", "9,9")), "this vertex is where"),
+    "a last vertex that is the first": (
+        polygon(stroke(), ("0,0", "9,0", "9,9", "0,0")), "the last vertex is where the first is",
+    ),
+    "an amplitude of 80 %": (
+        grating(inside='<amplitude units="%">80</amplitude>'),
+        "amplitude is 80, and shares are 0 to 1; 1 is taken",
+    ),
+    "a fast vibration": (
+        texture("Vibration", "<freq>75</freq>"),
+        "freq is 75, and it must be 0.1 to 50; 50 is taken",
+    ),
+    "fast ridges": (
+        texture("LinearGrating", waves(8, 0, '<velocity units="Hz">900</velocity>')),
+        "its ridges would move at 7200 mm/s; 1000 is taken",
+    ),
+    "an unknown element": (circle("<colour>red</colour>"), "colour is not known here, and ignored"),
+    "an unknown element below": (
+        circle("<stroke><cap>square</cap></stroke>"), "stroke cap is not known here, and ignored",
+    ),
+    "an unknown word": (
+        polygon('<corner><enable>yes</enable><type>texture</type></corner>'),
+        'corner type "texture" is not known, so "solid" is taken; the nearest is',
+    ),
+    "an unknown operation": (
+        f'<Pattern type="Group"><operation type="maks"/>{circle()}{line()}</Pattern>',
+        'operation "maks" is not known, so "max" is taken; the nearest is max',
+    ),
+    "an answer that is neither": (
+        grating(inside="<invert>perhaps</invert>"), 'invert is "perhaps", neither yes nor no',
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", DIFFERENT)
+def test_what_differs_is_said_once_and_the_rest_is_shown(read, name):
+    text, message = DIFFERENT[name]
+    found = read(text)
+    assert len(found.scene.elements) >= 1
+    assert message in said(found)
+    assert len(found.warnings) == 1
+
+
+def test_a_polygon_that_crosses_itself_is_a_path(read):
+    found = read(polygon(stroke(), ("0,0", "30,30", "30,0", "0,30")))
+    (path,) = found.scene.elements
+    assert isinstance(path, Path)
+    assert path.closed
+    assert "its edges cross" in said(found)
+
+
+def test_what_holds_for_many_is_said_once_with_their_lines(read):
+    found = read(*("\n" + circle("<colour>red</colour>") for _ in range(9)))
+    (warning,) = found.warnings
+    assert warning.startswith("line 7, Circle: colour is not known")
+    assert warning.endswith("(and lines 9, 11, 13, 15, 17 and 3 more)")
+
+
+def test_low_vibration_is_as_the_file_says_or_as_it_is_shown(read):
+    text = grating(inside=swings(30, 0.5, "low"))
+    as_said, shown = read(text), read(text, as_shown=True)
+    assert as_said.scene.elements[0].vibration == Vibration(
+        frequency_hz=30, amplitude=0.5, of="low"
+    )
+    assert "OpenLatero ignores blend_mode low" in said(as_said)
+    vibration = shown.scene.elements[0].vibration
+    assert vibration.of == "high"
+    assert vibration.frequency_hz == 1e6 / 33_333
+    assert "blend_mode low is ignored" in said(shown)
+
+
+def test_changes_of_tiles_are_as_the_file_says_or_as_they_are_shown(read):
+    text = texture("Pattern", f"{circle(stroke())}<amplitude>0.5</amplitude><invert>yes</invert>")
+    (tile,) = read(text).scene.elements
+    assert isinstance(tile, Tile)
+    assert (tile.amplitude, tile.inverted) == (0.5, True)
+    (tile,) = read(text, as_shown=True).scene.elements
+    assert (tile.amplitude, tile.inverted) == (1.0, False)
+
+
+def test_tiles_as_shown_have_the_changes_of_their_pattern_twice(read):
+    text = texture("Pattern", grating(inside="<amplitude>0.5</amplitude>"))
+    (tile,) = read(text, as_shown=True).scene.elements
+    assert (tile.amplitude, tile.part.amplitude) == (0.5, 0.5)
+    assert read(text).scene.elements[0].amplitude == 1.0
+
+
+def test_an_outline_without_room_is_thinner_or_as_shown_nothing(read):
+    text = line(stroke(4, "<fill><gutter>yes</gutter></fill>", edge=1.5))
+    (made,) = read(text).scene.elements
+    assert made.stroke == Stroke(width_mm=4, edge_mm=1, outlined=True)
+    assert read(text, as_shown=True).scene.elements == ()
+
+
+def test_textures_along_strokes_are_not_fitted(read):
+    (made,) = read(circle(stroke(9, f"<fill>{waves(3, 1)}</fill>"))).scene.elements
+    assert made.stroke.along == Along(ridge_mm=3, gap_mm=1, whole_cycles=False)
+    (spokes,) = read(texture("AxialGrating")).scene.elements
+    assert spokes == AxialGrating(center_mm=(0, 0), ridge_deg=36, whole_cycles=False)
+
+
+def test_a_scene_that_is_no_group_is_shown_or_as_shown_taken_for_one(read):
+    text = scene("").replace('<Pattern type="Group">', '<Pattern type="Texture" subtype="Plain">')
+    assert read(text).scene.elements == (Uniform(),)
+    assert read(text, as_shown=True).scene.elements == ()
+
+
+def test_elements_in_a_group_as_deep_as_can_be(read):
+    group = '<Pattern type="Group"><operation>max</operation>' + line()
+    found = read(group * 40 + "</Pattern>" * 40)
+    assert "this is in 32 other patterns; left out" in said(found)
+
+
+REFUSED = {
+    "nothing": (b"", "is empty"),
+    "no XML": (b"hello", "is no XML"),
+    "other XML": (b"<html/>", "holds no Generator and no Pattern"),
+    "entities": (
+        b'<!DOCTYPE a [<!ENTITY a "b"><!ENTITY c "&a;&a;">]><a>&c;</a>', "declares entities"
+    ),
+    "entities in UTF-16": (
+        '<?xml version="1.0" encoding="UTF-16"?><!DOCTYPE a [<!ENTITY a "b">]><a/>'.encode(
+            "utf-16"
+        ),
+        "declares entities",
+    ),
+    "a bottomless pit": (b"<a>" * 101 + b"</a>" * 101, "nest too deep"),
+    "a crowd": (b"<a>" + b"<b/>" * 200_001 + b"</a>", "more than 200000 elements"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_files_are_refused_in_one_sentence(tmp_path, name):
+    content, message = REFUSED[name]
+    path = tmp_path / "bad.gen"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=message) as refused:
+        read_gen(path)
+    assert "\n" not in str(refused.value)
+
+
+def test_nothing_is_looked_up_elsewhere(tmp_path):
+    secret = tmp_path / "secret.txt"
+    secret.write_text("9")
+    path = tmp_path / "bad.gen"
+    path.write_text(
+        f'<!DOCTYPE a [<!ENTITY % x SYSTEM "file://{secret}"> %x;]>' + scene(circle())[22:]
+    )
+    with pytest.raises(InputError, match="declares entities"):
+        read_gen(path)
+
+
+def test_broken_xml_is_read_as_far_as_it_can_be(read):
+    text = scene(circle(stroke()), line(stroke())).replace("</Generator>", "")
+    found = read(text)
+    assert len(found.scene.elements) == 2
+    assert "XML: it is broken here, and read as far as it can be" in said(found)
+
+
+def test_a_file_that_is_not_there_is_said(tmp_path):
+    with pytest.raises(InputError, match=r"no\.gen does not exist"):
+        read_gen(tmp_path / "no.gen")

@@ -1,0 +1,412 @@
+"""Drawings in SVG as scenes, as drawing programs write them, and as nobody should."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tiers import examples, heavy
+from vbraille.errors import InputError
+from vbraille.scene.patterns import (
+    Circle,
+    Fill,
+    Group,
+    Label,
+    Line,
+    Polygon,
+    Uniform,
+    UniformVibration,
+    Use,
+)
+from vbraille.scene.patterns import Path as Lines
+from vbraille.scene.reading import open_scene
+from vbraille.scene.stock import stock_textures
+from vbraille.scene.strokes import Along, Dotting, Stroke
+from vbraille.scene.svg.looks import BY_HUE, ClassLook
+from vbraille.scene.svg.reading import read_svg
+from vbraille.scene.walking import each
+
+FILES = Path(__file__).parent / "files"
+NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Read a drawing of 100 by 50 mm whose units are millimetres."""
+
+    def reading(inside, head='width="100mm" height="50mm" viewBox="0 0 100 50"', looks=None):
+        path = tmp_path / "plan.svg"
+        path.write_text(f"<svg {NS} {head}>\n{inside}\n</svg>")
+        return read_svg(path, looks)
+
+    return reading
+
+
+def element_of(found):
+    (element,) = found.scene.elements
+    return element
+
+
+def warned(found):
+    return [warning.split(": ", 2)[2] for warning in found.warnings]
+
+
+def test_a_drawing_of_inkscape():
+    found = read_svg(FILES / "inkscape.svg")
+    scene = found.scene
+    assert (scene.canvas.width_mm, scene.canvas.height_mm) == (210, 148)
+    assert (scene.title, scene.language) == ("Lake", "de")
+    (layer,) = scene.elements
+    assert layer.title == "Layer 1"
+    assert isinstance(layer, Group)
+    water, house, tower, great, lake, again = layer.parts
+    assert isinstance(water, Lines)
+    assert (water.title, water.description, water.id) == ("Water", "Deep and cold", "water")
+    assert water.closed
+    assert water.contours_mm[0][0] == (20, 30)
+    assert water.contours_mm[0][-3:] == ((40, 50), (50, 50), (50, 70))
+    assert water.fill == Fill(texture=Use(name="stock:linear-90"))
+    assert water.stroke == Stroke(width_mm=2.5, edge_mm=1)
+    assert isinstance(house, Polygon)
+    assert house.vertices_mm == ((70, 30), (110, 30), (110, 60), (70, 60))
+    assert house.stroke == Stroke(width_mm=3, edge_mm=1, along=Along(ridge_mm=2, gap_mm=6))
+    assert tower == Circle(
+        center_mm=(130, 50), radius_mm=12.5, fill=Fill(texture=Use(name="stock:linear-0"))
+    )
+    assert (great.text, lake.text) == ("Great", "Lake")
+    assert lake.place_mm[1] - great.place_mm[1] == pytest.approx(12.5)
+    assert again.vertices_mm == tuple((x + 5, y + 60) for x, y in house.vertices_mm)
+    text = (FILES / "inkscape.svg").read_text().splitlines()
+    assert text[found.lines["elements", 0] - 1].startswith("     transform")  # where its tag ends
+    assert text[found.lines["elements", 0, "parts", 0] - 1].endswith("<title")
+    assert "Lake" in text[found.lines["elements", 0, "parts", 4] - 1]
+    assert warned(found) == [
+        "its filter is ignored",
+        "its fill url(#gradient) is felt as a plain gray one",
+    ]
+
+
+def test_a_drawing_of_illustrator():
+    found = read_svg(FILES / "illustrator.svg")
+    assert found.scene.canvas.width_mm == pytest.approx(595.28 * 25.4 / 96, abs=1e-3)
+    layer = element_of(found)
+    assert layer.id == "streets"
+    square, way, word = layer.parts
+    assert square.vertices_mm[2] == pytest.approx((50 * 25.4 / 96, 50 * 25.4 / 96), abs=1e-3)
+    assert square.fill.texture == Use(name="stock:dots")
+    assert way.stroke.amplitude == pytest.approx(0.6, abs=0.01)
+    assert isinstance(word, Label)
+    assert word.text == "Main Street"
+    assert word.angle_deg == pytest.approx(90)
+    assert not found.warnings
+
+
+@pytest.mark.parametrize("name", ["inkscape.svg", "illustrator.svg"])
+def test_drawings_are_opened_and_included_with_textures_of_the_bank(tmp_path, name):
+    opened = open_scene(FILES / name)
+    assert not any(isinstance(one, Use) for one in each(*opened.resolved.elements))
+    (tmp_path / name).write_bytes((FILES / name).read_bytes())
+    (tmp_path / "my.scene").write_text(
+        f'include = ["{name}"]\n[canvas]\nwidth_mm = 300\nheight_mm = 200\n'
+    )
+    included = open_scene(tmp_path / "my.scene")
+    kinds = [
+        [(type(part), part.id, part.title) for part in each(*one.resolved.elements)]
+        for one in (included, opened)
+    ]
+    assert kinds[0] == kinds[1]
+    assert included.warnings == tuple(
+        warning.replace(str(FILES), str(tmp_path)) for warning in opened.warnings
+    )
+
+
+def test_each_hue_has_a_texture_of_the_bank():
+    assert {name.removeprefix("stock:") for name in BY_HUE.values()} <= set(stock_textures())
+
+
+@pytest.mark.parametrize(
+    ("head", "size", "corner"),
+    [
+        ('width="10cm" height="50mm"', (100, 50), (25.4, 25.4)),
+        ('width="192" height="96px" viewBox="0 0 2 1"', (50.8, 25.4), None),
+        ('viewBox="0 0 960 480"', (254, 127), (25.4, 25.4)),
+        ('width="100%" height="100%" viewBox="10 20 960 480"', (254, 127), (22.7542, 20.1083)),
+        ('width="50.8mm" viewBox="0 0 192 96"', (50.8, 25.4), (25.4, 25.4)),
+        ('width="2in" height="3in" viewBox="0 0 192 96"', (50.8, 76.2), (25.4, 50.8)),
+        ('width="72pt" height="6pc"', (25.4, 25.4), (25.4, 25.4)),
+    ],
+)
+def test_units_and_viewbox_give_millimetres(read, head, size, corner):
+    found = read('<circle cx="96" cy="96" r="48"/>', head)
+    canvas = found.scene.canvas
+    assert (canvas.width_mm, canvas.height_mm) == pytest.approx(size, abs=1e-3)
+    if corner is not None:
+        circle = element_of(found)
+        assert circle.center_mm == pytest.approx(corner, abs=1e-3)
+        assert circle.radius_mm == pytest.approx(12.7, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("", "has no size"),
+        ('width="0" height="5"', "has no size"),
+        ('width="nan" height="nan"', "has no size"),
+        ('viewBox="0 0 0 0"', "has no size"),
+        ('width="20m" height="5"', "has no size"),
+        ('width="20000mm" height="5mm"', "cannot be a canvas: its width is 20000 mm"),
+    ],
+)
+def test_drawings_without_a_size_that_can_be_are_refused(read, head, said):
+    with pytest.raises(InputError, match=said):
+        read("<g/>", head)
+
+
+SHAPES = {
+    '<path d="M0 0h10v10z" stroke="#000" fill="none"/>': Lines(
+        contours_mm=(((0, 0), (10, 0), (10, 10)),), closed=True, stroke=Stroke(width_mm=2)
+    ),
+    '<line x1="1" y1="2" x2="3" y2="4" stroke="black" stroke-width="5"/>': Line(
+        start_mm=(1, 2), end_mm=(3, 4), stroke=Stroke(width_mm=5)
+    ),
+    '<polyline points="1,2 3,4 5,0" stroke="#808080" fill="none" stroke-width="3"/>': Lines(
+        contours_mm=(((1, 2), (3, 4), (5, 0)),), stroke=Stroke(width_mm=3, amplitude=0.498)
+    ),
+    '<polygon points="1,2 3 4,5,0" fill="white"/>': Polygon(
+        vertices_mm=((1, 2), (3, 4), (5, 0)), fill=Fill(texture=Uniform(level=0))
+    ),
+    '<rect x="1" y="2" width="10%" height="4" fill="red"/>': Polygon(
+        vertices_mm=((1, 2), (11, 2), (11, 6), (1, 6)),
+        fill=Fill(texture=Use(name="stock:vibration")),
+    ),
+    '<ellipse cx="9" cy="9" rx="5" ry="5" fill="#ff0"/>': Circle(
+        center_mm=(9, 9), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-45"))
+    ),
+    '<g transform="translate(5 5) rotate(90) scale(2)"><circle r="3" fill="purple"/></g>': Circle(
+        center_mm=(5, 5), radius_mm=6, fill=Fill(texture=Use(name="stock:grid"))
+    ),
+    '<circle r="5" fill="black" opacity="50%" id="sun"><title> The\n sun </title></circle>': Circle(
+        id="sun", title="The sun", amplitude=0.5,
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0")),
+    ),
+    '<g opacity=".5"><circle r="5" fill-opacity=".5" fill="rgb(9,0,0)" opacity=".5"/></g>': Circle(
+        amplitude=0.25,
+        center_mm=(0, 0), radius_mm=5,
+        fill=Fill(texture=Use(name="stock:linear-0", amplitude=0.495)),
+    ),
+    '<text x="20" y="30">A <tspan font-weight="bold">b</tspan>\n c</text>': Label(
+        text="A b c", place_mm=(20, 21)
+    ),
+    '<text x="50" y="30" text-anchor="end" transform="rotate(-90 50 30)">ab</text>': Label(
+        text="ab", place_mm=(41, 52.2), angle_deg=-90
+    ),
+    '<svg x="10" y="10" width="20" height="10" viewBox="0 0 2 1"><circle r="1"/></svg>': Circle(
+        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
+    ),
+    '<symbol id="s" viewBox="0 0 2 1"><circle r="1"/></symbol>'
+    '<use href="#s" x="10" y="10" width="20" height="10"/>': Circle(
+        center_mm=(10, 10), radius_mm=10, fill=Fill(texture=Use(name="stock:linear-0"))
+    ),
+    '<style>.a{fill:blue} circle.a{fill:red} #b{fill:green} /* {} */ circle{fill:yellow}</style>'
+    '<circle class="c a" fill="white" r="5"/>': Circle(
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:vibration"))
+    ),
+    '<style>#b, .a{fill:blue}</style><circle id="b" style="fill: GREEN;;x" r="5"/>': Circle(
+        id="b", center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:dots"))
+    ),
+    '<switch><foreignObject/><g><circle r="5"/></g><g><circle r="6"/></g></switch>': Circle(
+        center_mm=(0, 0), radius_mm=5, fill=Fill(texture=Use(name="stock:linear-0"))
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SHAPES)
+def test_shapes(read, text):
+    assert element_of(read(text)) == SHAPES[text]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<g display="none"><circle r="5"/></g>',
+        '<circle r="5" style="display:none"/>',
+        '<g visibility="hidden"><circle r="5"/></g>',
+        '<circle r="5" opacity="0"/>',
+        '<circle r="5" fill="none"/>',
+        '<circle r="5" fill="none" stroke="red" stroke-width="0"/>',
+        '<line x1="1" y1="1" x2="9" y2="9"/>',
+        '<defs><circle r="5"/></defs><symbol><circle r="5"/></symbol>',
+        '<clipPath id="a"><circle r="5"/></clipPath><text x="5"> </text>',
+        '<metadata><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"/></metadata>',
+    ],
+)
+def test_what_is_not_seen_is_not_felt(read, text):
+    found = read(text)
+    assert found.scene.elements == ()
+    assert found.warnings == ()
+
+
+def test_what_is_shown_in_something_hidden(read):
+    found = read('<g visibility="hidden"><circle r="5" visibility="visible"/></g>')
+    assert isinstance(element_of(found), Circle)
+
+
+IGNORED = {
+    "<script>alert(1)</script>": ["it is never run, and ignored"],
+    '<circle r="5" onclick="alert(1)"/>': ["its script is never run"],
+    '<image href="http://localhost/a.png"/>': [
+        'it is ignored; put the picture into a scene file, as kind = "image"'
+    ],
+    '<use xlink:href="http://localhost/a.svg#b"/>': [
+        "it uses 'http://localhost/a.svg#b'; nothing is fetched, so it is ignored"
+    ],
+    '<use href="other.svg"/>': ["it uses 'other.svg'; nothing is fetched, so it is ignored"],
+    '<use href="#none"/>': ["it uses '#none', which is not there; ignored"],
+    '<g id="a"><use href="#a"/></g>': ["it uses what it stands in; ignored"],
+    "<style>@import url(http://localhost/a.css); @media print {g{fill:red}}</style>": [
+        "the style sheet's @import is ignored; nothing is fetched",
+        "the style sheet's @media is ignored",
+    ],
+    "<style>g > circle {fill:red}</style>": [
+        "the style sheet's selector 'g > circle' is ignored"
+    ],
+    '<circle r="5" fill="url(http://localhost/a.svg#b)"/>': [
+        "its fill url(http://localhost/a.svg#b) is felt as a plain gray one"
+    ],
+    '<circle r="5" filter="url(#f)" mask="url(#m)" clip-path="url(#c)"/>': [
+        "its clip-path is ignored", "its filter is ignored", "its mask is ignored",
+    ],
+    '<path d="M0 0H9" style="marker-start:url(#m)" fill="none" stroke="red" stroke-width="9"/>': [
+        "its marker-start is ignored"
+    ],
+    '<circle r="5"><animate attributeName="r" to="9"/></circle><animate/>': ["it is ignored"],
+    "<foreignObject/>": ["it is ignored"],
+    '<circle r="5" transform="spin(4)"/>': [
+        "its transform is not understood, so it is left out"
+    ],
+    '<path d="M0 0 L x"/>': ["its text is not understood; it is left out"],
+    '<circle r="1e9"/>': ["it goes farther than 10 m from the drawing's corner; it is left out"],
+    '<rect width="-5" height="5"/>': ["it has no size, and is left out"],
+    '<polygon points="5,5 5,5"/>': ["it has no size, and is left out"],
+    '<path d="M0 0H9" fill="none" stroke="red"/>': [
+        "its line is drawn 2 mm wide, not to be missed"
+    ],
+    '<path d="M0 0L10 10V0L0 10z"/>': [
+        "it crosses itself, or may; it is filled by the even-odd rule"
+    ],
+    '<circle r="5" fill="currentcolour"/>': [
+        "its fill 'currentcolour' is not understood; it is felt as black"
+    ],
+    '<circle r="5" id="a"/><circle r="5" id="a"/>': [
+        "another element has the same id, so it is left without"
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", IGNORED)
+def test_what_is_ignored_is_said(read, text):
+    found = read(text)
+    assert warned(found) == IGNORED[text]
+    assert all(warning.startswith("line 2: ") for warning in found.warnings)
+
+
+def test_the_same_of_many_elements_is_said_once_with_their_lines(read):
+    found = read('<g filter="url(#f)"/>\n' * 9)
+    assert found.warnings == (
+        "line 2: g: its filter is ignored; and 8 more, in lines 3, 4, 5, 6, 7 and others",
+    )
+
+
+@heavy  # it takes two seconds to find out
+def test_uses_that_multiply_are_refused_before_they_fill_the_memory(read):
+    levels = "".join(
+        f'<g id="a{n}">' + f'<use href="#a{n - 1}"/>' * 10 + "</g>" if n else '<g id="a0"/>'
+        for n in range(10)
+    )
+    with pytest.raises(InputError, match="more than 50000 elements; use fewer"):
+        read(f'<defs>{levels}</defs><use href="#a9"/>')
+
+
+def test_uses_that_nest_too_deep_are_refused(read):
+    levels = "".join(f'<g id="a{n}"><use href="#a{n + 1}"/></g>' for n in range(300))
+    with pytest.raises(InputError, match="deep; ungroup"):
+        read(f'<defs>{levels}</defs><use href="#a0"/>')
+
+
+@heavy  # as many places take some seconds
+def test_half_a_million_places_are_refused(read):
+    d = "M0 0" + "".join(f"a9 9 0 0 {n % 2} {9000 * (-1) ** n} 9" for n in range(60))
+    path = f'<path id="p" stroke="red" fill="none" d="{d}"/>'
+    with pytest.raises(InputError, match="more than 500000 places"):
+        read(f"<defs>{path}</defs>" + '<use href="#p"/>' * 30)
+
+
+NESTED = "M0 0H30V30H0z M10 10{}z"
+
+
+@pytest.mark.parametrize(
+    ("inner", "rule", "hole"),
+    [
+        ("H20V20H10", "nonzero", False),
+        ("V20H20V10", "nonzero", True),
+        ("H20V20H10", "evenodd", True),
+        ("V20H20V10", "evenodd", True),
+    ],
+)
+def test_holes_are_those_of_the_fill_rule(read, inner, rule, hole):
+    found = read(f'<path d="{NESTED.format(inner)}" fill-rule="{rule}"/>')
+    assert len(element_of(found).contours_mm) == 1 + hole
+    assert not found.warnings
+
+
+def test_a_fill_that_is_not_closed_has_a_stroke_that_is_not(read):
+    fill, stroke = read('<path d="M0 0H9V9" stroke="red" stroke-width="2"/>').scene.elements
+    assert (fill.closed, fill.stroke, stroke.closed, stroke.fill) == (True, None, False, None)
+    assert fill.contours_mm == stroke.contours_mm
+
+
+WATER = ClassLook(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<circle r="5" class="a water" fill="red"/>',
+        '<g class="water"><g><circle r="5"/></g></g>',
+        '<circle r="5" id="water"/>',
+    ],
+)
+def test_a_scene_says_what_a_class_becomes(read, text):
+    circle = element_of(read(text, looks={"water": WATER}))
+    assert (circle.fill, circle.stroke) == (WATER.fill, WATER.stroke)
+
+
+def test_a_class_may_be_dotted_or_hidden(read):
+    looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
+    found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
+    assert element_of(found) == Line(start_mm=(0, 0), end_mm=(9, 0), dots=Dotting())
+    with pytest.raises(ValueError, match="dots cannot be given beside a stroke"):
+        ClassLook(dots=Dotting(), stroke=Stroke())
+
+
+@given(st.data())
+@examples(60)
+def test_damaged_drawings_are_read_or_refused_in_one_sentence(tmp_path_factory, data):
+    whole = (FILES / "inkscape.svg").read_bytes()
+    at = data.draw(st.integers(0, len(whole) - 1))
+    to = data.draw(st.integers(at, min(at + 30, len(whole))))
+    put = data.draw(st.sampled_from([b"", b"9", b"-1e308", b"<g>", b'"', b"&x;", b"nan", b"{"]))
+    path = tmp_path_factory.mktemp("svg") / "damaged.svg"
+    path.write_bytes(whole[:at] + put + whole[to:])
+    try:
+        found = [repr(one) for one in each(*read_svg(path).scene.elements)]
+    except InputError as error:
+        found = []
+        said = str(error)
+    else:
+        said = ""
+    assert "\n" not in said
+    assert len(found) < 30
+    assert not any(re.search(r"[=(, ]-?(nan|inf)[,)]", one) for one in found)

@@ -1,0 +1,264 @@
+"""What `vbraille scene check` says: of vibrations that meet, and of what is hard to feel."""
+
+import doctest
+from pathlib import Path
+
+import pytest
+
+from vbraille.scene import checking
+from vbraille.scene.checking import check_scene
+from vbraille.scene.opened import OpenedScene, Origins
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, Label, Line, Polygon, Tile, Use
+from vbraille.scene.resolving import resolve
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.strokes import Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
+
+LATERO = Canvas(width_mm=280, height_mm=217)
+MID = Vibration(frequency_hz=25.0)
+
+
+def report(*elements, canvas=LATERO, operation="overwrite", **textures):
+    written = Scene(canvas=canvas, operation=operation, elements=elements, textures=textures)
+    return check_scene(
+        OpenedScene(Path("a.scene"), Path(), written, resolve(written), Origins()), {}
+    )
+
+
+def vibrations(*elements, **more):
+    return report(*elements, **more).vibrations
+
+
+def advice(*elements, **more):
+    return report(*elements, **more).advice
+
+
+def circle(x=50.0, y=50.0, radius=10.0, **more):
+    return Circle(center_mm=(x, y), radius_mm=radius, **{"stroke": Stroke(), **more})
+
+
+def group(operation, *parts, **more):
+    return Group(operation=operation, parts=parts, **more)
+
+
+def hum(frequency_hz=50.0):
+    return UniformVibration(frequency_hz=frequency_hz)
+
+
+FINE = LinearGrating(ridge_mm=4.0)
+
+
+def test_it_counts_what_is_written_and_says_where_what_is_shown_stands():
+    found = report(
+        circle(id="moon", title="The moon"),
+        Use(name="moon", move_mm=(100, 0)),
+        group("maximum", circle(y=150.0), circle(y=150.0)),
+        a=FINE,
+    )
+    assert found.kinds == {"circle": 3, "group": 1, "linear-grating": 1, "use": 1}
+    first, second, third = found.elements
+    assert (first.said(), first.place) == ("element 1, circle The moon", "elements, number 1")
+    assert first.box == (38, 38, 62, 62)
+    assert second.said() == "element 2, use The moon"
+    assert second.box == (138, 38, 162, 62)
+    assert third.box == (38, 138, 62, 162)
+    assert not found.vibrations
+    assert not found.advice
+
+
+VIBRATING = {
+    "of the pattern": circle(vibration=MID),
+    "of the stroke": circle(stroke=Stroke(vibration=MID)),
+    "of the dots": circle(stroke=None, dots=Dotting(dot=DotStyle(vibration=MID))),
+    "of the dots at corners": Polygon(
+        vertices_mm=((0, 0), (50, 0), (50, 50)), dots=Dotting(vertex_vibration=MID)
+    ),
+    "of markers": Polygon(
+        vertices_mm=((0, 0), (50, 0), (50, 50)), stroke=Stroke(), markers=Markers(vibration=MID)
+    ),
+    "of single dots": Dots(centers_mm=((50, 50),), dot=DotStyle(vibration=MID)),
+    "of a fill": circle(fill=Fill(texture=hum(25.0))),
+    "of a tile": Tile(width_mm=20, height_mm=20, part=hum(25.0)),
+    "of a part": group("overwrite", circle(), hum(25.0)),
+}
+
+
+@pytest.mark.parametrize("name", VIBRATING)
+def test_whatever_vibrates_is_found(name):
+    (element,) = report(VIBRATING[name]).elements
+    assert element.vibration_hz == (25.0,)
+
+
+def test_what_does_not_swing_does_not_vibrate():
+    still = circle(stroke=Stroke(vibration=Vibration(amplitude=0.0)))
+    assert report(still).elements[0].vibration_hz == ()
+
+
+MEETING = {
+    "masked, the same": (group("multiply", hum(), hum()), "swings are narrower and weaker"),
+    "masked, near": (
+        group("multiply", hum(50), hum(40)),
+        "masks a vibration of 50 Hz with one of 40 Hz: they make sharp peaks, which may harm the",
+    ),
+    "masked, far": (group("multiply", hum(50), hum(10)), "they beat"),
+    "added": (group("add", hum(), hum()), "adds a vibration of 50 Hz to one of 50 Hz, and the sum"),
+    "the larger": (group("maximum", hum(), hum(20)), "takes the larger of vibrations of 50 Hz and"),
+    "blended by": (
+        group("blend", FINE, FINE, by=hum(30)),
+        "blends by a pattern that vibrates at",
+    ),
+    "as a whole": (
+        group("overwrite", hum(50), vibration=MID),
+        "vibrates as a whole at 25 Hz, and what is in it at 50 Hz: they beat; leave one",
+    ),
+    "within a fill": (
+        circle(stroke=None, fill=Fill(texture=group("add", hum(), hum()))),
+        "adds a vibration",
+    ),
+    "a stroke near its fill": (
+        circle(stroke=Stroke(vibration=MID), fill=Fill(texture=FINE, gap_mm=1.0)),
+        "has a fill that begins 1 mm from a stroke that vibrates, which drowns what is near",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MEETING)
+def test_vibrations_that_meet_are_told(name):
+    element, sentence = MEETING[name]
+    said = [one for one in vibrations(element) if "cannot be told apart" not in one]
+    (one,) = said
+    assert one.startswith("elements, number 1: element 1, ")
+    assert sentence in one
+
+
+QUIET = {
+    "overwriting": group("overwrite", hum(), circle(vibration=MID)),
+    "one of them": group("multiply", hum(), FINE),
+    "weighted": Group(operation="weighted", parts=(hum(), hum()), weights=(0.5, 0.5)),
+    "blended": group("blend", hum(), FINE, by=FINE),
+    "apart": group("maximum", circle(vibration=MID), circle(y=150, vibration=MID)),
+    "a fill far enough": circle(stroke=Stroke(vibration=MID), fill=Fill(texture=FINE, gap_mm=2.5)),
+}
+
+
+@pytest.mark.parametrize("name", QUIET)
+def test_vibrations_that_do_no_harm_are_not_told(name):
+    said = vibrations(QUIET[name])
+    assert [one for one in said if "cannot be told apart" not in one] == []
+
+
+def test_the_elements_of_the_scene_are_put_together_too():
+    said = vibrations(circle(vibration=MID), circle(vibration=MID), operation="add")
+    assert said[0].startswith("the scene adds a vibration of 25 Hz to one of 25 Hz")
+    assert not vibrations(circle(vibration=MID), circle(vibration=MID))
+
+
+def test_frequencies_that_cannot_be_told_apart_are_told():
+    assert vibrations(hum(50), hum(35)) == (
+        "vibrations of 35 and 50 Hz cannot be told apart; set them 20 Hz apart or more",
+    )
+    assert not vibrations(hum(50), hum(30))
+
+
+ADVICE = {
+    "outside": (circle(x=-30), "is wholly outside the canvas, and cannot be felt; move it"),
+    "partly outside": (circle(x=5), "reaches 7.0 mm beyond the canvas"),
+    "nowhere": (
+        group("multiply", circle(), circle(y=150)),
+        "can nowhere be felt; its parts have no place in common",
+    ),
+    "a thin stroke": (circle(stroke=Stroke(width_mm=1.0)), "has a stroke of 1 mm; from 2 to 10 mm"),
+    "a wide stroke": (circle(stroke=Stroke(width_mm=12.0)), "has a stroke of 12 mm; from 2 to 10"),
+    "a fine grating": (
+        circle(fill=Fill(texture=LinearGrating(ridge_mm=1.5))),
+        "has a grating of 1.5 mm, which is felt as noise; 2 to 15 mm are felt best",
+    ),
+    "a coarse grating": (
+        LinearGrating(ridge_mm=10, gap_mm=6),
+        "has a grating of 16 mm, which is felt weakly; 2 to 15 mm are felt best",
+    ),
+    "a fine stroke": (
+        circle(stroke=Stroke(along=Along(ridge_mm=1.0))),
+        "has a grating along a stroke of 1 mm, which is felt as noise",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ADVICE)
+def test_what_is_hard_to_feel_is_told(name):
+    element, sentence = ADVICE[name]
+    (said,) = advice(element)
+    assert said.startswith("elements, number 1: element 1, ")
+    assert sentence in said
+
+
+def test_what_holds_for_many_elements_is_said_once():
+    thin = [circle(x=40.0 * n + 20, stroke=Stroke(width_mm=1.0)) for n in range(6)]
+    (said,) = advice(*thin)
+    assert "element 1, circle (and 5 others) has a stroke of 1 mm" in said
+
+
+def test_a_texture_on_top_hides_all_below_it():
+    (said,) = advice(circle(), FINE)
+    assert "element 2, linear-grating is everywhere, and hides all elements before it" in said
+    assert not advice(FINE, circle())
+    assert not advice(circle(), FINE, operation="maximum")
+
+
+def test_a_canvas_that_no_carriage_reaches_is_told():
+    (said,) = advice(circle(), canvas=Canvas(width_mm=291, height_mm=200))
+    assert said.startswith("canvas is larger than any known carriage reaches; the largest, the Lat")
+    assert not advice(circle(), canvas=Canvas(width_mm=280, height_mm=217))
+
+
+def test_more_than_five_textures_are_told_and_places_make_no_difference():
+    def filled(number, ridge_mm, start_mm=(0.0, 0.0)):
+        texture = LinearGrating(ridge_mm=ridge_mm, start_mm=start_mm)
+        return circle(x=40.0 * number + 20, fill=Fill(texture=texture))
+
+    six = [filled(n, 3.0 + n) for n in range(6)]
+    assert advice(*six) == ("there are 6 different textures; more than 5 are hard to tell apart",)
+    assert not advice(*six[:5], filled(5, 3.0, (7.0, 7.0)))
+    assert report(circle(fill=Fill(texture=Uniform()))).textures == 0
+
+
+def test_elements_with_too_little_blank_between_them_are_told():
+    beside = (circle(), circle(x=76.0), circle(x=102.5))
+    assert advice(*beside) == (
+        "elements, number 1: element 1, circle stands less than 2.5 mm from element 2, with "
+        "2.0 mm of blank",
+    )
+    shaking = circle(x=76.0, vibration=MID)
+    assert advice(circle(), shaking)[0].endswith("2.0 mm of blank, which a vibration fills")
+    over = Line(start_mm=(40, 50), end_mm=(60, 50), stroke=Stroke())
+    assert not advice(circle(), over)
+
+
+def test_of_very_many_that_are_close_some_are_told_and_how_many_more():
+    many = [circle(x=26.0 * n + 14, y=14.0 + 26.0 * m) for n in range(9) for m in range(7)]
+    said = advice(*many)
+    assert len(said) < 25
+    assert said[-1].startswith("so do ")
+
+
+def test_very_many_side_by_side_take_no_time():
+    dots = [Dots(centers_mm=((140.0, 100 + n / 100),)) for n in range(2000)]
+    assert advice(*dots)[-1].startswith("there are too many elements side by side")
+
+
+def test_an_empty_scene_says_that_nothing_can_be_felt():
+    assert advice() == (
+        "the scene has no elements, so nothing can be felt; write some under [[elements]]",
+    )
+
+
+def test_a_label_whose_size_is_not_known_is_somewhere():
+    (element,) = report(Label(text="sea", place_mm=(5, 5))).elements
+    assert element.box is None
+    assert not advice(circle(), Label(text="sea", place_mm=(5, 5)))
+
+
+def test_examples():
+    tried = doctest.testmod(checking)
+    assert tried.attempted
+    assert not tried.failed

@@ -1,0 +1,279 @@
+"""Scene files are read, or refused in one sentence with the file, the line and the element."""
+
+import contextlib
+import os
+import re
+import subprocess
+import sys
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vbraille.errors import InputError
+from vbraille.scene.including import MOST_BYTES
+from vbraille.scene.reading import open_scene
+
+CANVAS = "[canvas]\nwidth_mm = 200\nheight_mm = 100\n"
+CIRCLE = '[[elements]]\nkind = "circle"\ncenter_mm = [10, 20]\nradius_mm = 5\n'
+STROKE = "stroke = {}\n"
+
+
+def write(tmp_path, text, name="a.scene"):
+    path = tmp_path / name
+    if isinstance(text, bytes):
+        path.write_bytes(text)
+    else:
+        path.write_text(text, encoding="utf-8")
+    return path
+
+
+def refusal(path):
+    with pytest.raises(InputError) as caught:
+        open_scene(path)
+    return str(caught.value)
+
+
+def element(kind, *lines):
+    return f'{CANVAS}[[elements]]\nkind = "{kind}"\n' + "".join(f"{line}\n" for line in lines)
+
+
+def test_a_scene_is_read_with_its_lines_and_without_its_names(tmp_path):
+    path = write(
+        tmp_path,
+        f'title = "Moon"\n{CANVAS}\n# the moon\n{CIRCLE}{STROKE}id = "moon"\n'
+        '[[elements]]\nkind = "use"\nname = "moon"\nmove_mm = [1, 2]\n',
+    )
+    opened = open_scene(path)
+    assert opened.written.title == opened.resolved.title == "Moon"
+    assert [one.id for one in opened.written.elements] == ["moon", ""]
+    assert opened.resolved.elements[1].center_mm == (11.0, 22.0)
+    assert opened.places == (f"{path} line 7", f"{path} line 13")
+    assert opened.folder == tmp_path
+    assert opened.warnings == ()
+
+
+def test_texts_may_have_several_lines_and_french_spaces(tmp_path):
+    path = write(
+        tmp_path, f'description = """\nOui\u202f!\nNon\u00a0?"""\n{CANVAS}{CIRCLE}{STROKE}'
+    )
+    assert open_scene(path).written.description == "Oui\u202f!\nNon\u00a0?"
+
+
+EVEN = '{kind = "uniform"}'
+REFUSED = {
+    "no canvas": ("", "a.scene has no canvas; write [canvas] with width_mm and height_mm"),
+    "a misspelt kind": (
+        element("cirle"),
+        "line 5: [[elements]] number 1 kind is 'cirle'; the near",
+    ),
+    "no kind": (f"{CANVAS}[[elements]]\n", "line 4: [[elements]] number 1 lacks kind; add it"),
+    "a misspelt key": (
+        element("circle", "center_mm = [1, 2]", "radius = 3", "stroke = {}"),
+        "line 7: [[elements]] number 1 has no key 'radius'; the nearest is radius_mm",
+    ),
+    "a misspelt key within": (
+        f"{CANVAS}{CIRCLE}stroke = {{widht_mm = 3}}\n",
+        "line 8: [[elements]] number 1 stroke has no key 'widht_mm'; the nearest is width_mm",
+    ),
+    "a key of another kind": (
+        f"{CANVAS}{CIRCLE}{STROKE}start_mm = [1, 2]\n",
+        "line 9: [[elements]] number 1 start_mm is of kind = 'linear-grating' or 'line'; leave",
+    ),
+    "nan": (
+        f"{CANVAS}{CIRCLE}stroke.width_mm = nan\n",
+        "line 8: [[elements]] number 1 stroke width is nan mm; it must be 0.05 to 10000 mm",
+    ),
+    "infinity": (
+        element("circle", "center_mm = [1, -inf]", "radius_mm = 3", "stroke = {}"),
+        "line 6: [[elements]] number 1 center, y is -inf mm; it must be -10000 to 10000 mm",
+    ),
+    "nan among many": (
+        element("polygon", "vertices_mm = [", "[0, 0],", "[9, nan],", "[9, 9]]", "stroke = {}"),
+        "line 8: [[elements]] number 1 vertices, number 2, y is nan mm",
+    ),
+    "a ridge of 0": (
+        element("linear-grating", "ridge_mm = 0"),
+        "line 6: [[elements]] number 1 ridge is 0 mm; it must be 0.05 to 10000 mm",
+    ),
+    "a ridge of 0 in a fill": (
+        f'{CANVAS}{CIRCLE}[elements.fill.texture]\nkind = "linear-grating"\nridge_mm = 0\n',
+        "line 10: [[elements]] number 1 fill texture ridge is 0 mm; it must be 0.05",
+    ),
+    "a polygon of two vertices": (
+        element("polygon", "vertices_mm = [[0, 0], [9, 9]]", "stroke = {}"),
+        "line 6: [[elements]] number 1 vertices are 2; there must be 3 or more",
+    ),
+    "a polygon that crosses itself": (
+        element("polygon", "vertices_mm = [[0, 0], [9, 9], [9, 0], [0, 9]]", "stroke = {}"),
+        "line 6: [[elements]] number 1 vertices make edges that cross or touch, those after",
+    ),
+    "a polygon that is closed twice": (
+        element("polygon", "vertices_mm = [[0, 0], [9, 9], [9, 0], [0, 0]]", "stroke = {}"),
+        "line 6: [[elements]] number 1 vertices, number 4 is the first place; leave it out",
+    ),
+    "a shape that is not drawn": (
+        CANVAS + CIRCLE,
+        "line 4: [[elements]] number 1 a shape needs a stroke, dots or a fill; add one",
+    ),
+    "a frequency out of range": (
+        element("vibration", "frequency_hz = 60"),
+        "line 6: [[elements]] number 1 frequency is 60 Hz; it must be 0.1 to 50 Hz",
+    ),
+    "a frequency below all": (
+        element("vibration", "vibration = {frequency_hz = 0}"),
+        "line 6: [[elements]] number 1 vibration frequency is 0 Hz; it must be 0.1 to 50 Hz",
+    ),
+    "a place of three numbers": (
+        element("circle", "center_mm = [1, 2, 3]", "radius_mm = 3", "stroke = {}"),
+        "line 6: [[elements]] number 1 center_mm has 3 items; give 2",
+    ),
+    "a number in quotation marks": (
+        element("circle", "center_mm = [1, 2]", 'radius_mm = "3"', "stroke = {}"),
+        "line 7: [[elements]] number 1 radius_mm is '3'; it must be a number",
+    ),
+    "a decimal comma": (
+        element("circle", "center_mm = [1, 2]", "radius_mm = 3,5", "stroke = {}"),
+        "a.scene is not TOML: Expected newline or end of document after a statement (at line 7",
+    ),
+    "a table in place of a list": (
+        f'{CANVAS}[elements]\nkind = "circle"\n',
+        "line 4: [elements] is {'kind': 'circle'}; it must be a list, in brackets",
+    ),
+    "a texture out of range": (
+        f'{CANVAS}[textures."my own"]\nkind = "linear-grating"\nridge_mm = -1\n',
+        "line 6: [textures.my own] ridge is -1 mm",
+    ),
+    "a texture that is none": (
+        f"{CANVAS}[textures]\na = 3\n",
+        "line 5: [textures] a is 3; it must",
+    ),
+    "an unknown name": (
+        element("use", 'name = "stock:radiall"'),
+        "line 6: [[elements]] number 1 name is 'stock:radiall', which nothing here is called; the",
+    ),
+    "uses that lead back": (
+        f'{CANVAS}[textures.a]\nkind = "use"\nname = "b"\n[textures.b]\nkind = "use"\nname = "a"\n',
+        "line 7: [textures.b] uses itself: a, b, a; leave one of these uses out",
+    ),
+    "a name given twice": (
+        f'{CANVAS}{CIRCLE}{STROKE}id = "a"\n{CIRCLE}{STROKE}id = "a"\n',
+        "line 10: [[elements]] number 2 is called a, as is a.scene line 4; give it another name",
+    ),
+    "a canvas that is too large": (
+        "[canvas]\nwidth_mm = 20000\nheight_mm = 5\n",
+        "line 2: [canvas] width is 20000 mm; it must be 1 to 10000 mm",
+    ),
+    "a control character": (
+        f'title = "\\u001b[2J"\n{CANVAS}',
+        "line 1: title is '\\x1b[2J'; it must be text without control characters",
+    ),
+    "groups that nest too deep": (
+        CANVAS
+        + "".join(f'[[elements{".parts" * n}]]\nkind = "group"\n' for n in range(40))
+        + f'[[elements{".parts" * 40}]]\nkind = "uniform"\n',
+        "nests more than 32 deep; make it flatter",
+    ),
+    "brackets that nest too deep": (
+        CANVAS + "elements = [" + "{kind=1,parts=[" * 3000,
+        "is not TOML: its brackets nest too deep; mend it",
+    ),
+    "tables that nest too deep": (
+        element("tile", "width_mm = 5", "height_mm = 5") + f"[elements{'.part' * 3000}]\nx = 1\n",
+        "[[elements]] number 1",
+    ),
+    "a blend of one": (
+        element(
+            "group",
+            'operation = "blend"',
+            'parts = [{kind = "uniform"}]',
+            'by = {kind = "uniform"}',
+        ),
+        "line 7: [[elements]] number 1 parts are 1; a blend has two",
+    ),
+    "not UTF-8": (b'title = "\n\xe9"\n', "a.scene is not UTF-8 in line 2; save it as UTF-8"),
+    "a huge file": (
+        b"#" * (MOST_BYTES + 1),
+        "a.scene is too large for a scene; give a TOML file of",
+    ),
+    "a million elements": (
+        CANVAS + "elements = [" + '{kind="uniform"},' * 1_000_000 + "]\n",
+        "a.scene is too large for a scene; give a TOML file of 8 MB at most",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_used_is_refused_in_one_sentence(tmp_path, case):
+    text, sentence = REFUSED[case]
+    said = refusal(write(tmp_path, text)).replace(f"{tmp_path}/", "")
+    assert sentence in said
+    assert "\n" not in said
+
+
+def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path):
+    assert refusal(tmp_path) == f"{tmp_path} is a directory; give a scene in it"
+    assert refusal(tmp_path / "no.scene").startswith("there is no file ")
+    assert "cannot be read" in refusal("a\0b")
+
+
+def test_a_file_of_a_gigabyte_is_refused_at_once(tmp_path):
+    path = tmp_path / "a.scene"
+    with path.open("wb") as file:
+        file.truncate(2**30)
+    began = time.process_time()
+    assert "too large" in refusal(path)
+    assert time.process_time() - began < 1
+
+
+def test_a_scene_without_elements_is_one(tmp_path):
+    assert open_scene(write(tmp_path, CANVAS)).resolved.elements == ()
+
+
+# Changes to a sound file: something left out, doubled, or put in place of something else.
+SOUND = element(
+    "polygon",
+    "vertices_mm = [[0, 0], [9, 0], [9, 9]]",
+    "stroke = {width_mm = 3, vibration = {frequency_hz = 20}}",
+    "[elements.fill]",
+    "gap_mm = 1",
+    '[elements.fill.texture]\nkind = "group"\noperation = "maximum"',
+    'parts = [{kind = "linear-grating", ridge_mm = 2}, {kind = "use", name = "stock:grid"}]',
+)
+TOKENS = re.findall(r"\w+|[^\w\s]|\s+", SOUND)
+changes = st.lists(
+    st.tuples(
+        st.integers(0, len(TOKENS) - 1),
+        st.sampled_from(["", "0", "-1", "nan", "1e400", "[]", "{}", '"x"', "true", *TOKENS]),
+    ),
+    min_size=1,
+    max_size=3,
+)
+
+
+@given(changes)
+def test_a_changed_file_is_read_or_refused_in_a_sentence(tmp_path_factory, changed):
+    tokens = list(TOKENS)
+    for place, token in changed:
+        tokens[place] = token
+    path = write(tmp_path_factory.getbasetemp(), "".join(tokens), "changed.scene")
+    with contextlib.suppress(InputError):
+        open_scene(path)
+
+
+def test_numbers_are_the_same_in_a_locale_with_a_decimal_comma(tmp_path):
+    path = write(tmp_path, f"{CANVAS}{CIRCLE}stroke = {{width_mm = 2.5}}\n")
+    program = (
+        "import locale\n"
+        "for name in ('de_DE.UTF-8', 'fr_CA.UTF-8', ''):\n"
+        "    try: locale.setlocale(locale.LC_ALL, name); break\n"
+        "    except locale.Error: pass\n"
+        "from vbraille.scene.reading import open_scene\n"
+        f"print(open_scene({str(path)!r}).resolved.elements[0].stroke.width_mm)\n"
+    )
+    environment = {**os.environ, "LC_ALL": "de_DE.UTF-8"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "2.5\n"

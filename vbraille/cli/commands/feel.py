@@ -1,0 +1,299 @@
+"""``vbraille feel``."""
+
+from __future__ import annotations
+
+import sys
+import time
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vbraille.caching import compiling_note
+from vbraille.cli.options.live import check_live_options
+from vbraille.cli.stopping import EAR
+from vbraille.cli.terminal import say_line
+from vbraille.devices.base import Placing
+from vbraille.devices.events import Button
+from vbraille.devices.registry import check_actuators
+from vbraille.devices.saying import placing_sentence
+from vbraille.display import check_rate
+from vbraille.engine.host import HostDiedError
+from vbraille.engine.suspending import Suspension
+from vbraille.errors import InputError
+from vbraille.feeling.commands import BOUND
+from vbraille.feeling.composing import Composer
+from vbraille.feeling.feeler import Feeler
+from vbraille.feeling.filewatch import FileWatch
+from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.reading.commands.table import press, press_button
+from vbraille.reading.context import Context
+from vbraille.reading.cues import Cues, choose_cues
+from vbraille.reading.hearing import Hearing
+from vbraille.reading.keyboard import Keyboard
+from vbraille.reading.opened import OpenDevice
+from vbraille.render import MODELS, model_of
+from vbraille.simulation.hand import Still
+from vbraille.simulation.specs import (
+    STILL,
+    has_hand,
+    is_simulated,
+    parse_hand,
+    refuse_hand,
+)
+from vbraille.simulation.steering import ReadPage
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterable
+
+    from vbraille.cli.live import FeltLiveView
+    from vbraille.devices.events import Event
+    from vbraille.display import Display
+    from vbraille.feeling.loading import LoadedScene
+
+_POLL_S = 0.02
+_MODEL = "stress2-8x8"
+_LINE_MM = 10.0  # between the lines that a hand goes along which reads
+# A picture may grow while somebody works on it.
+_SPARE, _LEAST_ROOM = 3, 1 << 21
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Have a picture under the hand until a key says so, or a hand that moves by itself is done."""
+    check_live_options(arguments)
+    rate_hz = check_rate(arguments.rate)
+    refuse_hand(arguments.device, hand=arguments.hand, seed=arguments.seed)
+    hand = STILL if arguments.hand is None else arguments.hand
+    seed = 1 if arguments.seed is None else arguments.seed
+    moved = parse_hand(hand, seed, pointed=True)
+    wanted = replace(MODELS[arguments.model or _MODEL].display, rate_hz=rate_hz)
+    loaded = load_scene(arguments.file, model_of(wanted).style)
+    if is_simulated(arguments.device):
+        _check(loaded, wanted, arguments.at)
+    with ExitStack() as listening, Keyboard() as keyboard:
+        still = isinstance(moved, Still) and has_hand(arguments.device)
+        if still and not (keyboard.attached or arguments.monitor):
+            raise InputError(
+                "nothing would move the hand: start vbraille feel at a terminal, with --monitor, "
+                "or with a hand such as --hand wide"
+            )
+        if (note := compiling_note()) is not None:
+            print(note, file=sys.stderr, flush=True)
+        cues = Cues(choose_cues(arguments.cues, attended=keyboard.attached))
+        live = _live(arguments)
+        if live is not None:
+            listening.enter_context(live)
+        hearing = listening.enter_context(Hearing(say_line if live is None else live.say, cues))
+        if arguments.speech:
+            hearing.speak(loaded.scene.language)
+        device = OpenDevice(
+            arguments.device,
+            wanted,
+            hand=hand,
+            seed=seed,
+            say=hearing.say,
+            attended=keyboard.attached,
+            begun=arguments.begun,
+            pointer=arguments.pointer if has_hand(arguments.device) else None,
+            on_share=None if live is None else live.share,
+        )
+        try:
+            display = device.find()
+            if arguments.model is not None:
+                check_actuators(display, wanted)
+            _check(loaded, display, arguments.at)
+            model = model_of(display)
+            composer = Composer(display, rate_hz=rate_hz)
+            program = composer.compose(loaded, own_y_mm=arguments.at)
+            room = max(_SPARE * program.nbytes, _LEAST_ROOM)
+            device.start(model, room)
+            suspension = listening.enter_context(Suspension())
+            keyboard.take()
+            feeler = Feeler(
+                loaded,
+                device.engine,
+                where=lambda: device.pose,
+                composer=composer,
+                style=model.style,
+                say=hearing.say,
+                bound=BOUND,
+                room=room,
+                cue=hearing.cue,
+                steering=device.steering,
+                at_mm=arguments.at,
+                entering=arguments.say_entering,
+            )
+            feeler.start(program)
+            for warning in loaded.notes:
+                say_line(f"note: {warning}", aside=True)
+            if live is not None:
+                live.feel(device, feeler, hand)
+            # A hand that moves by itself sets out, and without anybody at keys ends the feeling.
+            ends = not still and device.steering is not None
+            if ends and device.steering is not None:
+                canvas = loaded.scene.canvas
+                lines = max(1, round(canvas.height_mm / _LINE_MM))
+                pitch_mm = canvas.height_mm / lines
+                device.steering.give(ReadPage(lines, pitch_mm, canvas.width_mm))
+            alone = ends and not keyboard.attached
+            _Feeling(device, feeler, keyboard, suspension, live, alone=alone).run()
+        finally:
+            EAR.close()  # so that the array goes to rest
+            device.close()
+    faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
+    if faults:
+        say_line(f"device: {faults}")
+    tally = device.tally
+    seconds = (tally.ticks + tally.late) / rate_hz
+    say_line(f"summary: seconds {seconds:.1f}, ticks {tally.ticks}, late ticks {tally.late}")
+    return 0
+
+
+def _check(loaded: LoadedScene, display: Display, at_mm: float | None) -> None:
+    """Refuse a scene that a device's carriage cannot go over, or a height that it does not need."""
+    check_fits(loaded.scene, display)
+    height_mm = loaded.scene.canvas.height_mm
+    if at_mm is not None and display.height_mm:
+        raise InputError(
+            f"--at is for a device of one axis, and {display.name} has two; leave --at out"
+        )
+    if at_mm is not None and not 0 <= at_mm <= height_mm:
+        raise InputError(f"--at is {at_mm:g} mm; it must be 0 to {height_mm:g} mm")
+
+
+def _live(arguments: argparse.Namespace) -> FeltLiveView | None:
+    """Live view that was asked for; None if none was."""
+    if not arguments.monitor:
+        return None
+    # Only who has a live view waits for what it needs.
+    from vbraille.cli.live import FeltLiveView
+
+    return FeltLiveView(arguments)
+
+
+class _Feeling:
+    """A picture that is felt, with the device and the keyboard."""
+
+    def __init__(
+        self,
+        device: OpenDevice,
+        feeler: Feeler,
+        keyboard: Keyboard,
+        suspension: Suspension,
+        live: FeltLiveView | None,
+        *,
+        alone: bool,
+    ) -> None:
+        self._device = device
+        self._feeler = feeler
+        self._keyboard = keyboard
+        self._suspension = suspension
+        self._live = live
+        self._alone = alone
+        self._watch = FileWatch(Path(feeler.loaded.opened.path))
+
+    def run(self) -> None:
+        """Feel until somebody has enough."""
+        device, feeler = self._device, self._feeler
+        if self._keyboard.attached:
+            feeler.say(f"{feeler.key('HELP', 'h')} says the keys")
+        while not feeler.done:
+            for key in self._pressed():
+                self._set_context()
+                press(feeler, key)
+            if self._live is not None:
+                self._live.attend()
+            placing = device.placing
+            try:
+                events = device.poll(0.0)
+            except HostDiedError as fault:
+                self._start_again(fault)
+                continue
+            for event in events:
+                if isinstance(event, Button) and event.pressed:
+                    press_button(feeler, event.number)
+            if device.placing is not placing:
+                self._say_place()
+            if device.held:
+                feeler.forget_aim()
+            now_s = time.monotonic()
+            feeler.attend(now_s)
+            if self._watch.changed(now_s):
+                feeler.reload()
+            if self._alone and self._is_done():
+                feeler.quit()
+            self._tell(events)
+        self._tell()
+
+    def _is_done(self) -> bool:
+        """Whether a simulated hand has gone all of its way."""
+        pose, steering = self._device.pose, self._device.steering
+        return pose is not None and steering is not None and steering.done_at(pose.time_ns)
+
+    def _tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
+        if self._live is not None:
+            self._live.tell(events, standing)
+
+    def _pressed(self) -> list[str]:
+        """Keys typed; before that, the process stops for a while if it is told to."""
+        if self._suspension.asked:
+            self._suspend()
+        elif self._suspension.continued:
+            self._suspension.continued = False
+            self._keyboard.take()  # the shell has had the terminal
+        return self._keyboard.pressed(_POLL_S)
+
+    def _suspend(self) -> None:
+        """Stop, with the array at rest, until the shell says to go on."""
+        device = self._device
+        paused, device.paused = device.paused, True
+        self._feeler.say("stopped: the array rests; fg goes on")
+        self._tell(standing="stopped: the array rests")
+        self._keyboard.release()
+        self._suspension.stop()
+        self._keyboard.take()
+        device.paused = paused
+        self._feeler.say("paused" if paused else "feeling")
+        self._tell(standing="")
+
+    def _set_context(self) -> None:
+        """Have keys mean that the carriage is at its corner as long as the device waits for it."""
+        feeler = self._feeler
+        if self._device.placing is Placing.STOP:
+            feeler.context = Context.PLACING
+        elif feeler.context is Context.PLACING:
+            feeler.context = Context.READING
+
+    def _say_place(self) -> None:
+        if self._device.placing is Placing.STOP and not self._keyboard.attached:
+            raise InputError(
+                "the device must be shown its place, such as its left stop; feel at a terminal"
+            )
+        self._feeler.say(placing_sentence(self._device.placing, self._device.display))
+
+    def _start_again(self, fault: HostDiedError) -> None:
+        """Say that the host is gone, and begin another when asked to.
+
+        Raises
+        ------
+        HostDiedError
+            If there is nobody to ask.
+        """
+        self._tell(standing=f"fault: {fault}")
+        if not self._keyboard.attached:
+            raise fault
+        feeler = self._feeler
+        feeler.say(f"fault: {fault}; space begins again, q stops")
+        while True:
+            keys = self._pressed()
+            if "q" in keys:
+                feeler.quit()
+                return
+            if " " in keys:
+                break
+            if keys:
+                feeler.say("fault: nothing drives the device; space begins again, q stops")
+        self._device.start_again()
+        feeler.say("feeling")
+        self._tell(standing="")

@@ -1,0 +1,103 @@
+"""``vbraille scene``: what a tactile picture holds, its file's form, and pictures of others."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from vbraille.cli.terminal import say_line
+from vbraille.wording import spelled
+
+if TYPE_CHECKING:
+    import argparse
+
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.scene.checking import ElementReport, SceneReport
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check or convert a picture, or print the schema."""
+    if arguments.action == "schema":
+        from vbraille.scene.schema import schema_text
+
+        sys.stdout.write(schema_text())
+        return 0
+    if arguments.action == "convert":
+        from vbraille.cli.commands.scene_convert import convert
+
+        return convert(arguments)
+    return _check(arguments)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from vbraille.feeling.loading import load_scene
+    from vbraille.render import MODELS
+    from vbraille.scene.checking import check_scene
+
+    loaded = load_scene(arguments.file, MODELS["stress2"].style)
+    report = check_scene(loaded.opened, loaded.boxes())
+    if arguments.json:
+        print(json.dumps(_as_json(loaded, report), ensure_ascii=False, indent=2))
+    else:
+        _say(loaded, report)
+    return 0
+
+
+def _say(loaded: LoadedScene, report: SceneReport) -> None:
+    """Print the report, a line for each thing."""
+    scene = loaded.opened.written
+    for what, value in (("title", scene.title), ("description", scene.description)):
+        if value:
+            say_line(f"{what}: {' '.join(value.split())}")
+    say_line(f"canvas: {scene.canvas.width_mm:g} × {scene.canvas.height_mm:g} mm")
+    say_line(f"language: {scene.language}")
+    say_line(f"elements: {len(report.elements)}, put together by {scene.operation}")
+    for kind, number in report.kinds.items():
+        say_line(f"{kind}: {number}")
+    say_line(f"different textures: {report.textures}")
+    for element in report.elements:
+        say_line(_said(element))
+    remarks = (
+        *(f"file: {sentence}" for sentence in loaded.notes),
+        *(f"vibration: {sentence}" for sentence in report.vibrations),
+        *(f"advice: {sentence}" for sentence in report.advice),
+    )
+    for remark in remarks:
+        say_line(spelled(remark))
+    say_line(f"remarks: {len(remarks) or 'none'}")
+
+
+def _said(element: ElementReport) -> str:
+    box = element.box
+    if box is None:
+        where = "everywhere"
+    elif box.is_empty:
+        where = "nowhere"
+    else:
+        where = (
+            f"{box.right - box.left:.1f} × {box.bottom - box.top:.1f} mm from "
+            f"{box.left:.1f}, {box.top:.1f}"
+        )
+    hz = " and ".join(f"{one:g}" for one in element.vibration_hz)
+    vibrates = f", vibrates at {hz} Hz" if hz else ""
+    return f"{element.said()}: {where}{vibrates}, {element.place}"
+
+
+def _as_json(loaded: LoadedScene, report: SceneReport) -> dict[str, object]:
+    scene = loaded.opened.written
+    elements = [
+        {**asdict(one), "box": None if one.box is None or one.box.is_empty else one.box._asdict()}
+        for one in report.elements
+    ]
+    return {
+        "title": scene.title,
+        "description": scene.description,
+        "language": scene.language,
+        "canvas": {"width_mm": scene.canvas.width_mm, "height_mm": scene.canvas.height_mm},
+        "operation": scene.operation,
+        **asdict(report),
+        "elements": elements,
+        "file": loaded.notes,
+    }

@@ -1,0 +1,111 @@
+"""Programs of scenes, and how they look from above."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.render import work
+from vbraille.render.program import Program
+from vbraille.render.scene.compiling import SceneCompiler
+from vbraille.scene.patterns import Group
+from vbraille.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from vbraille.display import Display
+    from vbraille.feeling.loading import LoadedScene
+
+_COMPILED: Final = ("multiply", "add", "maximum", "overwrite")  # others are a group's
+_MOST_PIXELS: Final = 300_000
+_FINEST_MM: Final = 0.25
+_MOST_BYTES: Final = 120_000
+
+
+class Composer:
+    """Makes programs of scenes that follow each other, as somebody works on a picture.
+
+    What has not changed from one to the next is not compiled again.
+
+    Parameters
+    ----------
+    display
+        Display that the scenes are felt on.
+    rate_hz
+        Frames a second.
+    """
+
+    def __init__(self, display: Display, *, rate_hz: float = 1000.0) -> None:
+        self._compiler = SceneCompiler(display, rate_hz=rate_hz)
+
+    def compose(
+        self, loaded: LoadedScene, *, contrast: float = 1.0, own_y_mm: float | None = None
+    ) -> Program:
+        """Compile a scene.
+
+        Parameters
+        ----------
+        loaded
+            The scene.
+        contrast
+            Factor of all its deflections, from 0 to 1.
+        own_y_mm
+            Height of the canvas that an array is at whose carriage measures no y; None for the
+            middle.
+
+        Raises
+        ------
+        InputError
+            If the scene cannot be shown at this rate, or stands too deep in itself.
+        """
+        scene = loaded.scene
+        whole = contrast == 1.0 and scene.operation in _COMPILED
+        if not whole and scene.elements:
+            group = Group(operation=scene.operation, parts=scene.elements, amplitude=contrast)
+            scene = Scene(canvas=scene.canvas, operation="maximum", elements=(group,))
+        try:
+            program = self._compiler.compile(scene, loaded.assets)
+        except ValueError as error:
+            raise InputError(f"{loaded.opened.path}: {error}") from None
+        height_mm = scene.canvas.height_mm / 2 if own_y_mm is None else own_y_mm
+        program.numbers[work.OWN_Y] = height_mm
+        return program
+
+
+def compose(loaded: LoadedScene, display: Display, *, rate_hz: float = 1000.0) -> Program:
+    """Compile one scene for a display; see `Composer.compose`."""
+    return Composer(display, rate_hz=rate_hz).compose(loaded)
+
+
+def at_height(program: Program, y_mm: float) -> Program:
+    """Make the same program for an array that is at another height where it measures none."""
+    numbers = program.numbers.copy()
+    numbers[work.OWN_Y] = y_mm
+    return Program(numbers, program.table)
+
+
+def seen_from_above(loaded: LoadedScene) -> bytes:
+    """Draw the deflection map of a scene as a PNG of some 100 kB: black is full deflection.
+
+    Lévesque 2009, 8.3.3; what vibrates is drawn as it is at the beginning.
+    """
+    # Only a live view needs these.
+    from PIL import Image
+
+    from vbraille.render.scene.canvas import SceneMap
+
+    canvas = loaded.scene.canvas
+    step_mm = max(_FINEST_MM, math.sqrt(canvas.width_mm * canvas.height_mm / _MOST_PIXELS))
+    scene_map = SceneMap(loaded.scene, loaded.assets)
+    while True:
+        x_mm = np.arange(step_mm / 2, max(canvas.width_mm, step_mm), step_mm)
+        y_mm = np.arange(step_mm / 2, max(canvas.height_mm, step_mm), step_mm)
+        inked = np.rint(255 * scene_map.deflections(x_mm, y_mm))
+        file = io.BytesIO()
+        Image.fromarray((255 - inked).astype(np.uint8)).save(file, "PNG")
+        if file.tell() <= _MOST_BYTES:
+            return file.getvalue()
+        step_mm *= 1.5

@@ -1,0 +1,278 @@
+"""What frames of a picture cost: time against place, and what each element has in it.
+
+Lévesque 2009, 8.5.2: the time of a whole frame as a function of where the display is, on a path
+(fig. 8.30), as a histogram and as a map (fig. 8.31). Budgets are 8.5.3's.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from msgspec.structs import replace
+
+from vbraille.feeling.index import label_of
+from vbraille.render import kernels, work
+from vbraille.render.program import scratch_for
+from vbraille.render.scene.compiling import SceneCompiler
+from vbraille.scene.bounds import bounds
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from vbraille.display import Display
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.feeling.paths import PosedPath
+    from vbraille.render.program import Program
+    from vbraille.scene.scene import Canvas
+
+# A millisecond for 64 actuators: Lévesque 2009, 8.5.3.
+FRAME_BUDGET_US: Final = 1000.0
+ACTUATOR_BUDGET_US: Final = FRAME_BUDGET_US / 64
+# A batch is long against the clock's resolution, and short on the way: 1 mm at 60 mm/s.
+BATCH_FRAMES: Final = 16
+REPEATS: Final = 7
+_MAP_MM: Final = 2.0
+_MOST_TILES: Final = 500
+_MOST_ELEMENTS: Final = 200
+_BARS: Final = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Costs:
+    """Time of a frame at places on a path.
+
+    Parameters
+    ----------
+    x_mm, y_mm : float64[n]
+        Middle of the places of each batch of frames.
+    frame_us : float64[n]
+        Time of a frame there: the median of repeats, each of which is a batch's time divided by
+        its frames.
+    actuators
+        Number of actuators in a frame.
+    resolution_us
+        Smallest difference that the clock tells, divided by the frames of a batch.
+    """
+
+    x_mm: NDArray[np.float64]
+    y_mm: NDArray[np.float64]
+    frame_us: NDArray[np.float64]
+    actuators: int
+    resolution_us: float
+
+    @property
+    def actuator_us(self) -> float:
+        """Mean time of an actuator."""
+        return float(self.frame_us.mean()) / self.actuators
+
+
+@dataclass(frozen=True, slots=True)
+class ElementCost:
+    """What an element has in the time of frames.
+
+    Parameters
+    ----------
+    name
+        Title or id of the element, or its number.
+    mean_us
+        How much longer a frame takes with it than without it, on average over the path.
+    most_us
+        The same at the place where that is most.
+    """
+
+    name: str
+    mean_us: float
+    most_us: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CostMap:
+    """Mean cost of a frame per place of the canvas.
+
+    Parameters
+    ----------
+    mean_us : float64[rows, columns]
+        Mean over the frames whose centre was in each square; NaN where none was.
+    step_mm
+        Side of a square; the first begins at the upper left corner of the canvas.
+    """
+
+    mean_us: NDArray[np.float64]
+    step_mm: float
+
+
+def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
+    """Time the frames of a program along a path, in batches, in compiled code.
+
+    The frames of a batch follow each other on the path, as a hand would have them. All batches are
+    timed one after the other, and then all again, so that what disturbs the machine for a moment
+    falls on one of the repeats.
+
+    Parameters
+    ----------
+    program
+        The picture.
+    path
+        Path of the array; frames that do not fill a batch are left out.
+    repeats
+        How often each batch is timed.
+
+    Raises
+    ------
+    ValueError
+        If the path has less than one batch of frames.
+    """
+    batches = path.t_s.size // BATCH_FRAMES
+    if not batches:
+        raise ValueError(f"a path of {path.t_s.size} frames is too short to be timed")
+    count = batches * BATCH_FRAMES
+    at = np.zeros((count, 6))
+    at[:, work.X], at[:, work.Y] = path.x_mm[:count], path.y_mm[:count]
+    at[:, work.THETA], at[:, work.TIME] = path.theta_rad[:count], path.t_s[:count]
+    at = at.reshape(batches, BATCH_FRAMES, 6)
+    parts = np.zeros(BATCH_FRAMES, np.int64)
+    out = np.empty((BATCH_FRAMES, *program.shape), np.float32)
+    numbers, table = program.numbers, program.table
+    scratch = scratch_for(program.shape, program.kind)
+    taken_ns = np.empty((repeats, batches), np.int64)
+    kernels.poses(numbers, table, scratch, at[0], parts, out)  # compiled, or loaded
+    empty_ns = _call_ns(program)
+    now_ns = time.perf_counter_ns
+    for repeat in range(repeats):
+        for batch in range(batches):
+            here = at[batch]
+            begun_ns = now_ns()
+            kernels.poses(numbers, table, scratch, here, parts, out)
+            taken_ns[repeat, batch] = now_ns() - begun_ns
+    frame_us = np.maximum(np.median(taken_ns, axis=0) - empty_ns, 0) / BATCH_FRAMES / 1000
+    middle = at.mean(axis=1)
+    return Costs(
+        middle[:, work.X],
+        middle[:, work.Y],
+        frame_us,
+        program.shape[0] * program.shape[1],
+        _resolution_ns() / BATCH_FRAMES / 1000,
+    )
+
+
+def _call_ns(program: Program) -> float:
+    """Time of a call that makes no frame, which is no part of what frames cost."""
+    at, parts = np.zeros((0, 6)), np.zeros(0, np.int64)
+    out = np.empty((0, *program.shape), np.float32)
+    scratch = scratch_for(program.shape, program.kind)
+    taken = []
+    for _ in range(200):
+        begun_ns = time.perf_counter_ns()
+        kernels.poses(program.numbers, program.table, scratch, at, parts, out)
+        taken.append(time.perf_counter_ns() - begun_ns)
+    return float(np.median(taken))
+
+
+def _resolution_ns() -> int:
+    """Smallest step of the clock that is seen."""
+    steps = []
+    for _ in range(200):
+        first = now = time.perf_counter_ns()
+        while now == first:
+            now = time.perf_counter_ns()
+        steps.append(now - first)
+    return min(steps)
+
+
+def cost_map(costs: Costs, canvas: Canvas, step_mm: float = _MAP_MM) -> CostMap:
+    """Mean the costs of a path over squares of the canvas: Lévesque 2009, fig. 8.31.
+
+    Parameters
+    ----------
+    costs
+        What was measured.
+    canvas
+        The canvas.
+    step_mm
+        Side of a square; it is larger where there would be more than 500 of them in a row.
+    """
+    step_mm = max(step_mm, canvas.width_mm / _MOST_TILES, canvas.height_mm / _MOST_TILES)
+    columns = int(np.ceil(canvas.width_mm / step_mm))
+    rows = int(np.ceil(canvas.height_mm / step_mm))
+    column = np.clip((costs.x_mm / step_mm).astype(int), 0, columns - 1)
+    row = np.clip((costs.y_mm / step_mm).astype(int), 0, rows - 1)
+    inside = (costs.x_mm >= 0) & (costs.x_mm <= canvas.width_mm)
+    inside &= (costs.y_mm >= 0) & (costs.y_mm <= canvas.height_mm)
+    tile = (row * columns + column)[inside]
+    sums = np.bincount(tile, costs.frame_us[inside], rows * columns)
+    counts = np.bincount(tile, minlength=rows * columns)
+    with np.errstate(invalid="ignore"):
+        return CostMap((sums / counts).reshape(rows, columns), step_mm)
+
+
+def histogram(costs: Costs) -> list[tuple[float, float, float]]:
+    """Lower and upper end in µs, and share of the frames, of each bar of a histogram."""
+    low, high = float(costs.frame_us.min()), float(costs.frame_us.max())
+    shares, edges = np.histogram(costs.frame_us, bins=_BARS, range=(low, max(high, low + 1e-3)))
+    return [
+        (float(begin), float(end), float(n) / costs.frame_us.size)
+        for begin, end, n in zip(edges[:-1], edges[1:], shares, strict=True)
+    ]
+
+
+def to_csv(costs: Costs) -> str:
+    """Write places and costs as CSV: x_mm, y_mm, frame_us."""
+    written = io.StringIO(newline="")
+    writer = csv.writer(written, lineterminator="\n")
+    writer.writerow(("x_mm", "y_mm", "frame_us"))
+    for row in zip(costs.x_mm.tolist(), costs.y_mm.tolist(), costs.frame_us.tolist(), strict=True):
+        writer.writerow(f"{value:.4f}" for value in row)
+    return written.getvalue()
+
+
+def costs_of_elements(
+    loaded: LoadedScene, display: Display, path: PosedPath, rate_hz: float, repeats: int = REPEATS
+) -> Iterator[ElementCost]:
+    """Time frames with and without each element of a scene, of the first 200 elements.
+
+    An element is taken out of the scene for that; what it hid is then shown, and costs instead. It
+    is timed where the array comes near it, and counts for nothing elsewhere.
+
+    Parameters
+    ----------
+    loaded
+        The scene.
+    display
+        Display that it is rendered for.
+    path
+        Path of the array.
+    rate_hz
+        Frames a second.
+    repeats
+        How often each batch of frames is timed.
+    """
+    scene, known = loaded.scene, loaded.boxes()
+    compiler = SceneCompiler(display, rate_hz=rate_hz)
+    whole = compiler.compile(scene, loaded.assets)
+    reach_mm = float(np.hypot(display.span_mm, display.depth_mm)) / 2
+    batches = path.t_s.size // BATCH_FRAMES
+    for number, element in enumerate(scene.elements[:_MOST_ELEMENTS]):
+        box = bounds(element, known)
+        near = path
+        if box is not None:
+            near = path.only(
+                (path.x_mm >= box.left - reach_mm)
+                & (path.x_mm <= box.right + reach_mm)
+                & (path.y_mm >= box.top - reach_mm)
+                & (path.y_mm <= box.bottom + reach_mm)
+            )
+        name = label_of(element) or f"number {number + 1}"
+        if near.t_s.size < BATCH_FRAMES:
+            yield ElementCost(name, 0.0, 0.0)
+            continue
+        others = scene.elements[:number] + scene.elements[number + 1 :]
+        without = compiler.compile(replace(scene, elements=others), loaded.assets)
+        more_us = measure(whole, near, repeats).frame_us - measure(without, near, repeats).frame_us
+        yield ElementCost(name, float(more_us.sum()) / batches, float(more_us.max()))

@@ -1,0 +1,336 @@
+"""Somebody who feels a picture: what is under the hand, and all that may be asked for meanwhile."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from vbraille.errors import InputError
+from vbraille.feeling.composing import at_height
+from vbraille.feeling.guiding import Guide
+from vbraille.feeling.index import SceneIndex
+from vbraille.feeling.loading import check_fits, load_scene, with_known
+from vbraille.reading.context import Context
+from vbraille.reading.cues import Cue
+from vbraille.reading.prompt import Prompt
+from vbraille.simulation.steering import GlideTo
+from vbraille.wording import spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.display import Display
+    from vbraille.engine.engine import Engine
+    from vbraille.feeling.composing import Composer
+    from vbraille.feeling.index import NamedElement
+    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pose import Pose
+    from vbraille.reading.bindings import Bound
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.program import Program
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.simulation.steering import Steering
+
+# Ours: as a hand that explores goes, and one that is led somewhere.
+KEYED_MM_S: Final = 60.0
+LED_MM_S: Final = 100.0
+_CONTRAST_STEP: Final = 0.1
+_MOVED_MM: Final = 0.2  # a hand that moved less is asked about no more
+
+
+class Feeler:
+    """Somebody who feels a scene on a device; `vbraille.feeling.commands` calls its methods.
+
+    Parameters
+    ----------
+    loaded
+        The scene.
+    engine
+        Engine that drives the device, which is started.
+    where
+        Function that tells where the array is; None before that is known.
+    composer
+        What makes programs of scenes.
+    style
+        How the braille of labels is shown.
+    say
+        Function that says a sentence.
+    cue
+        Function that gives a cue.
+    bound
+        Commands with their keys.
+    room
+        Bytes of the largest program that the engine has room for.
+    steering
+        Channel of orders to a simulated hand; None if a person moves the device.
+    at_mm
+        Height at which an array is that moves along x alone; None for the middle of the canvas.
+    entering
+        Whether each element is said when the finger comes to it.
+
+    Attributes
+    ----------
+    done : bool
+        Whether the feeler has enough.
+    contrast : float
+        Factor of all deflections, from 0 to 1.
+    under : NamedElement or None
+        Element that was under the finger when that was last looked for.
+    """
+
+    def __init__(
+        self,
+        loaded: LoadedScene,
+        engine: Engine,
+        *,
+        where: Callable[[], Pose | None],
+        composer: Composer,
+        style: BrailleStyle,
+        say: Callable[[str], None],
+        bound: Bound,
+        room: int,
+        cue: Callable[[Cue], None] = lambda _: None,
+        steering: Steering | None = None,
+        at_mm: float | None = None,
+        entering: bool = False,
+    ) -> None:
+        self.engine = engine
+        self.loaded = loaded
+        self.bound: Bound | None = bound
+        self.cue = cue
+        self.context = Context.READING
+        self.prompt: Prompt | None = None
+        self.done = False
+        self.contrast = 1.0
+        self.entering = entering
+        self.under: NamedElement | None = None
+        self.shown = 0  # how many pictures were
+        self._say = say
+        self._where = where
+        self._style = style
+        self._room = room
+        self._composer = composer
+        self._steering = steering
+        self._at_mm = loaded.scene.canvas.height_mm / 2 if at_mm is None else at_mm
+        self._aim: tuple[float, float] | None = None  # where keys have sent the hand
+        self._looked_at = (math.nan, math.nan)
+        self._guide: Guide | None = None
+        self._index = self._index_of(loaded)
+
+    @property
+    def display(self) -> Display:
+        """Display of the device."""
+        return self.engine.display
+
+    @property
+    def place(self) -> tuple[float, float] | None:
+        """Place of the array's centre on the canvas, in mm; None before it is known."""
+        pose = self._where()
+        return None if pose is None else (pose.x_mm, pose.y_mm)
+
+    def say(self, sentence: str) -> None:
+        """Say a sentence."""
+        self._say(sentence)
+
+    def key(self, name: str, usual: str) -> str:
+        """Key that calls a command, for a sentence."""
+        keys = () if self.bound is None else self.bound.keys_of(name)
+        return keys[0] if keys else usual
+
+    def quit(self) -> None:
+        """Stop feeling."""
+        self.done = True
+
+    def pause(self) -> None:
+        """Rest the array at once, or go on."""
+        self.engine.paused = not self.engine.paused
+        self.say("paused" if self.engine.paused else "feeling")
+
+    def set_zero(self) -> None:
+        """Say that the carriage is where it has to be shown."""
+        self.engine.set_zero()
+
+    def start(self, program: Program) -> None:
+        """Put the scene under the hand, and say what it is."""
+        self._show(program)
+        self.say_scene()
+        if not self.display.height_mm:
+            self.say(
+                "one axis: this device's carriage goes along x only, so that one line of the "
+                f"picture is felt at a time, now at {self._at_mm:.0f} mm from the top; "
+                f"{self.key('DOWN', 'down')} and {self.key('UP', 'up')} choose another"
+            )
+
+    def attend(self, now_s: float) -> None:
+        """Do what is done by time: say what the finger comes to, and the way to what is sought."""
+        place = self.place
+        if place is None:
+            return
+        if self._guide is not None:
+            sentence = self._guide.sentence(place, now_s)
+            if sentence:
+                self.say(sentence)
+            if self._guide.there:
+                self._guide = None
+        if math.dist(place, self._looked_at) < _MOVED_MM:
+            return
+        self._looked_at = place
+        found = self._index.here(*place)
+        before, self.under = self.under, found
+        if self.entering and found is not before and found is not None:
+            self.say(f"entering: {found.name}")
+
+    # What is asked for
+
+    def say_scene(self) -> None:
+        """Say the title and the description of the picture."""
+        scene = self.loaded.scene
+        self.say(f"picture: {self.loaded.title}")
+        if scene.description:
+            self.say(f"description: {scene.description}")
+        self.say(f"size: {scene.canvas.width_mm:g} mm × {scene.canvas.height_mm:g} mm")
+
+    def say_here(self) -> None:
+        """Say what is under the middle of the array, and where that is."""
+        place = self.place
+        if place is None:
+            self.say("place: not known yet")
+            return
+        found = self._index.here(*place)
+        self.say(f"here: {'nothing with a name' if found is None else found.name}")
+        self.say(f"place: {place[0]:.0f} mm from the left, {place[1]:.0f} mm from the top")
+
+    def describe_here(self) -> None:
+        """Say the description of what is under the middle of the array."""
+        found = None if self.place is None else self._index.here(*self.place)
+        if found is None:
+            self.say("here: nothing with a name")
+        else:
+            self.say(f"{found.name}: {found.description or 'no description'}")
+
+    def say_elements(self) -> None:
+        """Say the elements that have a name."""
+        if not self._index.elements:
+            self.say("elements: none has a name")
+        for element in self._index.elements:
+            x_mm, y_mm = element.center_mm
+            self.say(f"element: {element.name}, at {x_mm:.0f} mm right, {y_mm:.0f} mm down")
+
+    def ask_element(self) -> None:
+        """Ask for the name of an element, and go there."""
+        self.prompt = Prompt("element", self.go_to)
+        self.context = Context.PROMPT
+        self.say("go to an element: type its title or id, then enter")
+
+    def go_to(self, name: str) -> None:
+        """Go to an element by its name, or say the way there to whoever moves the device."""
+        found = self._index.find(name)
+        if found is None:
+            self.cue(Cue.NOT_FOUND)
+            self.say(f"element: none is called {name}; {self.key('ELEMENTS', 'e')} says them all")
+        elif self._steering is not None:
+            self.say(f"going to: {found.name}")
+            self._glide(found.center_mm, LED_MM_S)
+        else:
+            self._guide = Guide(found.name, found.center_mm, down=self.display.height_mm > 0)
+
+    def cancel(self) -> None:
+        """Say the way no more."""
+        if self._guide is not None:
+            self._guide = None
+            self.say("way: no longer said")
+
+    def toggle_entering(self) -> None:
+        """Say each element when the finger comes to it, or no longer."""
+        self.entering = not self.entering
+        self.say(f"entering: {'said' if self.entering else 'not said'}")
+
+    # What is changed
+
+    def move(self, right_mm: float, down_mm: float) -> None:
+        """Move a simulated hand; on a device of one axis, choose another height."""
+        if not self.display.height_mm and down_mm:
+            self._choose_height(self._at_mm + down_mm)
+            return
+        if self._steering is None:
+            self.say("hand: a person moves this device; move it by hand")
+            return
+        begun = self._aim or self.place
+        if begun is not None:
+            self._glide((begun[0] + right_mm, begun[1] + down_mm), KEYED_MM_S)
+
+    def go_to_middle(self) -> None:
+        """Go to the middle of the canvas."""
+        canvas = self.loaded.scene.canvas
+        if self._steering is None:
+            middle = canvas.width_mm / 2, canvas.height_mm / 2
+            self._guide = Guide("middle", middle, down=self.display.height_mm > 0)
+        else:
+            self._glide((canvas.width_mm / 2, canvas.height_mm / 2), LED_MM_S)
+
+    def forget_aim(self) -> None:
+        """Have keys move the hand from where it is: somebody else has moved it."""
+        self._aim = None
+
+    def turn_contrast(self, step: int) -> None:
+        """Show the picture with more or less of the actuators' swing."""
+        contrast = round(min(max(self.contrast + step * _CONTRAST_STEP, _CONTRAST_STEP), 1.0), 2)
+        if contrast == self.contrast:
+            self.cue(Cue.LIMIT)
+        else:
+            self.contrast = contrast
+            self._show(self._compose(self.loaded))
+        self.say(f"contrast: {self.contrast:g}")
+
+    def reload(self) -> None:
+        """Read the file again, and show what it holds now; what is wrong with it is said."""
+        try:
+            loaded = load_scene(self.loaded.opened.path, self._style)
+            loaded = with_known(loaded, self.loaded)
+            check_fits(loaded.scene, self.display)
+            program = self._compose(loaded)
+            if program.nbytes > self._room:
+                raise InputError("the picture has become too large; begin anew with it")
+        except InputError as error:
+            self.cue(Cue.NOT_FOUND)
+            self.say(f"not reloaded: {spelled(str(error))}")
+            self.say("picture: as it was")
+            return
+        self._show(program)  # what can wait comes after it
+        self.loaded = loaded
+        self._index = self._index_of(loaded)
+        self._looked_at = (math.nan, math.nan)
+        self.say(f"reloaded: {loaded.title}")
+        for note in loaded.notes:
+            self.say(f"note: {note}")
+
+    def _choose_height(self, y_mm: float) -> None:
+        """Show the line of the picture at another height."""
+        self._at_mm = min(max(y_mm, 0.0), self.loaded.scene.canvas.height_mm)
+        self._show(at_height(self._program, self._at_mm))
+        self.say(f"height: {self._at_mm:.0f} mm from the top")
+
+    def _glide(self, to: tuple[float, float], speed_mm_s: float) -> None:
+        display = self.display
+        x_mm = min(max(to[0], -display.span_mm / 2), display.travel_mm - display.span_mm / 2)
+        y_mm = min(max(to[1], 0.0), display.height_mm)
+        self._aim = x_mm, y_mm
+        if self._steering is not None:
+            self._steering.give(GlideTo(x_mm, y_mm, speed_mm_s))
+
+    def _compose(self, loaded: LoadedScene) -> Program:
+        return self._composer.compose(loaded, contrast=self.contrast, own_y_mm=self._at_mm)
+
+    def _show(self, program: Program) -> None:
+        self._program = program
+        self.shown += 1
+        self.engine.show(program, 1)
+
+    def _index_of(self, loaded: LoadedScene) -> SceneIndex:
+        # Loaded here, since the first frame shall not wait for it.
+        from vbraille.render.scene.reference import opacity
+
+        def at(pattern: AnyPattern, x_mm: float, y_mm: float) -> float:
+            return float(opacity(pattern, loaded.assets, x_mm, y_mm)[0])
+
+        return SceneIndex(loaded.scene, at, loaded.boxes())

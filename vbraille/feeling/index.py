@@ -1,0 +1,195 @@
+"""What of a scene is at a place: found by a grid, so that asking does not grow with the scene."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from vbraille.scene.bounds import bounds
+from vbraille.scene.patterns import Group
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from numpy.typing import NDArray
+
+    from vbraille.scene.bounds import Box
+    from vbraille.scene.patterns import AnyPattern, Image, Label
+    from vbraille.scene.scene import Scene
+
+# Ours: an element is felt where it hides half of what it stands on, or does anything if it is the
+# only one there.
+_FELT: Final = 0.5
+_TRACE: Final = 0.02
+_TILE_MM: Final = 4.0
+_MOST_ENTRIES: Final = 2_000_000
+_MOST_LOOKED_AT: Final = 64  # of those that lie over each other, from the top
+
+
+@dataclass(frozen=True, slots=True)
+class NamedElement:
+    """An element of a scene that has a title, an id or a description.
+
+    Parameters
+    ----------
+    name
+        Title, or the id where there is no title.
+    pattern
+        The element.
+    center_mm
+        Middle of what it covers; the canvas's own where it covers all.
+    """
+
+    name: str
+    pattern: AnyPattern
+    center_mm: tuple[float, float]
+
+    @property
+    def description(self) -> str:
+        """What the scene says of it beside its name."""
+        return self.pattern.description
+
+
+def label_of(pattern: AnyPattern) -> str:
+    """Title of an element, or its id; empty if it has neither."""
+    return pattern.title or pattern.id
+
+
+class _Leaf(NamedTuple):
+    pattern: AnyPattern
+    element: NamedElement
+    box: Box | None
+
+
+class SceneIndex:
+    """Elements of a scene that have a name, by place and by name.
+
+    A part that has no name of its own goes by that of the group which it stands in.
+
+    Parameters
+    ----------
+    scene
+        A resolved scene.
+    opacity
+        Function that tells how much of what lies below it a pattern hides at a place in mm: 0 … 1.
+    known
+        Boxes of images and labels.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        opacity: Callable[[AnyPattern, float, float], float],
+        known: Mapping[Image | Label, Box] | None = None,
+    ) -> None:
+        self._opacity = opacity
+        self._known = {} if known is None else known
+        width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
+        self._middle = width_mm / 2, height_mm / 2
+        self.elements: list[NamedElement] = []
+        self._leaves: list[_Leaf] = []
+        for pattern in scene.elements:
+            self._leaves += self._leaves_of(pattern, None)
+        self._tile_mm, order, tiles = _laid_out([leaf.box for leaf in self._leaves], scene)
+        self._columns = math.ceil(width_mm / self._tile_mm)
+        self._rows = math.ceil(height_mm / self._tile_mm)
+        self._starts = np.searchsorted(tiles, np.arange(self._columns * self._rows + 1))
+        self._order = order
+
+    def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
+        """Find the uppermost element with a name at a place in mm; None if there is none."""
+        if not (math.isfinite(x_mm) and math.isfinite(y_mm)):
+            return None
+        column, row = math.floor(x_mm / self._tile_mm), math.floor(y_mm / self._tile_mm)
+        if not (0 <= column < self._columns and 0 <= row < self._rows):
+            return None
+        tile = row * self._columns + column
+        begin, end = self._starts[tile], self._starts[tile + 1]
+        looked_at, found, most = 0, None, _TRACE
+        for at in self._order[begin:end][::-1].tolist():
+            leaf = self._leaves[at]
+            if leaf.box is not None and not leaf.box.holds(x_mm, y_mm):
+                continue
+            share = self._opacity(leaf.pattern, x_mm, y_mm)
+            if share >= _FELT:
+                return leaf.element
+            if share > most:
+                found, most = leaf.element, share
+            looked_at += 1
+            if looked_at == _MOST_LOOKED_AT:
+                break
+        return found
+
+    def find(self, text: str) -> NamedElement | None:
+        """Find an element by its id or title, or by what one of these begins with or has in it."""
+        wanted = text.strip().casefold()
+        if not wanted:
+            return None
+        names = [(e.pattern.id.casefold(), e.pattern.title.casefold()) for e in self.elements]
+        for fits in (
+            lambda name: name == wanted,
+            lambda name: name.startswith(wanted),
+            lambda name: wanted in name,
+        ):
+            for element, (id_, title) in zip(self.elements, names, strict=True):
+                if fits(id_) or fits(title):
+                    return element
+        return None
+
+    def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:
+        """Patterns within one that are no groups, with the elements by whose names they go."""
+        box = None if isinstance(pattern, Group) and above else bounds(pattern, self._known)
+        name = label_of(pattern)
+        if name or (pattern.description and above is None):
+            if isinstance(pattern, Group):
+                box = bounds(pattern, self._known)
+            center = self._middle
+            if box is not None and not box.is_empty:
+                center = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+            above = NamedElement(name or "without a title", pattern, center)
+            self.elements.append(above)
+        # What a group inverts, or shows by a mask, is asked of the group as a whole.
+        if isinstance(pattern, Group) and _is_open(pattern):
+            for part in pattern.parts:
+                yield from self._leaves_of(part, above)
+        elif above is not None:
+            box = bounds(pattern, self._known) if box is None else box
+            yield _Leaf(pattern, above, box)
+
+
+def _is_open(group: Group) -> bool:
+    """Whether the parts of a group are felt where they are, each by itself."""
+    return group.operation in ("overwrite", "maximum", "add") and not group.inverted
+
+
+def _laid_out(
+    boxes: list[Box | None], scene: Scene
+) -> tuple[float, NDArray[np.intp], NDArray[np.int64]]:
+    """Tiles that boxes lie in: their size, and box and tile of each entry, sorted by tile."""
+    width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
+    edges = np.array(
+        [(0, 0, width_mm, height_mm) if box is None else box for box in boxes], float
+    ).reshape(-1, 4)
+    inside = (edges[:, 2] >= edges[:, 0]) & (edges[:, 3] >= edges[:, 1])
+    tile_mm = max(_TILE_MM, math.sqrt(width_mm * height_mm / 200_000))
+    while True:
+        columns, rows = math.ceil(width_mm / tile_mm), math.ceil(height_mm / tile_mm)
+        most = np.array([columns, rows, columns - 1, rows - 1])
+        # What is beyond the canvas lies in no tile, and not in those at its edge.
+        spans = np.clip(np.floor(edges / tile_mm), [0, 0, -1, -1], most).astype(int)
+        wide = np.where(inside, np.maximum(spans[:, 2] - spans[:, 0] + 1, 0), 0)
+        high = np.where(inside, np.maximum(spans[:, 3] - spans[:, 1] + 1, 0), 0)
+        counts = wide * high
+        if counts.sum() <= _MOST_ENTRIES or max(columns, rows) == 1:
+            break
+        tile_mm *= 2
+    which = np.repeat(np.arange(len(boxes)), counts)
+    within = np.arange(which.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    column = spans[which, 0] + within % np.maximum(wide[which], 1)
+    row = spans[which, 1] + within // np.maximum(wide[which], 1)
+    tiles = row * columns + column
+    order = np.argsort(tiles, kind="stable")
+    return tile_mm, which[order], tiles[order]

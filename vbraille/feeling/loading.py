@@ -1,0 +1,131 @@
+"""A scene from its file, with all that it needs to be felt: bitmaps, labels, its program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace as set_fields
+
+from vbraille.errors import InputError
+from vbraille.labelling import label_warnings, write_labels
+from vbraille.render.scene.assets import Assets
+from vbraille.render.scene.brailleplaces import box_of
+from vbraille.scene.bounds import Box
+from vbraille.scene.images import load_bitmaps
+from vbraille.scene.patterns import Label
+from vbraille.scene.reading import open_scene
+from vbraille.scene.walking import each
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from vbraille.display import Display
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.scene.opened import OpenedScene
+    from vbraille.scene.patterns import Image
+    from vbraille.scene.scene import Scene
+
+_EDGE_MM = 0.05  # by so much a canvas may be larger than a carriage goes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadedScene:
+    """A scene that was read from a file, with all that it takes from elsewhere.
+
+    Parameters
+    ----------
+    opened
+        The scene, and where it was written.
+    assets
+        Bitmaps of its images and cells of its labels.
+    notes
+        What was ignored, or cannot be felt as it stands, each in one sentence.
+    """
+
+    opened: OpenedScene
+    assets: Assets
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is shown."""
+        return self.opened.resolved
+
+    @property
+    def title(self) -> str:
+        """Title of the scene, or the name of its file."""
+        return self.scene.title or self.opened.path.name
+
+    def boxes(self) -> Mapping[Image | Label, Box]:
+        """Boxes of its images and labels, which `vbraille.scene.bounds` cannot know."""
+        found: dict[Image | Label, Box] = {
+            label: box_of(label, written) for label, written in self.assets.written.items()
+        }
+        for image, bitmap in self.assets.bitmaps.items():
+            if not bitmap.outside:
+                left, top = bitmap.place_mm
+                found[image] = Box(left, top, left + bitmap.width_mm, top + bitmap.height_mm)
+        return found
+
+
+def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
+    """Read a scene with its images, and translate its labels.
+
+    Parameters
+    ----------
+    path
+        Scene file, SVG, or a file of OpenLatero's.
+    style
+        How the braille of its labels is shown.
+
+    Raises
+    ------
+    InputError
+        If one of the files cannot be used, or a label cannot be written.
+    """
+    opened = open_scene(path)
+    scene = opened.resolved
+    bitmaps = load_bitmaps(scene, opened.folder)
+    if not any(isinstance(pattern, Label) for pattern in each(*scene.elements)):
+        return LoadedScene(opened, Assets(bitmaps), opened.warnings)
+    places = [opened.place(number) for number in range(len(scene.elements))]
+    written = write_labels(scene, style, places)
+    notes = (*opened.warnings, *label_warnings(scene, written, places))
+    return LoadedScene(opened, Assets(bitmaps, written), notes)
+
+
+def with_known(loaded: LoadedScene, before: LoadedScene) -> LoadedScene:
+    """Make the same scene, whose elements are those of another one where they are equal.
+
+    What is the same object need not be compiled again; see `Composer`.
+    """
+    known = {element: element for element in before.scene.elements}
+    elements = tuple(known.get(element, element) for element in loaded.scene.elements)
+    opened = replace(loaded.opened, resolved=set_fields(loaded.scene, elements=elements))
+    bare = not (loaded.assets.bitmaps or loaded.assets.written)
+    same = bare and not (before.assets.bitmaps or before.assets.written)
+    return replace(loaded, opened=opened, assets=before.assets if same else loaded.assets)
+
+
+def check_fits(scene: Scene, display: Display) -> None:
+    """Compare a scene's canvas with how far the carriage of a display goes.
+
+    Raises
+    ------
+    InputError
+        If some of the canvas could not be reached.
+    """
+    canvas = scene.canvas
+    beyond = canvas.width_mm > display.travel_mm + _EDGE_MM
+    workspace = f"{display.travel_mm:g} mm"
+    if display.height_mm:
+        beyond = beyond or canvas.height_mm > display.height_mm + _EDGE_MM
+        workspace = f"{display.travel_mm:g} × {display.height_mm:g} mm"
+    if beyond:
+        raise InputError(
+            f"the scene's canvas is {canvas.width_mm:g} × {canvas.height_mm:g} mm, and the "
+            f"carriage of {display.name} goes {workspace}; make the canvas smaller, or take "
+            f"another device"
+        )

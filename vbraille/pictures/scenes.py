@@ -1,0 +1,269 @@
+"""Deflection maps of scenes: one pixel, one deflection (Lévesque 2009, 8.3.3).
+
+Rest is white and full swing is black, as in the maps of the source's author. What vibrates has
+either the deflections of one moment, or random ones of the same range in their place.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from vbraille.errors import InputError
+from vbraille.pictures.scenewords import vibrations
+from vbraille.pictures.words import plain
+from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
+from vbraille.scene.walking import each
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.render.scene.assets import Assets
+    from vbraille.scene.scene import Canvas, Scene
+
+PIXELS_PER_MM = 4.0
+MOST_PIXELS = 100_000_000
+MOST_CSV_ROWS = 10_000_000  # of a CSV
+_FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
+_MM_PER_INCH = 25.4
+
+
+def map_places(
+    canvas: Canvas, pixels_per_mm: float = PIXELS_PER_MM
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places of the middles of a map's pixels.
+
+    Parameters
+    ----------
+    canvas
+        The canvas that is shown whole.
+    pixels_per_mm
+        Resolution, above 0.
+
+    Returns
+    -------
+    float64[columns], float64[rows]
+        x and y in mm.
+
+    Raises
+    ------
+    InputError
+        If the resolution is no number above 0, or the map would have too many pixels.
+    """
+    columns, rows = check_pixels(canvas, pixels_per_mm)
+    x, y = (np.arange(count, dtype=np.float64) + 0.5 for count in (columns, rows))
+    return x / pixels_per_mm, y / pixels_per_mm
+
+
+def check_pixels(
+    canvas: Canvas, pixels_per_mm: float, maps: int = 1, most: int = MOST_PIXELS
+) -> tuple[int, int]:
+    """Compute the columns and rows of a map, if there is room for so many maps of it.
+
+    Parameters
+    ----------
+    canvas
+        The canvas that is shown whole.
+    pixels_per_mm
+        Resolution, above 0.
+    maps
+        Number of maps.
+    most
+        Number of pixels that there is room for.
+
+    Raises
+    ------
+    InputError
+        If the resolution is no number above 0, or there would be too many pixels.
+    """
+    if not 0 < pixels_per_mm <= 1000:
+        raise InputError(
+            f"{setting('resolution')} is {pixels_per_mm:g} pixels a mm; it must be above 0 and at "
+            "most 1000"
+        )
+    columns = max(round(canvas.width_mm * pixels_per_mm), 1)
+    rows = max(round(canvas.height_mm * pixels_per_mm), 1)
+    if columns * rows * maps > most:
+        fits = (most / (maps * canvas.width_mm * canvas.height_mm)) ** 0.5
+        what = "the picture would be" if maps == 1 else f"{maps} maps would each be"
+        raise InputError(
+            f"{what} {columns} × {rows} pixels, and there is room for "
+            f"{most // 10**6} million; give {setting('resolution')} {0.99 * fits:.2g} or "
+            "less"
+        )
+    return columns, rows
+
+
+def slowest_s(scene: Scene) -> float | None:
+    """Longest period of what vibrates or moves in a scene, in s; None if nothing does."""
+    swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
+    periods = [1.0 / frequency_hz for frequency_hz in swings]
+    for part in each(*scene.elements):
+        match part:
+            case LinearGrating() | RadialGrating() if part.velocity_mm_s:
+                periods.append((part.ridge_mm + part.gap_mm) / abs(part.velocity_mm_s))
+            case AxialGrating() if part.velocity_deg_s:
+                periods.append((part.ridge_deg + part.gap_deg) / abs(part.velocity_deg_s))
+            case Line() | Circle() | Polygon() | Path() if part.stroke and part.stroke.along:
+                along = part.stroke.along
+                if along.velocity_mm_s:
+                    periods.append((along.ridge_mm + along.gap_mm) / abs(along.velocity_mm_s))
+    return max(periods, default=None)
+
+
+def map_deflections(
+    scene: Scene,
+    assets: Assets,
+    pixels_per_mm: float = PIXELS_PER_MM,
+    *,
+    noise_seed: int | None = 0,
+    time_s: float = 0.0,
+    parity: int = 0,
+) -> NDArray[np.float32]:
+    """Deflections of a scene all over its canvas.
+
+    Parameters
+    ----------
+    scene, assets
+        A resolved scene, and what it takes from image files and labels.
+    pixels_per_mm
+        Resolution.
+    noise_seed
+        Seed of the noise that stands for vibration; None for the deflections at a time.
+    time_s, parity
+        That time, and the actuators that are meant: 0 those whose row and column are both even
+        or both odd, 1 the others.
+
+    Returns
+    -------
+    float32[rows, columns]
+        Deflections from 0 to 1; row 0 is far from the reader.
+
+    Raises
+    ------
+    InputError
+        As `map_places` has it.
+    """
+    from vbraille.render.scene.canvas import SceneMap  # loads the kernels
+
+    x_mm, y_mm = map_places(scene.canvas, pixels_per_mm)
+    drawn = SceneMap(scene, assets)
+    if noise_seed is not None:
+        return drawn.deflections(x_mm, y_mm, noise_seed=noise_seed)
+    return drawn.deflections(x_mm, y_mm, time_s=time_s, parity=parity)
+
+
+def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """Gray levels of deflections: 255, white, at rest, and 0, black, at full swing.
+
+    Parameters
+    ----------
+    deflections : floating[…]
+        Deflections from 0 to 1.
+
+    Returns
+    -------
+    uint8[…]
+        Gray levels, in the same shape.
+    """
+    return (255.0 * (1.0 - deflections) + 0.5).astype(np.uint8)
+
+
+def map_png(scene: Scene, assets: Assets, pixels_per_mm: float = PIXELS_PER_MM) -> bytes:
+    """Make the deflection map of a scene as a PNG, with noise where it vibrates and no axes.
+
+    Parameters
+    ----------
+    scene, assets
+        A resolved scene, and what it takes from image files and labels.
+    pixels_per_mm
+        Resolution.
+
+    Raises
+    ------
+    InputError
+        As `map_places` has it.
+    """
+    told = {"Title": scene.title, "Description": scene.description}
+    return png([grays(map_deflections(scene, assets, pixels_per_mm))], pixels_per_mm, told)
+
+
+def png(
+    maps: Sequence[NDArray[np.uint8]], pixels_per_mm: float, told: Mapping[str, str] | None = None
+) -> bytes:
+    """Make a PNG of gray maps; of several an animated one, which goes round for ever.
+
+    Parameters
+    ----------
+    maps : sequence of uint8[rows, columns]
+        The maps, at least one, all of one shape.
+    pixels_per_mm
+        Resolution, which is kept in the file.
+    told
+        Texts to be kept in the file, by their keywords; empty ones are left out.
+    """
+    inside = PngInfo()
+    for key, text in {**(told or {}), "Software": "vbraille"}.items():
+        if text.strip():
+            inside.add_text(key, plain(text))
+    first, *others = map(Image.fromarray, maps)
+    dpi = pixels_per_mm * _MM_PER_INCH
+    settings = {"dpi": (dpi, dpi), "pnginfo": inside, "optimize": True}
+    if others:
+        settings |= {"save_all": True, "append_images": others, "duration": _FRAME_MS, "loop": 0}
+    content = io.BytesIO()
+    first.save(content, "png", **settings)
+    return content.getvalue()
+
+
+def gif(maps: Sequence[NDArray[np.uint8]], told: str = "") -> bytes:
+    """Make an animated GIF of gray maps, with a text as its comment.
+
+    Parameters
+    ----------
+    maps : sequence of uint8[rows, columns]
+        The maps, at least one, all of one shape.
+    told
+        The text.
+    """
+    first, *others = map(Image.fromarray, maps)
+    content = io.BytesIO()
+    first.save(
+        content,
+        "gif",
+        save_all=True,
+        append_images=others,
+        duration=_FRAME_MS,
+        loop=0,
+        comment=plain(told).encode(),
+    )
+    return content.getvalue()
+
+
+def map_csv(deflections: NDArray[np.floating], pixels_per_mm: float) -> bytes:
+    """Write a map as CSV in the long form: a row for each pixel with x, y and its deflection.
+
+    Parameters
+    ----------
+    deflections : floating[rows, columns]
+        Deflections from 0 to 1.
+    pixels_per_mm
+        Resolution.
+    """
+    rows, columns = deflections.shape
+    across = [f"{(column + 0.5) / pixels_per_mm:.10g}" for column in range(columns)]
+    lines = ["x_mm,y_mm,deflection"]
+    for row in range(rows):
+        y = f"{(row + 0.5) / pixels_per_mm:.10g}"
+        values = zip(across, deflections[row].tolist(), strict=True)
+        lines += [f"{x},{y},{round(value, 6):g}" for x, value in values]
+    lines.append("")
+    return "\n".join(lines).encode()

@@ -1,0 +1,210 @@
+"""What a scene's picture shows, in words: one thing per line, for whoever cannot see it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.pictures.words import plain
+from vbraille.scene.measures import travel_deg
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    ImageDots,
+    Label,
+    Line,
+    Path,
+    Polygon,
+    Tile,
+    Use,
+)
+from vbraille.scene.strokes import Vibration
+from vbraille.scene.textures import (
+    AxialGrating,
+    LinearGrating,
+    RadialGrating,
+    Uniform,
+    UniformVibration,
+)
+from vbraille.scene.walking import each
+from vbraille.wording import count
+
+if TYPE_CHECKING:
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.scene import Scene
+    from vbraille.scene.strokes import DotStyle, Stroke
+
+# How groups put their parts together, in words that need no formula.
+_TOGETHER = {
+    "overwrite": "one on top of the other",
+    "multiply": "each masking the others",
+    "add": "added",
+    "weighted": "added by weights",
+    "maximum": "the largest of them",
+    "blend": "blended by a third",
+}
+
+
+def scene_lines(scene: Scene) -> list[str]:
+    """Tell what a scene holds, a line for each thing: "label: value".
+
+    The lines are title and description if it has them, its size, how many elements it has and what
+    each is, and what vibrates.
+    """
+    told = [("title", scene.title), ("description", scene.description)]
+    lines = [f"{label}: {plain(text)}" for label, text in told if text.strip()]
+    lines.append(f"size: {scene.canvas.width_mm:g} × {scene.canvas.height_mm:g} mm")
+    lines.append(f"elements: {len(scene.elements)}, {_TOGETHER[scene.operation]}")
+    for number, element in enumerate(scene.elements, 1):
+        lines.append(f"element {number}: {pattern_words(element)}")
+    shaking = [
+        f"{plain(name_of(element)) or number}, {', '.join(dict.fromkeys(swings))}"
+        for number, element in enumerate(scene.elements, 1)
+        if (swings := [_swing_words(vibration) for vibration in vibrations(element)])
+    ]
+    lines += [f"vibrates: element {said}" for said in shaking] or ["vibrates: nothing"]
+    return lines
+
+
+def scene_text(scene: Scene) -> str:
+    """Tell the same in one text, for the file of a picture."""
+    return "; ".join(scene_lines(scene))
+
+
+def name_of(pattern: AnyPattern) -> str:
+    """What a pattern is called: by its title, else by its id, else not at all."""
+    return pattern.title or pattern.id
+
+
+def pattern_words(pattern: AnyPattern) -> str:
+    """Tell in a line what a pattern is: its name, its kind and where it is."""
+    words = [_kind_words(pattern)]
+    if pattern.amplitude != 1.0:
+        words.append(f"amplitude {pattern.amplitude:g}")
+    if pattern.inverted:
+        words.append("inverted")
+    if pattern.vibration is not None:
+        words.append(f"vibrating: {_swing_words(pattern.vibration)}")
+    name = plain(name_of(pattern))
+    return (f"{name}, " if name else "") + ", ".join(words)
+
+
+def vibrations(pattern: AnyPattern) -> list[Vibration]:
+    """Tell every vibration of a pattern and of what it is made of."""
+    found: list[Vibration | None] = []
+    for part in each(pattern):
+        found.append(part.vibration)
+        if isinstance(part, UniformVibration):
+            found.append(Vibration(frequency_hz=part.frequency_hz))
+        if isinstance(part, Dots | ImageDots):
+            found.append(part.dot.vibration)
+        if isinstance(part, Line | Circle | Polygon | Path):
+            found += [part.stroke.vibration] if part.stroke else []
+            found += [part.dots.dot.vibration, part.dots.vertex_vibration] if part.dots else []
+        if isinstance(part, Polygon) and part.markers is not None:
+            found.append(part.markers.vibration)
+    return [vibration for vibration in found if vibration is not None]
+
+
+def _kind_words(pattern: AnyPattern) -> str:
+    match pattern:
+        case Uniform():
+            return f"uniform deflection {pattern.level:g}"
+        case UniformVibration():
+            return f"uniform vibration at {pattern.frequency_hz:g} Hz"
+        case LinearGrating() | RadialGrating() | AxialGrating():
+            return _grating_words(pattern)
+        case Tile():
+            return (
+                f"tiles of {pattern.width_mm:g} × {pattern.height_mm:g} mm with "
+                f"{pattern_words(pattern.part)}"
+            )
+        case Image():
+            masked = "" if pattern.texture is None else f", of {pattern_words(pattern.texture)}"
+            return f"image {plain(pattern.file)} at {_place(pattern.place_mm)}{masked}"
+        case ImageDots():
+            return f"dots of image {plain(pattern.file)} at {_place(pattern.place_mm)}"
+        case Dots():
+            return f"{count(len(pattern.centers_mm), 'dot')} {_dot_words(pattern.dot)}"
+        case Label():
+            return f'braille "{plain(pattern.text)}" at {_place(pattern.place_mm)}'
+        case Group():
+            parts = "; ".join(map(pattern_words, pattern.parts))
+            return f"{len(pattern.parts)} parts, {_TOGETHER[pattern.operation]} ({parts})"
+        case Use():
+            return f"{plain(pattern.name)} again"
+        case Line() | Circle() | Polygon() | Path():
+            return _shape_words(pattern)
+
+
+def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str:
+    if isinstance(grating, AxialGrating):
+        words = f"spokes of {grating.ridge_deg:g}° with gaps of {grating.gap_deg:g}° around"
+        return f"{words} {_place(grating.center_mm)}"
+    lengths = f"ridges of {grating.ridge_mm:g} mm with gaps of {grating.gap_mm:g} mm"
+    if isinstance(grating, RadialGrating):
+        words = f"rings: {lengths} around {_place(grating.center_mm)}"
+    else:
+        words = f"{lengths}, the wave at {wave_angle_deg(grating):g}°"
+    return words if grating.distortion is None else f"{words}, frequency changed"
+
+
+def wave_angle_deg(grating: LinearGrating) -> float:
+    """Direction in which the wave of a grating travels, in degrees from +x towards +y."""
+    return travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg)
+
+
+def _shape_words(shape: Line | Circle | Polygon | Path) -> str:
+    match shape:
+        case Line():
+            words = f"line from {_place(shape.start_mm)} to {_place(shape.end_mm)}"
+        case Circle():
+            words = f"circle of radius {shape.radius_mm:g} mm around {_place(shape.center_mm)}"
+        case Polygon():
+            corners = ", ".join(f"({x:g}, {y:g})" for x, y in shape.vertices_mm[:8])
+            more = ", …" if len(shape.vertices_mm) > 8 else ""
+            words = f"polygon of {len(shape.vertices_mm)} vertices at {corners}{more} mm"
+        case Path():
+            kind = "closed " if shape.closed else ""
+            places = sum(map(len, shape.contours_mm))
+            words = f"{kind}path through {places} places from {_place(shape.contours_mm[0][0])}"
+    said = [words]
+    if shape.stroke is not None:
+        said.append(_stroke_words(shape.stroke))
+    if shape.dots is not None:
+        said.append(f"of dots {_dot_words(shape.dots.dot)}")
+    if isinstance(shape, Polygon) and shape.markers is not None:
+        said.append("with markers")
+    if not isinstance(shape, Line) and shape.fill is not None:
+        said.append(f"filled with {pattern_words(shape.fill.texture)}")
+    return ", ".join(said)
+
+
+def _stroke_words(stroke: Stroke) -> str:
+    words = [f"stroke of {stroke.width_mm:g} mm"]
+    if stroke.outlined:
+        words.append("outlined")
+    if stroke.along is not None:
+        words.append(f"cut every {stroke.along.ridge_mm + stroke.along.gap_mm:g} mm")
+    if stroke.across is not None:
+        words.append(f"with {stroke.across.cycles} cycles across")
+    if stroke.vibration is not None:
+        words.append(f"vibrating: {_swing_words(stroke.vibration)}")
+    return " ".join(words)
+
+
+def _dot_words(dot: DotStyle) -> str:
+    swing = "" if dot.vibration is None else f", vibrating: {_swing_words(dot.vibration)}"
+    return f"of radius {dot.radius_mm:g} mm{swing}"
+
+
+def _swing_words(vibration: Vibration) -> str:
+    share = "" if vibration.amplitude == 1.0 else f", amplitude {vibration.amplitude:g}"
+    part = "" if vibration.of == "high" else ", of what is down"
+    return f"{vibration.frequency_hz:g} Hz{share}{part}"
+
+
+def _place(point_mm: Point) -> str:
+    return f"({point_mm[0]:g}, {point_mm[1]:g}) mm"

@@ -1,0 +1,152 @@
+"""A page of braille with a figure in it: both are one picture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from vbraille.errors import InputError
+from vbraille.render.scene.assets import Assets, Written
+from vbraille.render.scene.brailleplaces import box_of
+from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.moving import moved
+from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.walking import each
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.scene.bitmap import Bitmap
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import AnyPattern
+
+PAGE = "page"  # id of the label that has the text of the page
+FIGURE = "figure"  # id of the group that the figure is
+# What a figure shows beyond its rectangle is cut off over this distance.
+_EDGE_MM = 1.0
+
+
+def page_with_figure(
+    lines: Sequence[NDArray[np.uint8]],
+    style: BrailleStyle,
+    figure: Scene,
+    place_mm: Point,
+    assets: Assets | None = None,
+) -> tuple[Scene, Assets]:
+    """Make one picture of a page of braille and a figure that stands on it.
+
+    The page's canvas is that of `BrailleStyle.render_page`: line n takes y from n to n + 1 line
+    pitches, with its dots around the middle, and each actuator shows what lies under it. The
+    figure hides what it stands on as far as its elements do, so lines leave room for it; nothing
+    of it is felt beyond the rectangle of its canvas.
+
+    Parameters
+    ----------
+    lines : sequence of uint8[cells]
+        Dot masks of each line of the page; those that the figure stands on are empty, or short.
+    style
+        Distances, profile and tuning of the dots.
+    figure
+        The figure, a resolved scene.
+    place_mm
+        Where its canvas has its top left corner on the page.
+    assets
+        What the figure takes from elsewhere; None for nothing.
+
+    Returns
+    -------
+    Scene, Assets
+        The picture, and what it takes from elsewhere.
+
+    Raises
+    ------
+    InputError
+        If the page has no cells, or the figure would be farther than 10 m from the page's corner.
+    """
+    cells = max((len(masks) for masks in lines), default=0)
+    if cells == 0:
+        raise InputError("a page without cells has no figure in it; show the figure alone")
+    geometry = style.geometry
+    down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
+    text = Label(id=PAGE, text=PAGE, place_mm=(0.0, down_mm))
+    try:
+        parts = tuple(moved(element, place_mm) for element in figure.elements)
+    except ValueError as error:
+        raise InputError(f"the figure cannot stand there: {error}") from None
+    given = _moved_assets(figure.elements, parts, assets or Assets())
+    elements: tuple[AnyPattern, ...] = (text,)
+    if parts:
+        elements += (_figure(figure, parts, place_mm, given),)
+    width_mm = max(geometry.extent_mm(cells), place_mm[0] + figure.canvas.width_mm)
+    height_mm = max(len(lines) * geometry.line_pitch_mm, place_mm[1] + figure.canvas.height_mm)
+    scene = Scene(
+        canvas=Canvas(width_mm=width_mm, height_mm=height_mm),
+        title=figure.title,
+        description=figure.description,
+        language=figure.language,
+        elements=elements,
+    )
+    return scene, Assets(given.bitmaps, {**given.written, text: Written(tuple(lines), style)})
+
+
+def _figure(figure: Scene, parts: tuple[AnyPattern, ...], place_mm: Point, assets: Assets) -> Group:
+    """All of a figure as one pattern, which is at rest beyond the rectangle of its canvas."""
+    left, top = place_mm
+    right, bottom = left + figure.canvas.width_mm, top + figure.canvas.height_mm
+    whole = Group(
+        id=FIGURE,
+        title=figure.title,
+        description=figure.description,
+        operation=figure.operation,
+        parts=parts,
+    )
+    known: dict[Image | Label, Box] = {
+        label: box_of(label, written) for label, written in assets.written.items()
+    }
+    for image, bitmap in assets.bitmaps.items():
+        if bitmap.outside == 0.0:
+            x_mm, y_mm = bitmap.place_mm
+            box = Box(x_mm, y_mm, x_mm + bitmap.width_mm, y_mm + bitmap.height_mm)
+            known[image] = box.grown(_EDGE_MM)
+    reach = bounds(whole, known)
+    if reach is not None and Box(left, top, right, bottom).joined(reach) == (
+        left,
+        top,
+        right,
+        bottom,
+    ):
+        return whole
+    corners = ((left, top), (right, top), (right, bottom), (left, bottom))
+    window = Polygon(vertices_mm=corners, fill=Fill(texture=Uniform(), fade_mm=_EDGE_MM))
+    return Group(
+        id=FIGURE,
+        title=figure.title,
+        description=figure.description,
+        operation="multiply",
+        parts=(msgspec.structs.replace(whole, id="", title="", description=""), window),
+    )
+
+
+def _moved_assets(
+    before: tuple[AnyPattern, ...], after: tuple[AnyPattern, ...], assets: Assets
+) -> Assets:
+    """Find the bitmaps and cells of patterns that were moved."""
+    bitmaps: dict[Image, Bitmap] = {}
+    written: dict[Label, Written] = {}
+    for old, new in zip(each(*before), each(*after), strict=True):
+        if isinstance(old, Label) and isinstance(new, Label):
+            written[new] = assets.written[old]
+        elif isinstance(old, Image) and isinstance(new, Image):
+            bitmap = assets.bitmaps[old]
+            right_mm = new.place_mm[0] - old.place_mm[0]
+            down_mm = new.place_mm[1] - old.place_mm[1]
+            x_mm, y_mm = bitmap.place_mm
+            bitmaps[new] = replace(bitmap, place_mm=(x_mm + right_mm, y_mm + down_mm))
+    return Assets(bitmaps, written)

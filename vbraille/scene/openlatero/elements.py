@@ -1,0 +1,262 @@
+"""Elements of OpenLatero's files: trees of XML whose values are read one by one, leniently.
+
+Whatever is not asked for by the time that all is read was not understood, and is said.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from vbraille.wording import nearest, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from vbraille.scene.measures import Point
+    from vbraille.scene.openlatero.remarks import Remarks
+
+# Numbers as C reads them, which is independent of the locale here.
+_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_LEADING = re.compile(_NUMBER)
+_DECIMAL_COMMA = re.compile(r"([+-]?\d+),(\d+)(?![\d,.])")
+_POINT = re.compile(rf"({_NUMBER})\s*,\s*({_NUMBER})")
+_COMMAS = re.compile(r"([+-]?\d+),(\d+),([+-]?\d+)(?:,(\d+))?")
+_LONGEST = 40  # characters of a quoted text
+_MEANT = {"degree": "°", "degree/s": "°/s"}  # units that the files name otherwise
+# Units that OpenLatero writes, and that are the same thing to it where it reads.
+_SAME = {"°": ("deg", "degrees", "°"), "share": ("%", "")}
+
+
+class GenElement:
+    """An element of a file, with what was asked of it.
+
+    Parameters
+    ----------
+    name
+        Name of the element, without a namespace.
+    line
+        Line at which it begins, from 1.
+    attributes
+        Its attributes.
+    text
+        Its text before the first element in it.
+    remarks
+        What is said about the file.
+    owner
+        What the pattern that it belongs to is, such as "Circle".
+    path
+        Names of the elements that lead to it from that pattern.
+    """
+
+    __slots__ = (
+        "_asked", "_attributes", "children", "line", "name", "owner", "path", "remarks", "text",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        name: str,
+        line: int,
+        attributes: dict[str, str],
+        text: str,
+        remarks: Remarks,
+        owner: str = "",
+        path: str = "",
+    ) -> None:
+        self.name = name
+        self.line = line
+        self.text = text
+        self.owner = owner
+        self.path = path
+        self.remarks = remarks
+        self.children: list[GenElement] = []
+        self._attributes = attributes
+        self._asked = False
+
+    def attribute(self, name: str) -> str:
+        """Value of an attribute; empty if it is not there."""
+        return self._attributes.get(name, "").strip()
+
+    def say(self, text: str) -> None:
+        """Say something about the pattern, at the line of this element."""
+        self.remarks.add(self.line, self.owner, text)
+
+    def one(self, name: str) -> GenElement | None:
+        """First element of a name in this one; OpenLatero ignores others, so they are said."""
+        found = self.every(name)
+        for other in found[1:]:
+            other.forget()
+            other.say(f"another {other.path} is ignored, since the first counts")
+        return found[0] if found else None
+
+    def part(self, name: str) -> GenElement:
+        """First element of a name in this one, or one without anything in it."""
+        found = self.one(name)
+        if found is not None:
+            return found
+        path = f"{self.path} {name}".strip()
+        return GenElement(name, self.line, {}, "", self.remarks, self.owner, path)
+
+    def every(self, name: str) -> list[GenElement]:
+        """All elements of a name in this one."""
+        found = [child for child in self.children if child.name == name]
+        for child in found:
+            child._asked = True
+        return found
+
+    def skip(self, *names: str) -> None:
+        """Leave elements of some names out without a word, since nothing depends on them."""
+        for name in names:
+            for child in self.every(name):
+                child.forget()
+
+    def forget(self) -> None:
+        """Leave out all that is in this element."""
+        left: list[GenElement] = [self]
+        while left:
+            element = left.pop()
+            element._asked = True
+            left += element.children
+
+    def unasked(self) -> Iterator[GenElement]:
+        """Elements that nobody asked for, but not what is in them."""
+        left: list[GenElement] = [self]
+        while left:
+            for child in left.pop().children:
+                if child._asked:
+                    left.append(child)
+                else:
+                    yield child
+
+    def number(self, name: str, default: float, low: float, high: float, unit: str = "mm") -> float:
+        """Value of an element that is a number.
+
+        Parameters
+        ----------
+        name
+            Name of the element in this one.
+        default
+            What OpenLatero takes if it is not there.
+        low, high
+            The range of it here; what is outside is put to its nearest end, and said.
+        unit
+            Its unit: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
+        """
+        element = self.one(name)
+        if element is None:
+            return default
+        element._check_units(unit)
+        value = element._value(default)
+        if not low <= value <= high:
+            clamped = min(max(value, low), high)
+            share = unit == "share" and value > 1
+            element.say(
+                f"{element.path} is {value:g}, and {'shares are' if share else 'it must be'} "
+                f"{low:g} to {high:g}; {clamped:g} is taken"
+            )
+            return clamped
+        return value
+
+    def switch(self, name: str, default: bool) -> bool:
+        """Value of an element that is yes or no."""
+        element = self.one(name)
+        if element is None:
+            return default
+        word = _cleaned(element.text).lower()
+        if word not in ("yes", "true", "no", "false"):
+            said = _short(element.text)
+            element.say(f'{element.path} is "{said}", neither yes nor no; no is taken')
+        return word in ("yes", "true")
+
+    def word(self, name: str, words: Collection[str], default: str) -> str:
+        """Value of an element that is one of a few words."""
+        element = self.one(name)
+        return default if element is None else element.chosen(element.text, words, default)
+
+    def chosen(self, text: str, words: Collection[str], default: str) -> str:
+        """One of a few words for a text, or what counts for others, which is said."""
+        word = _cleaned(text)
+        if word in words:
+            return word
+        if word.lower() in words:
+            self.say(f'{self.path} is "{_short(word)}", which is taken as "{word.lower()}"')
+            return word.lower()
+        self.say(
+            f'{self.path} "{_short(word)}" is not known, so "{default}" is taken; '
+            f"{nearest(word, words)}"
+        )
+        return default
+
+    def point(self, name: str, default: Point) -> Point:
+        """Value of an element that is a place, x and y in mm."""
+        element = self.one(name)
+        return default if element is None else element.place(default)
+
+    def place(self, default: Point) -> Point:
+        """Place that this element gives, x and y in mm.
+
+        The comma is between x and y. Programs whose language has decimal commas wrote some files
+        so, too: four numbers are two with decimals, and three are taken as that program would read
+        them.
+        """
+        self._check_units("mm")
+        text = _cleaned(self.text)
+        commas = _COMMAS.fullmatch(text)
+        if commas:
+            x = float(f"{commas[1]}.{commas[2]}")
+            y = float(f"{commas[3]}.{commas[4] or 0}")
+            self.say(f'{self.path} "{_short(text)}" has decimal commas; {x:g}, {y:g} is taken')
+            return (x, y)
+        found = _POINT.match(text)
+        point = (float(found[1]), float(found[2])) if found else default
+        if not found or not all(map(math.isfinite, point)):
+            x, y = default
+            self.say(f'{self.path} "{_short(text)}" is no place "x,y"; {x:g},{y:g} is taken')
+            return default
+        if found[0] != text:
+            rest = text[found.end() :]
+            self.say(f'{self.path} has "{_short(rest)}" after its numbers, which is ignored')
+        return point
+
+    def units(self) -> str:
+        """Units that this element names, as they are said here."""
+        named = self.attribute("units")
+        return _MEANT.get(named, named)
+
+    def _check_units(self, unit: str) -> None:
+        """Say so if the units that are named are not those that count."""
+        named = self.units()
+        if named and named not in (unit, *_SAME.get(unit, ())):
+            counts = "a share from 0 to 1" if unit == "share" else unit or "a plain number"
+            self.say(f"{self.path} is in {counts}, although its units say {_short(named)}")
+
+    def _value(self, default: float) -> float:
+        """Number that the text of this element begins with."""
+        text = _cleaned(self.text)
+        comma = _DECIMAL_COMMA.match(text)
+        found = comma or _LEADING.match(text)
+        if found is None:
+            what = f'"{_short(text)}", which is no number' if text else "empty"
+            self.say(f"{self.path} is {what}; {default:g} is taken")
+            return default
+        value = float(found[0].replace(",", "."))
+        if not math.isfinite(value):
+            self.say(f"{self.path} is too large a number; {default:g} is taken")
+            return default
+        if comma:
+            self.say(f'{self.path} "{_short(text)}" has a decimal comma; {value:g} is taken')
+        elif found[0] != text:
+            rest = text[found.end() :].strip()
+            self.say(f'{self.path} has "{_short(rest)}" after its number, which is ignored')
+        return value
+
+
+def _cleaned(text: str) -> str:
+    r"""Text without blanks around it, and without the stray ``\`` that some files have."""
+    return text.strip().rstrip("\\").strip()
+
+
+def _short(text: str) -> str:
+    said = printable(" ".join(text.split()))
+    return said if len(said) <= _LONGEST else f"{said[:_LONGEST]}…"
