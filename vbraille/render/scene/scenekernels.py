@@ -243,8 +243,11 @@ def _wrap(numbers, rows, at, top, count):
         rows[top, n], rows[top + 1, n] = x, y
         x -= x0
         y -= y0
-        rows[w.X_ROW, n] = x - width * math.floor(x / width)
-        rows[w.Y_ROW, n] = y - height * math.floor(y / height)
+        x -= width * math.floor(x / width)
+        y -= height * math.floor(y / height)
+        # A quotient may be rounded up to the next tile.
+        rows[w.X_ROW, n] = x if x >= 0.0 else x + width
+        rows[w.Y_ROW, n] = y if y >= 0.0 else y + height
 
 
 @compiled
