@@ -20,6 +20,30 @@ import numpy as np
 
 from vbraille.braille.dots import PLACES
 from vbraille.render.braille.profiles import coefficients
+from vbraille.render.machine.labelplaces import (
+    CELL_PITCH,
+    CELLS_PER_MM,
+    CONTRAST,
+    COSINE,
+    COUNT,
+    DOT_SPACING,
+    DOT_WIDTH,
+    DOTS_PER_MM,
+    FADE_MM,
+    HEIGHT,
+    LINE_PITCH,
+    LINES,
+    LINES_PER_MM,
+    PROFILE,
+    ROW_PITCH,
+    ROWS_PER_MM,
+    SHAPE,
+    SINE,
+    STRIDE,
+    WIDTH,
+    X0,
+    Y0,
+)
 from vbraille.scene.bounds import around
 
 if TYPE_CHECKING:
@@ -30,38 +54,6 @@ if TYPE_CHECKING:
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Label
 
-# Places of a label's numbers in their run.
-(
-    X0,  # corner of the first cell, mm
-    Y0,
-    COSINE,  # of the direction of its lines
-    SINE,
-    WIDTH,  # of the rectangle of its cells, mm
-    HEIGHT,
-    LINES,
-    LINE_PITCH,
-    LINES_PER_MM,
-    ROW_PITCH,
-    ROWS_PER_MM,
-    CELL_PITCH,
-    CELLS_PER_MM,
-    DOT_SPACING,
-    DOT_WIDTH,
-    DOTS_PER_MM,
-    CONTRAST,
-    PROFILE,
-    SHAPE,  # the 6 coefficients of the profile
-    _S1,
-    _S2,
-    _S3,
-    _S4,
-    _S5,
-    STRIDE,  # words of a line in the table: its cells, an empty one before them and one after
-    TABLE,  # first of its words in the table
-    COUNT,  # how many numbers there are
-) = range(27)
-
-FADE_MM = 1.0  # over which the opacity of a label ends
 _ROWS = 3
 _EIGHT_DOTS = 0xC0  # dots 7 and 8, which make a fourth row
 # Bit r of a word is the dot in row r of the left column; bit 4 + r that of the right one.

@@ -12,8 +12,8 @@ from numba import carray, cfunc, config, types
 from numba.extending import intrinsic
 
 from vbraille.caching import keep_compiled
-from vbraille.render.scene import words as w
-from vbraille.render.scene.scenekernels import evaluate
+from vbraille.render.machine import words as w
+from vbraille.render.machine.scenekernels import evaluate
 from vbraille.render.waves import compiled
 from vbraille.render.work import THETA, TIME, X, Y
 

@@ -7,7 +7,7 @@ that `vbraille.render.scene.brailleplaces` names, and its words are in the progr
 
 import math
 
-from vbraille.render.scene.brailleplaces import (
+from vbraille.render.machine.labelplaces import (
     CELL_PITCH,
     CELLS_PER_MM,
     CONTRAST,
