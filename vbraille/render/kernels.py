@@ -17,7 +17,7 @@ the polynomials of `vbraille.render.waves` instead of the library's sine.
 
 import math
 
-from vbraille.render.scene.showkernels import show as _show_scene
+from vbraille.render.machine.showkernels import show as _show_scene
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.waves import cos_pi as _cos_pi
 from vbraille.render.waves import inlined as _inlined

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.scene.words import SCRATCH_ROWS
+from vbraille.render.machine.words import SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:

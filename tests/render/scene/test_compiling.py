@@ -11,7 +11,7 @@ import pytest
 
 from vbraille.display import Display
 from vbraille.render import kernels, work
-from vbraille.render.scene import words
+from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene
 from vbraille.scene.bitmap import Bitmap

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from vbraille.render.scene import words
+from vbraille.render.machine import words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -20,7 +20,7 @@ import numpy as np
 
 from vbraille.braille.dots import DOT_ROWS, PLACES
 from vbraille.render.braille.profiles import coefficients
-from vbraille.render.scene.braillenumbers import (
+from vbraille.render.machine.labelplaces import (
     APART,
     CELL_PITCH,
     CELLS_PER_MM,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.scene import words
+from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.elements import FlatElements, check_depth
 from vbraille.render.scene.flat import flatten

@@ -1,4 +1,4 @@
-"""Scenes, compiled for a display; `vbraille.render.scene.words` has what their programs say."""
+"""Scenes, compiled for a display; `vbraille.render.machine.words` has what their programs say."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.render import work
+from vbraille.render.machine import words
 from vbraille.render.program import Program, head
-from vbraille.render.scene import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.elements import FlatElements
 from vbraille.render.scene.grid import Grid, assemble

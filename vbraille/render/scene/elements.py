@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.render.scene import words
+from vbraille.render.machine import words
 from vbraille.render.scene.flat import exchanged, flatten, put_together
 from vbraille.render.scene.frequencies import highest_hz
 from vbraille.render.scene.nodes import NodeKind

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
-from vbraille.render.scene import words
 from vbraille.render.scene.blocks import Block
 from vbraille.render.scene.nodes import NodeKind, Reach
 
@@ -196,7 +196,9 @@ def exchanged(whole: Together, parts: list[Flat], changed: list[int]) -> Togethe
         nodes[ends[0] - 1, g.PARENT] = len(nodes) - ends[0]
         nodes[ends[0] - 1, g.ORDINAL] = n
     depth = max(part.depth + (number > 0) for number, part in enumerate(parts))
-    return replace(whole, flat=Flat(*arrays, (), depth, _highest(parts)))
+    nodes, reach, numbers, changes = arrays
+    flat = Flat(nodes, reach, numbers, changes, (), depth, _highest(parts))
+    return replace(whole, flat=flat)
 
 
 def _arrays(part: Flat) -> tuple[NDArray[np.float64], ...]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
-from vbraille.render.scene import words
 from vbraille.render.scene.blocks import EVERYWHERE
 
 if TYPE_CHECKING:

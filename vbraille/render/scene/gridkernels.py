@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from vbraille.render.scene import words as w
+from vbraille.render.machine import words as w
 from vbraille.render.waves import compiled
 
 # Columns of nodes: see `vbraille.render.scene.flat`.

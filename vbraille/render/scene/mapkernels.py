@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from vbraille.render.scene import words as w
-from vbraille.render.scene.showkernels import run
+from vbraille.render.machine import words as w
+from vbraille.render.machine.showkernels import run
 from vbraille.render.waves import compiled
 
 LANES = 512  # places whose rows stay in the processor's nearer caches

@@ -9,7 +9,7 @@ import numpy as np
 
 from vbraille.braille.dots import PLACES, dots_of
 from vbraille.render.braille.reference import SWINGS
-from vbraille.render.scene.braillenumbers import FADE_MM
+from vbraille.render.machine.labelplaces import FADE_MM
 from vbraille.render.scene.brailleplaces import size_mm
 
 if TYPE_CHECKING:

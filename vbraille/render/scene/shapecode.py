@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from vbraille.render.scene import shapekernels as places
-from vbraille.render.scene import strokekernels as strokes
-from vbraille.render.scene import words
+from vbraille.render.machine import shapekernels as places
+from vbraille.render.machine import strokekernels as strokes
+from vbraille.render.machine import words
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.fitting import stroke_cycles
 from vbraille.scene.joints import (

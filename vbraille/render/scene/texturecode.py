@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.render.scene import words
+from vbraille.render.machine import words
 from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.fitting import Cycle, axial_cycle
 from vbraille.scene.measures import travel_deg

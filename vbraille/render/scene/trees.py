@@ -6,8 +6,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from vbraille.render.scene import shapecode, texturecode, words
-from vbraille.render.scene.braillenumbers import TABLE
+from vbraille.render.machine import words
+from vbraille.render.machine.labelplaces import TABLE
+from vbraille.render.scene import shapecode, texturecode
 from vbraille.render.scene.brailleplaces import box_of, pack_label
 from vbraille.render.scene.nodes import Enclosed, Node, NodeKind, Pushes, Reach, joined
 from vbraille.render.scene.shapecode import AnyShape, fill_of

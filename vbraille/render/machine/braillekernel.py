@@ -2,14 +2,14 @@
 
 Both take the places of many actuators at once, x and y of the canvas in mm, and fill a number for
 each. ``numbers`` is a whole program's; a label's run in it begins at ``first``, with the places
-that `vbraille.render.scene.braillenumbers` names, and its words are in the program's ``table``.
+that `vbraille.render.machine.labelplaces` names, and its words are in the program's ``table``.
 """
 
 import math
 
 import numpy as np
 
-from vbraille.render.scene.braillenumbers import (
+from vbraille.render.machine.labelplaces import (
     APART,
     CELL_PITCH,
     CELLS_PER_MM,

@@ -8,8 +8,8 @@ Shapes of many parts are given only those in reach: ``numbers`` has at ``first``
 
 import math
 
-from vbraille.render.scene.curvekernels import angle
-from vbraille.render.scene.words import (
+from vbraille.render.machine.curvekernels import angle
+from vbraille.render.machine.words import (
     ACROSS_ROW,
     ALONG_ROW,
     FREE_ROW,

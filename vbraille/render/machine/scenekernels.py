@@ -1,4 +1,4 @@
-"""The machine that shows compiled scenes: `vbraille.render.scene.words` has what it can be told.
+"""The machine that shows compiled scenes: `vbraille.render.machine.words` has what it can be told.
 
 A pattern's words stand in a block of their own, wherever that lies in the program: their arguments
 count from its beginning. The words of a tile call those patterns that its actuators can touch, and
@@ -7,11 +7,11 @@ put them together; their arguments count from the program's beginning.
 
 import math
 
-from vbraille.render.scene import shapekernels as shapes
-from vbraille.render.scene import strokekernels as strokes
-from vbraille.render.scene import texturekernels as textures
-from vbraille.render.scene import words as w
-from vbraille.render.scene.braillekernel import label, label_opacity
+from vbraille.render.machine import shapekernels as shapes
+from vbraille.render.machine import strokekernels as strokes
+from vbraille.render.machine import texturekernels as textures
+from vbraille.render.machine import words as w
+from vbraille.render.machine.braillekernel import label, label_opacity
 from vbraille.render.waves import compiled
 
 _NO_BLOCK = 0

@@ -12,8 +12,8 @@ from numba import carray, cfunc, config, types
 from numba.extending import intrinsic
 
 from vbraille.caching import keep_compiled
-from vbraille.render.scene import words as w
-from vbraille.render.scene.scenekernels import evaluate
+from vbraille.render.machine import words as w
+from vbraille.render.machine.scenekernels import evaluate
 from vbraille.render.waves import compiled
 from vbraille.render.work import THETA, TIME, X, Y
 
@@ -124,9 +124,9 @@ def show(numbers, table, rows, at, out):
     half_aside = 0.5 * (across - 1) * numbers[w.COLUMN_MM]
     n = 0
     for i in range(above):
-        down = i * numbers[w.ROW_MM] - half_down
+        down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
         for j in range(across):
-            aside = j * numbers[w.COLUMN_MM] - half_aside
+            aside = (j - 0.5 * (across - 1)) * numbers[w.COLUMN_MM]
             rows[w.X_ROW, n] = x + aside * cosine + down * sine
             rows[w.Y_ROW, n] = y + down * cosine - aside * sine
             rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)

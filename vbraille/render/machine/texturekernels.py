@@ -6,8 +6,8 @@ first of its constants in ``numbers``, whose order is that of `vbraille.render.s
 
 import math
 
-from vbraille.render.scene.curvekernels import angle, hump
-from vbraille.render.scene.words import FREE_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
+from vbraille.render.machine.curvekernels import angle, hump
+from vbraille.render.machine.words import FREE_ROW, SIGN_ROW, SPARE_ROW, X_ROW, Y_ROW
 from vbraille.render.waves import compiled
 
 _TURN_DEG = 360.0

@@ -6,9 +6,9 @@
 
 import math
 
-from vbraille.render.scene.curvekernels import fall, hump, wave
-from vbraille.render.scene.texturekernels import phase
-from vbraille.render.scene.words import (
+from vbraille.render.machine.curvekernels import fall, hump, wave
+from vbraille.render.machine.texturekernels import phase
+from vbraille.render.machine.words import (
     ACROSS_ROW,
     ALONG_ROW,
     FREE_ROW,
