@@ -15,7 +15,7 @@ from tests.benchmarks.timing import Result, ratio
 from vbraille.render import STRESS2_8X8, Straying
 from vbraille.render.scene.compiling import compile_scene
 from vbraille.render.scene.figures import page_with_figure
-from vbraille.scene.patterns import Circle, Fill, Line, Polygon
+from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, UniformVibration
@@ -63,7 +63,7 @@ def figure(width_mm: float, height_mm: float) -> Scene:
                 stroke=stroke,
                 fill=Fill(texture=UniformVibration(), gap_mm=1.0),
             ),
-            Line(start_mm=(4, h - 6), end_mm=(w / 4 - 6, h - 6), stroke=stroke),
+            StraightLine(start_mm=(4, h - 6), end_mm=(w / 4 - 6, h - 6), stroke=stroke),
         ),
     )
 

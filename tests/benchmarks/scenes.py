@@ -8,7 +8,7 @@ from tests.conftest import SEED
 from vbraille.display import Display
 from vbraille.render.scene.assets import Assets
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Image, Line, Polygon
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, Image, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Across, Along, DotStyle, Stroke
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
@@ -81,7 +81,7 @@ def short_lines() -> Scene:
     """Fifteen short lines, five in each of three rows: Lévesque 2009, 8.5.3."""
     starts = [(20.0 + 44.0 * n, 25.0 + 50.0 * row) for row in range(3) for n in range(5)]
     lines = (
-        Line(
+        StraightLine(
             start_mm=(x, y),
             end_mm=(x + 12.0, y + 6.0),
             stroke=Stroke(width_mm=4.0, along=Along(ridge_mm=2.0)),
@@ -112,12 +112,12 @@ def shapes(count: int) -> Scene:
     return Scene(canvas=canvas, elements=elements)
 
 
-def _shape(n: int, x: float, y: float, by: list[float]) -> Line | Circle | Polygon | Dots:
+def _shape(n: int, x: float, y: float, by: list[float]) -> StraightLine | Circle | Polygon | Dots:
     """One of ten shapes about a place: four lines, three circles, two triangles and some dots."""
     if n < 4:
         stroke = Stroke(width_mm=3.0, along=None if n % 2 else Along(ridge_mm=2.0))
         start, end = (x - 3 + by[0], y - 3 + by[1]), (x + 3 + by[2], y + 3 + by[3])
-        return Line(start_mm=start, end_mm=end, stroke=stroke)
+        return StraightLine(start_mm=start, end_mm=end, stroke=stroke)
     if n < 7:
         fill = Fill(texture=LinearGrating(ridge_mm=2.0)) if n == 6 else None
         stroke = Stroke(width_mm=2.0, across=Across(cycles=3) if n == 5 else None)

@@ -6,7 +6,7 @@ import pytest
 from vbraille.feeling.index import SceneIndex
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.reference import opacity
-from vbraille.scene.patterns import Circle, Fill, Group, Line, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
@@ -45,7 +45,9 @@ def test_the_uppermost_element_is_told_and_where_it_hides_nothing_the_one_below(
         Uniform(level=0.2, title="paper"),
         disc(50, 40, 20, id="pond"),
         disc(60, 40, 8, title="Island", id="i"),
-        Line(start_mm=(0, 5), end_mm=(99, 5), stroke=Stroke(width_mm=4)),  # which has no name
+        StraightLine(
+            start_mm=(0, 5), end_mm=(99, 5), stroke=Stroke(width_mm=4)
+        ),  # which has no name
     )
     assert name_at(index, 60, 40) == "Island"
     assert name_at(index, 35, 40) == "pond"

@@ -14,7 +14,7 @@ from vbraille.pictures.looks import RAISED
 from vbraille.pictures.raised import MARGIN_MM, raised_drawing
 from vbraille.render import LATERO
 from vbraille.render.scene.assets import Assets, Written
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Label, Line, Polygon
+from vbraille.scene.patterns import Circle, Dots, Fill, Group, Label, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform, UniformVibration
@@ -60,11 +60,11 @@ def test_ridges_have_their_direction_and_wavelength(angle):
 
 def test_a_stroke_is_as_thick_as_it_is_felt_and_grays_are_strengths():
     stroke = Stroke(width_mm=6, edge_mm=2)
-    line = Line(start_mm=(10, 20), end_mm=(50, 20), stroke=stroke)
+    line = StraightLine(start_mm=(10, 20), end_mm=(50, 20), stroke=stroke)
     ink = ink_of(abstract_drawing(scene_of(line), Assets()))
     thick = (ink[:, 300] > 0.3).sum() / PER_MM
     assert thick == pytest.approx(4, abs=0.15)  # 6 mm less half of an edge at each side
-    weak = Line(start_mm=(10, 20), end_mm=(50, 20), stroke=stroke, amplitude=0.4)
+    weak = StraightLine(start_mm=(10, 20), end_mm=(50, 20), stroke=stroke, amplitude=0.4)
     assert ink_of(abstract_drawing(scene_of(weak), Assets())).max() == pytest.approx(0.3, abs=0.02)
 
 
@@ -105,9 +105,11 @@ RAISED_SCENES = {
     "fine ridges": (LinearGrating(ridge_mm=1, wave_angle_deg=20),),
     "fine rings": (RadialGrating(center_mm=(20, 20), ridge_mm=0.7, gap_mm=0.4),),
     "vibration": (UniformVibration(),),
-    "thin line": (Line(start_mm=(5, 5), end_mm=(50, 30), stroke=Stroke(width_mm=0.3)),),
+    "thin line": (StraightLine(start_mm=(5, 5), end_mm=(50, 30), stroke=Stroke(width_mm=0.3)),),
     "cut line": (
-        Line(start_mm=(5, 5), end_mm=(50, 30), stroke=Stroke(width_mm=4, along=Along(ridge_mm=1))),
+        StraightLine(
+            start_mm=(5, 5), end_mm=(50, 30), stroke=Stroke(width_mm=4, along=Along(ridge_mm=1))
+        ),
     ),
     "shaking circle": (
         Circle(center_mm=(30, 20), radius_mm=15, stroke=Stroke(width_mm=4, vibration=Vibration())),
@@ -130,7 +132,7 @@ def test_raised_lines_and_blanks_are_wide_enough(name):
 
 def test_blank_is_left_around_what_lies_on_something_else():
     below = LinearGrating(ridge_mm=4)
-    line = Line(start_mm=(10, 20), end_mm=(50, 20), stroke=Stroke(width_mm=2, edge_mm=0.2))
+    line = StraightLine(start_mm=(10, 20), end_mm=(50, 20), stroke=Stroke(width_mm=2, edge_mm=0.2))
     ink = ink_of(abstract_drawing(scene_of(below, line), Assets(), RAISED))
     assert ink[174:188, 150:450].max() < 0.1
     assert ink[212:226, 150:450].max() < 0.1
@@ -179,7 +181,7 @@ def test_dots_along_a_closed_stroke_are_a_whole_number():
 
 
 def test_dotted_shapes_have_their_dots():
-    line = Line(start_mm=(10, 10), end_mm=(50, 10), dots=Dotting(dot=DotStyle(radius_mm=2)))
+    line = StraightLine(start_mm=(10, 10), end_mm=(50, 10), dots=Dotting(dot=DotStyle(radius_mm=2)))
     drawing = abstract_drawing(scene_of(line), Assets())
     discs = next(mark for mark in plain_marks(drawing) if isinstance(mark, InkDiscs))
     assert len(discs.centers_mm) == 9  # ⌊40 / 5⌋ + 1

@@ -4,9 +4,19 @@ import pytest
 
 from vbraille.pictures.scenes import slowest_s
 from vbraille.pictures.scenewords import pattern_words, scene_lines
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Image, Label, Line, Polygon, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Image,
+    Label,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Along, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.strokes import Along, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -36,7 +46,7 @@ CANVAS = Canvas(width_mm=100, height_mm=80)
             "spokes of 20° with gaps of 0° around (1, 2) mm, amplitude 0.5",
         ),
         (
-            Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=3, along=Along())),
+            StraightLine(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=3, along=Along())),
             "line from (0, 0) mm to (9, 0) mm, stroke of 3 mm cut every 2 mm",
         ),
         (Dots(centers_mm=((1, 1), (2, 2))), "2 dots of radius 1 mm"),
@@ -61,7 +71,7 @@ def test_a_scene_says_what_vibrates_once_for_each_element():
         vertices_mm=((0, 0), (9, 0), (0, 9)),
         id="roof",
         stroke=Stroke(vibration=Vibration(frequency_hz=20)),
-        markers=Markers(),
+        markers=VertexMarkers(),
         fill=Fill(texture=UniformVibration(frequency_hz=20)),
     )
     ring = Circle(center_mm=(5, 5), radius_mm=4, dots=Dotting(vertex_vibration=None))

@@ -19,9 +19,9 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     ImageDots,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
     Use,
 )
@@ -29,7 +29,7 @@ from vbraille.scene.strokes import DotStyle, Dotting, Stroke, Vibration
 from vbraille.scene.textures import Uniform
 
 STROKE = Stroke(width_mm=4)
-LINE = Line(start_mm=(10, 20), end_mm=(30, 25), stroke=STROKE)
+LINE = StraightLine(start_mm=(10, 20), end_mm=(30, 25), stroke=STROKE)
 CIRCLE = Circle(center_mm=(40, 20), radius_mm=5, fill=Fill(texture=Uniform()))
 
 
@@ -40,7 +40,10 @@ CIRCLE = Circle(center_mm=(40, 20), radius_mm=5, fill=Fill(texture=Uniform()))
         (CIRCLE, Box(35, 15, 45, 25)),
         (Circle(center_mm=(0, 0), radius_mm=5, dots=Dotting()), Box(-6, -6, 6, 6)),
         (Polygon(vertices_mm=((0, 0), (9, 0), (5, 7)), stroke=STROKE), Box(-2, -2, 11, 9)),
-        (Path(contours_mm=(((0, 0), (1, 1)), ((9, 3), (4, 4))), stroke=STROKE), Box(-2, -2, 11, 6)),
+        (
+            PathShape(contours_mm=(((0, 0), (1, 1)), ((9, 3), (4, 4))), stroke=STROKE),
+            Box(-2, -2, 11, 6),
+        ),
         (Dots(centers_mm=((1, 2), (5, 0)), dot=DotStyle(radius_mm=0.5)), Box(0.5, -0.5, 5.5, 2.5)),
         (Uniform(), None),
         (Tile(width_mm=4, height_mm=4, part=LINE), None),
@@ -57,11 +60,11 @@ def test_a_pattern_is_bounded_by_what_it_is(pattern, want):
 
 
 def test_what_is_up_where_there_is_nothing_is_everywhere():
-    line = Line(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, inverted=True)
+    line = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, inverted=True)
     assert bounds(line) is None
-    low = Line(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration(of="low"))
+    low = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration(of="low"))
     assert bounds(low) is None
-    high = Line(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration())
+    high = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration())
     assert bounds(high) is not None
 
 

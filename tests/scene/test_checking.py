@@ -8,10 +8,20 @@ import pytest
 from vbraille.scene import checking
 from vbraille.scene.checking import check_scene
 from vbraille.scene.opened import OpenedScene, Origins
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Label, Line, Polygon, Tile, Use
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Fill,
+    Group,
+    Label,
+    Polygon,
+    StraightLine,
+    Tile,
+    Use,
+)
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 
 LATERO = Canvas(width_mm=280, height_mm=217)
@@ -74,7 +84,9 @@ VIBRATING = {
         vertices_mm=((0, 0), (50, 0), (50, 50)), dots=Dotting(vertex_vibration=MID)
     ),
     "of markers": Polygon(
-        vertices_mm=((0, 0), (50, 0), (50, 50)), stroke=Stroke(), markers=Markers(vibration=MID)
+        vertices_mm=((0, 0), (50, 0), (50, 50)),
+        stroke=Stroke(),
+        markers=VertexMarkers(vibration=MID),
     ),
     "of single dots": Dots(centers_mm=((50, 50),), dot=DotStyle(vibration=MID)),
     "of a fill": circle(fill=Fill(texture=hum(25.0))),
@@ -230,7 +242,7 @@ def test_elements_with_too_little_blank_between_them_are_told():
     )
     shaking = circle(x=76.0, vibration=MID)
     assert advice(circle(), shaking)[0].endswith("2.0 mm of blank, which a vibration fills")
-    over = Line(start_mm=(40, 50), end_mm=(60, 50), stroke=Stroke())
+    over = StraightLine(start_mm=(40, 50), end_mm=(60, 50), stroke=Stroke())
     assert not advice(circle(), over)
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.tiers import examples
 from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dotting import dots_of
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
 
 DOTTING = Dotting()  # a radius of 1 mm, and 1 mm between: m = 3 mm
@@ -44,13 +44,13 @@ dottings = st.builds(
 shapes = st.one_of(
     st.builds(Polygon, vertices_mm=uncrossed, dots=dottings),
     st.builds(
-        Path,
+        PathShape,
         contours_mm=st.lists(rings, min_size=1, max_size=2).map(tuple),
         closed=st.booleans(),
         dots=dottings,
     ),
     st.builds(Circle, center_mm=points, radius_mm=st.floats(0.1, 20), dots=dottings),
-    st.builds(Line, start_mm=points, end_mm=st.just((50, 0)), dots=dottings),
+    st.builds(StraightLine, start_mm=points, end_mm=st.just((50, 0)), dots=dottings),
 )
 
 
@@ -64,11 +64,11 @@ def test_no_dots_are_nearer_than_the_separation_also_across_joints(shape):
 
 
 def test_a_line_has_dots_at_its_ends_and_evenly_between():
-    dots = dots_of(Line(start_mm=(0, 0), end_mm=(10, 0), dots=DOTTING))
+    dots = dots_of(StraightLine(start_mm=(0, 0), end_mm=(10, 0), dots=DOTTING))
     assert [dot.x_mm for dot in dots] == pytest.approx([0, 10 / 3, 20 / 3, 10])  # ⌊10/3⌋ + 1
     assert not any(dot.vertex for dot in dots)
     # A length that is a whole number of separations is not one dot short by rounding.
-    assert len(dots_of(Line(start_mm=(0, 0), end_mm=(0.9, 0), dots=dotting(0.1, 0.1)))) == 4
+    assert len(dots_of(StraightLine(start_mm=(0, 0), end_mm=(0.9, 0), dots=dotting(0.1, 0.1)))) == 4
 
 
 def dotting(radius, separation):
@@ -76,7 +76,7 @@ def dotting(radius, separation):
 
 
 def test_a_line_too_short_for_two_has_one():
-    dots = dots_of(Line(start_mm=(1, 1), end_mm=(3, 1), dots=DOTTING))
+    dots = dots_of(StraightLine(start_mm=(1, 1), end_mm=(3, 1), dots=DOTTING))
     assert [dot[:2] for dot in dots] == [(1, 1)]
 
 
@@ -121,7 +121,7 @@ def test_of_vertices_too_near_the_later_has_no_dot():
 def test_a_curve_of_many_edges_is_dotted_evenly_along_it():
     turns = [math.tau * n / 400 for n in range(400)]
     curve = tuple((10 * math.cos(a), 10 * math.sin(a)) for a in turns)
-    path = Path(contours_mm=(curve,), closed=True, dots=DOTTING)
+    path = PathShape(contours_mm=(curve,), closed=True, dots=DOTTING)
     dots = dots_of(path)
     assert len(dots) == len(dots_of(Circle(center_mm=(0, 0), radius_mm=10, dots=DOTTING)))
     assert not any(dot.vertex for dot in dots)
@@ -130,7 +130,7 @@ def test_a_curve_of_many_edges_is_dotted_evenly_along_it():
 
 
 def test_a_path_has_dots_on_its_ends_and_where_it_turns():
-    bent = Path(contours_mm=(((0, 0), (10, 0), (20, 1), (20, 12)),), dots=DOTTING)
+    bent = PathShape(contours_mm=(((0, 0), (10, 0), (20, 1), (20, 12)),), dots=DOTTING)
     dots = dots_of(bent)
     assert dots[0][:2] == (0, 0)
     assert dots[-1][:2] == (20, 12)
@@ -138,15 +138,15 @@ def test_a_path_has_dots_on_its_ends_and_where_it_turns():
 
 
 def test_a_path_that_goes_back_on_itself_is_not_dotted_twice():
-    there_and_back = Path(contours_mm=(((0, 0), (20, 0), (0, 0.001)),), dots=DOTTING)
+    there_and_back = PathShape(contours_mm=(((0, 0), (20, 0), (0, 0.001)),), dots=DOTTING)
     assert apart(dots_of(there_and_back)) >= 3 - 1e-6
 
 
 def test_a_long_path_is_dotted_at_once():
     wave = tuple((n * 0.05, 3 * math.sin(n * 0.02)) for n in range(20_000))
-    dots = dots_of(Path(contours_mm=(wave,), dots=DOTTING))
+    dots = dots_of(PathShape(contours_mm=(wave,), dots=DOTTING))
     assert len(dots) > 300
 
 
 def test_what_is_not_dotted_has_no_dots():
-    assert dots_of(Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke())) == ()
+    assert dots_of(StraightLine(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke())) == ()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.scene.fitting import Cycle, axial_cycle, fitted, path_lengths_mm, stroke_cycles
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.strokes import Along, Stroke
 from vbraille.scene.textures import AxialGrating, TurnPeak
 
@@ -43,7 +43,7 @@ def test_what_gives_way(ridge, gap, length, want):
 
 
 def test_paths_are_as_long_as_what_a_texture_goes_along():
-    assert path_lengths_mm(Line(start_mm=(1, 2), end_mm=(4, 6), stroke=ALONG)) == (5,)
+    assert path_lengths_mm(StraightLine(start_mm=(1, 2), end_mm=(4, 6), stroke=ALONG)) == (5,)
     assert path_lengths_mm(Circle(center_mm=(0, 0), radius_mm=3, stroke=ALONG)) == (6 * math.pi,)
     straight = Polygon(vertices_mm=SQUARE, join="straight", stroke=ALONG)
     assert path_lengths_mm(straight) == (120,)
@@ -53,22 +53,22 @@ def test_paths_are_as_long_as_what_a_texture_goes_along():
     offset = Polygon(vertices_mm=SQUARE, rounding_offset_mm=3, stroke=ALONG)
     assert path_lengths_mm(offset) == pytest.approx((4 * 20 + 10 * math.pi,))
     two = (((0, 0), (3, 0), (3, 4)), ((10, 0), (16, 0), (16, 8)))
-    assert path_lengths_mm(Path(contours_mm=two, stroke=ALONG)) == (7, 14)
-    assert path_lengths_mm(Path(contours_mm=two, closed=True, stroke=ALONG)) == (12, 24)
+    assert path_lengths_mm(PathShape(contours_mm=two, stroke=ALONG)) == (7, 14)
+    assert path_lengths_mm(PathShape(contours_mm=two, closed=True, stroke=ALONG)) == (12, 24)
 
 
 def test_only_closed_paths_have_their_cycles_changed():
     written = Cycle(2, 1)
     two = (((0, 0), (10, 0)), ((0, 5), (11, 5)))
-    assert stroke_cycles(Line(start_mm=(0, 0), end_mm=(10, 0), stroke=ALONG)) == (written,)
-    assert stroke_cycles(Path(contours_mm=two, stroke=ALONG)) == (written, written)
+    assert stroke_cycles(StraightLine(start_mm=(0, 0), end_mm=(10, 0), stroke=ALONG)) == (written,)
+    assert stroke_cycles(PathShape(contours_mm=two, stroke=ALONG)) == (written, written)
     circle = Circle(center_mm=(0, 0), radius_mm=5, stroke=ALONG)
     assert stroke_cycles(circle) == (fitted(written, 10 * math.pi),) != (written,)
     free = Stroke(along=Along(ridge_mm=2, gap_mm=1, whole_cycles=False))
     assert stroke_cycles(Circle(center_mm=(0, 0), radius_mm=5, stroke=free)) == (written,)
     assert stroke_cycles(Circle(center_mm=(0, 0), radius_mm=5, stroke=Stroke())) == ()
     three = (((0, 0), (9, 0), (9, 9)), ((0, 0), (20, 0), (20, 20)))
-    path = Path(contours_mm=three, closed=True, stroke=ALONG)
+    path = PathShape(contours_mm=three, closed=True, stroke=ALONG)
     assert stroke_cycles(path) == tuple(fitted(written, n) for n in path_lengths_mm(path))
 
 

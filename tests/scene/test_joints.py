@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from vbraille.scene.joints import joint, joints, marker_half_angle_rad, places_along_mm
 from vbraille.scene.patterns import Polygon
-from vbraille.scene.strokes import Markers, Stroke
+from vbraille.scene.strokes import Stroke, VertexMarkers
 
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))
 
@@ -89,7 +89,7 @@ def test_a_polygon_has_as_many_joints_as_vertices():
 )
 def test_markers_span_the_angle_that_they_say(span, degrees):
     theta = math.radians(60)
-    half = marker_half_angle_rad(Markers(span=span), theta)
+    half = marker_half_angle_rad(VertexMarkers(span=span), theta)
     if degrees is None:
         # By the places: the stroke's outer corners beside the vertex, seen from the pivot.
         found = corner(theta, 2.0)
@@ -106,6 +106,6 @@ def test_markers_span_the_angle_that_they_say(span, degrees):
 
 
 def test_a_marker_is_no_wider_than_the_wider_of_what_edges_allow():
-    wide = Markers(span="angle", angle_deg=180)
+    wide = VertexMarkers(span="angle", angle_deg=180)
     assert math.degrees(2 * marker_half_angle_rad(wide, math.radians(60))) == pytest.approx(120)
     assert math.degrees(2 * marker_half_angle_rad(wide, math.radians(130))) == pytest.approx(130)

@@ -18,9 +18,9 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
     Use,
 )
@@ -105,7 +105,7 @@ MOVED = [
     (Image(file="x.png"), {"place_mm": (3.0, -4.0)}),
     (Label(text="a", place_mm=(1.0, 1.0)), {"place_mm": (4.0, -3.0)}),
     (
-        Line(start_mm=(0.0, 0.0), end_mm=(9.0, 9.0), stroke=Stroke()),
+        StraightLine(start_mm=(0.0, 0.0), end_mm=(9.0, 9.0), stroke=Stroke()),
         {"start_mm": (3.0, -4.0), "end_mm": (12.0, 5.0)},
     ),
     (
@@ -113,7 +113,7 @@ MOVED = [
         {"vertices_mm": ((3.0, -4.0), (12.0, -4.0), (12.0, 5.0))},
     ),
     (
-        Path(contours_mm=(((0.0, 0.0), (9.0, 9.0)),), stroke=Stroke()),
+        PathShape(contours_mm=(((0.0, 0.0), (9.0, 9.0)),), stroke=Stroke()),
         {"contours_mm": (((3.0, -4.0), (12.0, 5.0)),)},
     ),
     (Dots(centers_mm=((0.0, 0.0), (5.0, 5.0))), {"centers_mm": ((3.0, -4.0), (8.0, 1.0))}),

@@ -7,10 +7,10 @@ from hypothesis import given
 
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples
-from vbraille.scene.patterns import Circle, Group, Image, Line, Path, Polygon, Use
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, StraightLine, Use
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Markers, Stroke, Vibration
+from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
 from vbraille.scene.writing import LONGEST, write_scene
 from vbraille.toml.tomlfile import TomlFile
@@ -39,11 +39,11 @@ def test_a_scene_is_read_as_it_was_written(scene):
 def test_what_a_file_cannot_say_looks_the_same():
     corners = ((0, 0), (30, 0), (15, 20))
     smooth = Stroke(width_mm=6, edge_mm=None)
-    plain = Polygon(vertices_mm=corners, stroke=smooth, markers=Markers(vibration=None))
+    plain = Polygon(vertices_mm=corners, stroke=smooth, markers=VertexMarkers(vibration=None))
     (made,) = again(Scene(canvas=CANVAS, elements=(plain,))).elements
     assert made.stroke == Stroke(width_mm=6, edge_mm=3)
     assert made.stroke.edge == smooth.edge
-    assert made.markers == Markers(vibration=Vibration(amplitude=0))
+    assert made.markers == VertexMarkers(vibration=Vibration(amplitude=0))
 
 
 def test_the_text_has_one_thing_on_a_line_and_nothing_that_is_as_usual():
@@ -105,7 +105,7 @@ def test_the_text_has_one_thing_on_a_line_and_nothing_that_is_as_usual():
         operation = "overwrite"
         inverted = true
 
-        # Line 7.
+        # StraightLine 7.
         #
         [[elements.parts]]
         kind = "uniform"
@@ -133,12 +133,12 @@ def test_long_lists_have_an_item_on_each_line():
     corners = tuple((float(i), (i % 7) ** 2 / 3) for i in range(40))
     scene = Scene(
         canvas=CANVAS,
-        elements=(Line(start_mm=(0, 0), end_mm=(1, 1), stroke=Stroke()),),
+        elements=(StraightLine(start_mm=(0, 0), end_mm=(1, 1), stroke=Stroke()),),
         textures={"many": Group(operation="add", parts=(Uniform(), Uniform()))},
     )
     assert all(len(line) <= LONGEST for line in write_scene(scene).splitlines())
     text = write_scene(
-        Scene(canvas=CANVAS, elements=(Path(contours_mm=(corners,), stroke=Stroke()),))
+        Scene(canvas=CANVAS, elements=(PathShape(contours_mm=(corners,), stroke=Stroke()),))
     )
     assert max(map(len, text.splitlines())) <= LONGEST
 

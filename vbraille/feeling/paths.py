@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.simulation.exploring import Disturbance, Exploration, parse_place, spot, wide
+from vbraille.simulation.exploring import Disturbance, ExploringPath, parse_place, spot, wide
 from vbraille.simulation.motion import SLACK
 from vbraille.simulation.recorded import load_recorded
 from vbraille.wording import setting
@@ -118,7 +118,7 @@ def _times(duration_s: float, rate_hz: float) -> NDArray[np.float64]:
     return np.arange(1 + int(duration_s * rate_hz + SLACK)) / rate_hz
 
 
-def _course(options: PathOptions, canvas: Canvas) -> Exploration:
+def _course(options: PathOptions, canvas: Canvas) -> ExploringPath:
     speed_mm_s = 60.0 if options.speed is None else options.speed
     try:
         if options.name == "spot":

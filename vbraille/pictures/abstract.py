@@ -24,7 +24,17 @@ from vbraille.pictures.inkshapes import (
 from vbraille.pictures.looks import ABSTRACT, InkLook
 from vbraille.pictures.regions import TEXTURES, Regions
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.patterns import Circle, Dots, Group, Image, Label, Line, Path, Polygon, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Dots,
+    Group,
+    Image,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Tile,
+)
 from vbraille.scene.textures import Uniform, UniformVibration
 
 if TYPE_CHECKING:
@@ -116,7 +126,7 @@ class _Painter:
             yield from self._area(self.regions.felt(pattern), where, strength)
             return
         match pattern:
-            case Line() | Circle() | Polygon() | Path():
+            case StraightLine() | Circle() | Polygon() | PathShape():
                 yield from self._fill(pattern, where, strength)
                 yield from self._clipped(shape_marks(pattern, self._look, strength), where)
             case Dots():
@@ -181,7 +191,7 @@ class _Painter:
             yield from self._shaking(where, 1.0 if swing.of == "high" else ink)
 
     def _fill(self, shape: AnyShape, where: Where, strength: float) -> Iterator[InkMark]:
-        if isinstance(shape, Line) or shape.fill is None:
+        if isinstance(shape, StraightLine) or shape.fill is None:
             return
         fill = structs.replace(shape.fill, texture=Uniform(), gap_mm=0.0, fade_mm=0.0)
         bare = structs.replace(shape, stroke=None, dots=None, inverted=False, fill=fill)

@@ -18,7 +18,7 @@ from vbraille.pictures.hatching import dotted
 from vbraille.pictures.ink import InkDiscs, InkLine
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.fitting import stroke_cycles
-from vbraille.scene.patterns import Circle, Dots, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import Label
     from vbraille.scene.strokes import DotStyle, Stroke
 
-AnyShape = Line | Circle | Polygon | Path
+AnyShape = StraightLine | Circle | Polygon | PathShape
 _SHAKING_CUT = 0.7  # gray of what is down in a stroke and vibrates
 _ERROR_MM = 0.01  # of the edges that stand for a circle
 
@@ -40,7 +40,7 @@ _ERROR_MM = 0.01  # of the edges that stand for a circle
 def outline(shape: AnyShape) -> Contours:
     """Places of a shape's path, for each contour."""
     match shape:
-        case Line():
+        case StraightLine():
             return (np.array([shape.start_mm, shape.end_mm]),)
         case Circle():
             step = 2 * math.acos(max(1 - _ERROR_MM / shape.radius_mm, -1.0))
@@ -49,13 +49,13 @@ def outline(shape: AnyShape) -> Contours:
             return (np.array(shape.center_mm) + shape.radius_mm * ring,)
         case Polygon():
             return (np.array(shape.vertices_mm),)
-        case Path():
+        case PathShape():
             return tuple(map(np.array, shape.contours_mm))
 
 
 def is_closed(shape: AnyShape) -> bool:
     """Whether a shape's path goes back to its beginning."""
-    return isinstance(shape, Circle | Polygon) or (isinstance(shape, Path) and shape.closed)
+    return isinstance(shape, Circle | Polygon) or (isinstance(shape, PathShape) and shape.closed)
 
 
 def shape_marks(shape: AnyShape, look: InkLook, strength: float) -> Iterator[PlainMark]:

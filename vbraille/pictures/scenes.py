@@ -16,7 +16,7 @@ from PIL.PngImagePlugin import PngInfo
 from vbraille.errors import InputError
 from vbraille.pictures.scenewords import vibrations
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
 from vbraille.scene.walking import each
 from vbraille.wording import setting
@@ -112,7 +112,9 @@ def slowest_s(scene: Scene) -> float | None:
                 periods.append((part.ridge_mm + part.gap_mm) / abs(part.velocity_mm_s))
             case AxialGrating() if part.velocity_deg_s:
                 periods.append((part.ridge_deg + part.gap_deg) / abs(part.velocity_deg_s))
-            case Line() | Circle() | Polygon() | Path() if part.stroke and part.stroke.along:
+            case StraightLine() | Circle() | Polygon() | PathShape() if (
+                part.stroke and part.stroke.along
+            ):
                 along = part.stroke.along
                 if along.velocity_mm_s:
                     periods.append((along.ridge_mm + along.gap_mm) / abs(along.velocity_mm_s))

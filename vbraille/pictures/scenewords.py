@@ -13,9 +13,9 @@ from vbraille.scene.patterns import (
     Image,
     ImageDots,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
     Use,
 )
@@ -100,7 +100,7 @@ def vibrations(pattern: AnyPattern) -> list[Vibration]:
             found.append(Vibration(frequency_hz=part.frequency_hz))
         if isinstance(part, Dots | ImageDots):
             found.append(part.dot.vibration)
-        if isinstance(part, Line | Circle | Polygon | Path):
+        if isinstance(part, StraightLine | Circle | Polygon | PathShape):
             found += [part.stroke.vibration] if part.stroke else []
             found += [part.dots.dot.vibration, part.dots.vertex_vibration] if part.dots else []
         if isinstance(part, Polygon) and part.markers is not None:
@@ -135,7 +135,7 @@ def _kind_words(pattern: AnyPattern) -> str:
             return f"{len(pattern.parts)} parts, {_TOGETHER[pattern.operation]} ({parts})"
         case Use():
             return f"{plain(pattern.name)} again"
-        case Line() | Circle() | Polygon() | Path():
+        case StraightLine() | Circle() | Polygon() | PathShape():
             return _shape_words(pattern)
 
 
@@ -156,9 +156,9 @@ def wave_angle_deg(grating: LinearGrating) -> float:
     return travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg)
 
 
-def _shape_words(shape: Line | Circle | Polygon | Path) -> str:
+def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:
     match shape:
-        case Line():
+        case StraightLine():
             words = f"line from {_place(shape.start_mm)} to {_place(shape.end_mm)}"
         case Circle():
             words = f"circle of radius {shape.radius_mm:g} mm around {_place(shape.center_mm)}"
@@ -166,7 +166,7 @@ def _shape_words(shape: Line | Circle | Polygon | Path) -> str:
             corners = ", ".join(f"({x:g}, {y:g})" for x, y in shape.vertices_mm[:8])
             more = ", …" if len(shape.vertices_mm) > 8 else ""
             words = f"polygon of {len(shape.vertices_mm)} vertices at {corners}{more} mm"
-        case Path():
+        case PathShape():
             kind = "closed " if shape.closed else ""
             places = sum(map(len, shape.contours_mm))
             words = f"{kind}path through {places} places from {_place(shape.contours_mm[0][0])}"
@@ -177,7 +177,7 @@ def _shape_words(shape: Line | Circle | Polygon | Path) -> str:
         said.append(f"of dots {_dot_words(shape.dots.dot)}")
     if isinstance(shape, Polygon) and shape.markers is not None:
         said.append("with markers")
-    if not isinstance(shape, Line) and shape.fill is not None:
+    if not isinstance(shape, StraightLine) and shape.fill is not None:
         said.append(f"filled with {pattern_words(shape.fill.texture)}")
     return ", ".join(said)
 

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.moving import ONE
-from vbraille.scene.patterns import Circle, Group, Image, Label, Path, Polygon, Shape, Tile
+from vbraille.scene.patterns import Circle, Group, Image, Label, PathShape, Polygon, Shape, Tile
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import each, with_children
 
@@ -81,7 +81,7 @@ def textures_of(scene: Scene) -> int:
     """Number of textures that differ by more than their place, in a resolved scene."""
     found: set[AnyPattern] = set()
     for pattern in each(*scene.elements):
-        if isinstance(pattern, Circle | Polygon | Path) and pattern.fill is not None:
+        if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
             found.add(_nowhere(pattern.fill.texture))
         elif isinstance(pattern, Image) and pattern.texture is not None:
             found.add(_nowhere(pattern.texture))

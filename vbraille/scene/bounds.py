@@ -14,9 +14,9 @@ from vbraille.scene.patterns import (
     Image,
     ImageDots,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Use,
 )
 
@@ -103,13 +103,13 @@ def bounds(pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KN
     match pattern:
         case Image() | Label():
             return known.get(pattern)
-        case Line():
+        case StraightLine():
             return around((pattern.start_mm, pattern.end_mm)).grown(drawn_radius_mm(pattern))
         case Circle():
             return around((pattern.center_mm,)).grown(pattern.radius_mm + drawn_radius_mm(pattern))
         case Polygon():
             return around(pattern.vertices_mm).grown(drawn_radius_mm(pattern))
-        case Path():
+        case PathShape():
             points = (point for contour in pattern.contours_mm for point in contour)
             return around(points).grown(drawn_radius_mm(pattern))
         case Dots():
@@ -130,7 +130,7 @@ def is_everywhere(pattern: Pattern) -> bool:
     return pattern.inverted or low
 
 
-def drawn_radius_mm(shape: Line | Circle | Polygon | Path) -> float:
+def drawn_radius_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
     """How far a shape's stroke or its dots reach from its path, to one side."""
     if shape.stroke is not None:
         return shape.stroke.width_mm / 2

@@ -22,7 +22,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -41,7 +41,7 @@ class PlacedDot(NamedTuple):
     vertex: bool = False
 
 
-def dots_of(shape: Line | Circle | Polygon | Path) -> tuple[PlacedDot, ...]:
+def dots_of(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[PlacedDot, ...]:
     """Compute where the dots of a dotted shape stand; none if it is not dotted."""
     if shape.dots is None:
         return ()
@@ -50,7 +50,7 @@ def dots_of(shape: Line | Circle | Polygon | Path) -> tuple[PlacedDot, ...]:
         return _on_circle(shape, least_mm)
     if isinstance(shape, Polygon):
         return _apart(_on_polygon(shape.vertices_mm, least_mm), least_mm)
-    if isinstance(shape, Line):
+    if isinstance(shape, StraightLine):
         return _apart(_on_contour((shape.start_mm, shape.end_mm), False, least_mm), least_mm)
     contours = (_on_contour(c, shape.closed, least_mm) for c in shape.contours_mm)
     return _apart((dot for dots in contours for dot in dots), least_mm)

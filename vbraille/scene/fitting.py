@@ -11,7 +11,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm, places_along_mm
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from vbraille.scene.textures import AxialGrating, TurnPeak
@@ -43,13 +43,13 @@ def fitted(cycle: Cycle, length: float) -> Cycle:
     return Cycle(cycle.ridge * factor, cycle.gap * factor)
 
 
-def path_lengths_mm(shape: Line | Circle | Polygon | Path) -> tuple[float, ...]:
+def path_lengths_mm(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[float, ...]:
     """Compute the length of a shape's path, or of each of a path's contours.
 
     A circle has 2πR; a polygon what is left of its edges between its corners and, if they are
     rounded, the arcs round them.
     """
-    if isinstance(shape, Line):
+    if isinstance(shape, StraightLine):
         return (math.dist(shape.start_mm, shape.end_mm),)
     if isinstance(shape, Circle):
         return (math.tau * shape.radius_mm,)
@@ -60,7 +60,7 @@ def path_lengths_mm(shape: Line | Circle | Polygon | Path) -> tuple[float, ...]:
     )
 
 
-def stroke_cycles(shape: Line | Circle | Polygon | Path) -> tuple[Cycle, ...]:
+def stroke_cycles(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[Cycle, ...]:
     """Compute the cycles that a texture along a shape's stroke has, one for each contour.
 
     Where the path is open, or the texture wants no whole cycles, they are as they were written.
@@ -70,7 +70,7 @@ def stroke_cycles(shape: Line | Circle | Polygon | Path) -> tuple[Cycle, ...]:
     if along is None:
         return ()
     cycle = Cycle(along.ridge_mm, along.gap_mm)
-    is_open = isinstance(shape, Line) or (isinstance(shape, Path) and not shape.closed)
+    is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
     whole = along.whole_cycles and not is_open
     return tuple(fitted(cycle, length) if whole else cycle for length in path_lengths_mm(shape))
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Polygon
-    from vbraille.scene.strokes import Markers
+    from vbraille.scene.strokes import VertexMarkers
 
 
 class Joint(NamedTuple):
@@ -122,7 +122,7 @@ def places_along_mm(polygon: Polygon) -> tuple[float, ...]:
     return tuple(places)
 
 
-def marker_half_angle_rad(markers: Markers, angle_rad: float) -> float:
+def marker_half_angle_rad(markers: VertexMarkers, angle_rad: float) -> float:
     """Half of the angle that a marker spans, seen from the place where the inner edges meet.
 
     Lévesque 2009, fig. 8.20, as angles in its author's later code: the angle given, but no more

@@ -20,7 +20,7 @@ from vbraille.scene.measures import (
     check_share,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.scene.strokes import DotStyle, Dotting, Markers, Stroke
+from vbraille.scene.strokes import DotStyle, Dotting, Stroke, VertexMarkers
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -218,7 +218,7 @@ class Shape(Pattern, frozen=True, kw_only=True):
             raise ValueError("dots cannot be given beside a stroke; leave one out")
 
 
-class Line(Shape, frozen=True, kw_only=True, tag="line"):
+class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
     """A straight line with round ends: Lévesque 2009, eqs. 8.15-8.17.
 
     Parameters
@@ -286,7 +286,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     fill
         What fills it; None for nothing.
     markers
-        Markers at its vertices; None for none.
+        VertexMarkers at its vertices; None for none.
 
     Raises
     ------
@@ -299,7 +299,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     join: Literal["straight", "rounded"] = "rounded"
     rounding_offset_mm: float = 0.0
     fill: Fill | None = None
-    markers: Markers | None = None
+    markers: VertexMarkers | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -315,7 +315,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
         _check_drawn(self, self.fill)
 
 
-class Path(Shape, frozen=True, kw_only=True, tag="path"):
+class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
     """Lines through many places, open or closed, one or several, as drawings have them.
 
     Parameters
@@ -495,10 +495,10 @@ AnyPattern = (
     | Tile
     | Image
     | ImageDots
-    | Line
+    | StraightLine
     | Circle
     | Polygon
-    | Path
+    | PathShape
     | Dots
     | Label
     | Group

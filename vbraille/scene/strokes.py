@@ -251,7 +251,7 @@ class Dotting(Table, frozen=True, kw_only=True):
         _check_high(self.vertex_vibration, "dots")
 
 
-class Markers(Table, frozen=True, kw_only=True):
+class VertexMarkers(Table, frozen=True, kw_only=True):
     """Markers at the vertices of a polygon: Lévesque 2009, 8.4.3, figs. 8.19 and 8.20.
 
     Parameters

@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from vbraille.scene.bounds import bounds
-from vbraille.scene.patterns import Circle, Dots, Group, Path, Polygon, Shape
+from vbraille.scene.patterns import Circle, Dots, Group, PathShape, Polygon, Shape
 from vbraille.scene.textures import UniformVibration
 from vbraille.scene.walking import children
 
@@ -53,7 +53,7 @@ def meetings(pattern: AnyPattern, known: Boxes) -> Iterator[str]:
             f"vibrates as a whole at {_hz(_changed(pattern))}, and what is in it at {_hz(inside)}: "
             f"{_masked(_changed(pattern), inside)}; leave one of them out"
         )
-    if isinstance(pattern, Circle | Polygon | Path) and pattern.fill is not None:
+    if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
         fill, stroke = pattern.fill, pattern.stroke
         drowned = stroke is not None and _of(stroke.vibration) and not frequencies(fill.texture)
         if drowned and not fill.blended and fill.gap_mm < LEAST_GAP_MM:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import Circle, Group, Image, Path, Polygon, Tile
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -38,7 +38,7 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
         return [(("part",), pattern.part)]
     if isinstance(pattern, Image):
         return [] if pattern.texture is None else [(("texture",), pattern.texture)]
-    if isinstance(pattern, Circle | Polygon | Path) and pattern.fill is not None:
+    if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
         return [(("fill", "texture"), pattern.fill.texture)]
     return []
 
@@ -75,6 +75,6 @@ def with_children(
         return replace(pattern, part=changed["part",])
     if isinstance(pattern, Image):
         return replace(pattern, texture=changed["texture",])
-    assert isinstance(pattern, Circle | Polygon | Path)
+    assert isinstance(pattern, Circle | Polygon | PathShape)
     assert pattern.fill is not None
     return replace(pattern, fill=replace(pattern.fill, texture=changed["fill", "texture"]))

@@ -71,7 +71,7 @@ class Disturbance:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exploration:
+class ExploringPath:
     """Places of the array's centre over time.
 
     Parameters
@@ -140,7 +140,7 @@ def wide(
     spacing_mm: float = 10.0,
     speed_mm_s: float = 60.0,
     disturbance: Disturbance | None = None,
-) -> Exploration:
+) -> ExploringPath:
     """Go round a canvas and then inward in a spiral: Lévesque 2009, fig. 8.30.
 
     Parameters
@@ -166,7 +166,7 @@ def wide(
     x_mm, y_mm = x_mm[moved], y_mm[moved]
     along_mm = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))))
     if disturbance is None or disturbance.none:
-        return Exploration(along_mm / speed_mm_s, x_mm, y_mm)
+        return ExploringPath(along_mm / speed_mm_s, x_mm, y_mm)
     return _disturbed(along_mm, x_mm, y_mm, speed_mm_s, disturbance)
 
 
@@ -176,7 +176,7 @@ def _disturbed(
     y_mm: NDArray[np.float64],
     speed_mm_s: float,
     how: Disturbance,
-) -> Exploration:
+) -> ExploringPath:
     """Make a course of a path with its disturbances, in knots close together."""
     steps = _gone(float(along_mm[-1]), how)
     place = np.clip(np.cumsum(steps), 0, along_mm[-1])
@@ -192,7 +192,7 @@ def _disturbed(
     even_s = np.cumsum(np.abs(steps)) / speed_mm_s
     speed = 1 + how.speed_change * np.sin(2 * np.pi * even_s / how.speed_period_s)
     t_s = np.cumsum(np.abs(steps) / (speed_mm_s * speed))
-    return Exploration(t_s - t_s[0], x, y)
+    return ExploringPath(t_s - t_s[0], x, y)
 
 
 def _gone(length_mm: float, how: Disturbance) -> NDArray[np.float64]:
@@ -218,7 +218,7 @@ def spot(
     radius_mm: float = 5.0,
     speed_mm_s: float = 60.0,
     duration_s: float = 10.0,
-) -> Exploration:
+) -> ExploringPath:
     """Swing about a place, along x and along y, so that the square about it is filled evenly.
 
     Parameters
@@ -242,7 +242,7 @@ def spot(
     check_range("duration", duration_s, 0.1, 3600, " s")
     rate = speed_mm_s / (radius_mm * math.hypot(1, _RATIO))
     t_s = np.arange(0, duration_s + _SWING_S / 2, _SWING_S)
-    return Exploration(
+    return ExploringPath(
         t_s,
         x_mm + radius_mm * np.sin(rate * t_s),
         y_mm + radius_mm * np.sin(_RATIO * rate * t_s),

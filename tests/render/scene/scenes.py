@@ -20,13 +20,21 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
 )
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.strokes import (
+    Across,
+    Along,
+    DotStyle,
+    Dotting,
+    Stroke,
+    VertexMarkers,
+    Vibration,
+)
 from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
@@ -193,7 +201,7 @@ drawn = st.one_of(
     st.fixed_dictionaries({"stroke": strokes()}), st.fixed_dictionaries({"dots": dottings})
 )
 markers = st.builds(
-    Markers,
+    VertexMarkers,
     span=st.sampled_from(["angle", "square", "edges", "arc"]),
     angle_deg=numbers(1, 180),
     blend_mm=numbers(0.05, 4),
@@ -255,7 +263,9 @@ contours = st.lists(points, min_size=3, max_size=6).map(tuple).filter(apart)
 ends = st.fixed_dictionaries({"start_mm": points, "end_mm": points}).filter(
     lambda line: line["start_mm"] != line["end_mm"]
 )
-lines = st.builds(lambda own, look, change: Line(**own, **look, **change), ends, drawn, changes)
+lines = st.builds(
+    lambda own, look, change: StraightLine(**own, **look, **change), ends, drawn, changes
+)
 round_fields = {"center_mm": points, "radius_mm": numbers(0.5, 30)}
 corner_fields = {
     "vertices_mm": outlines().filter(
@@ -301,8 +311,8 @@ def simple(texture):
         "filled circle": filled(Circle, texture, **round_fields),
         "polygon": shapes(Polygon, **corner_fields),
         "filled polygon": filled(Polygon, texture, **corner_fields),
-        "path": shapes(Path, **open_or_closed),
-        "filled path": filled(Path, texture, **closed),
+        "path": shapes(PathShape, **open_or_closed),
+        "filled path": filled(PathShape, texture, **closed),
         "dots": dots,
         "image": patterns_of(Image, **image_fields),
         "image of a texture": patterns_of(Image, texture=texture, **image_fields),

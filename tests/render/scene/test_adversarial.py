@@ -15,12 +15,20 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
 )
-from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.strokes import (
+    Across,
+    Along,
+    DotStyle,
+    Dotting,
+    Stroke,
+    VertexMarkers,
+    Vibration,
+)
 from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
@@ -96,7 +104,7 @@ def test_polygons_of_any_shape(name, stroke, join, rng):
             vertices_mm=SHAPES[name],
             stroke=stroke,
             join=join,
-            markers=Markers(span="arc", blend_mm=2),
+            markers=VertexMarkers(span="arc", blend_mm=2),
             fill=Fill(texture=LinearGrating(ridge_mm=3), gap_mm=0.5),
         )
     )
@@ -112,7 +120,7 @@ def test_markers_of_any_corner(name, span, rng):
         Polygon(
             vertices_mm=SHAPES[name],
             stroke=wide(5, along=Along(ridge_mm=1)),
-            markers=Markers(span=span, angle_deg=180, blend_mm=0.05, vibration=None),
+            markers=VertexMarkers(span=span, angle_deg=180, blend_mm=0.05, vibration=None),
         )
     )
     everywhere(scene, rng, count=4)
@@ -139,7 +147,7 @@ AT_HEARTS = {
     "tile": Tile(width_mm=0.1, height_mm=0.1, part=LinearGrating(ridge_mm=3), origin_mm=(30, 30)),
     "corner": Polygon(vertices_mm=((30, 30), (50, 30), (50, 50)), stroke=ALONG),
     "pivot": Polygon(
-        vertices_mm=((28, 28), (50, 28), (50, 50), (28, 50)), stroke=ALONG, markers=Markers()
+        vertices_mm=((28, 28), (50, 28), (50, 50), (28, 50)), stroke=ALONG, markers=VertexMarkers()
     ),
     "label": Label(text="map", place_mm=(30, 30), angle_deg=33),
     "image of a pixel": Image(file="one.png", place_mm=(30, 30), width_mm=0.1, height_mm=0.1),
@@ -172,10 +180,10 @@ FAR_AWAY = {
     ),
     "tile": Tile(width_mm=7, height_mm=0.1, part=RadialGrating(center_mm=(3, 0), ridge_mm=1)),
     "circle": Circle(center_mm=(FAR, 30), radius_mm=FAR - 30, stroke=ALONG),
-    "line": Line(
+    "line": StraightLine(
         start_mm=(-FAR, -FAR), end_mm=(FAR, FAR), stroke=wide(20, along=Along(ridge_mm=1))
     ),
-    "stroke of ten metres": Line(start_mm=(0, 0), end_mm=(1, 0), stroke=wide(10_000)),
+    "stroke of ten metres": StraightLine(start_mm=(0, 0), end_mm=(1, 0), stroke=wide(10_000)),
 }
 
 
@@ -194,7 +202,7 @@ def test_places_ten_metres_away(place, rng):
         Polygon(
             vertices_mm=((x - 20, y - 20), (x + 20, y - 20), (x, y + 20)),
             stroke=ALONG,
-            markers=Markers(),
+            markers=VertexMarkers(),
         ),
     )
     for operation in ("maximum", "overwrite"):
@@ -212,7 +220,7 @@ MOVING = {
         radius_mm=20,
         stroke=wide(9, along=Along(ridge_mm=3, gap_mm=0.7, velocity_mm_s=333.3)),
     ),
-    "contours": Path(
+    "contours": PathShape(
         contours_mm=(SQUARE, ((20, 20), (30, 20), (30, 33))),
         closed=True,
         stroke=wide(
@@ -268,8 +276,8 @@ def test_dotted_shapes_with_hardly_room(rng):
     dots = Dotting(dot=DotStyle(radius_mm=3), separation_mm=4, vertex_vibration=Vibration())
     for shape in (
         Circle(center_mm=(30, 30), radius_mm=0.5, dots=dots),
-        Line(start_mm=(30, 30), end_mm=(30.00001, 30), dots=dots),
+        StraightLine(start_mm=(30, 30), end_mm=(30.00001, 30), dots=dots),
         Polygon(vertices_mm=NEEDLE, dots=dots, fill=Fill(texture=Uniform(level=0.5), blended=True)),
-        Path(contours_mm=(STEPS,), dots=dots),
+        PathShape(contours_mm=(STEPS,), dots=dots),
     ):
         everywhere(scene_of(shape), rng, count=4)

@@ -7,7 +7,7 @@ import numpy as np
 from vbraille.display import Display
 from vbraille.render.scene.canvas import SceneMap
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Group, Line
+from vbraille.scene.patterns import Circle, Group, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, UniformVibration
@@ -18,7 +18,7 @@ SCENE = Scene(
     elements=(
         LinearGrating(ridge_mm=7.0, gap_mm=1.0, wave_angle_deg=20.0),
         Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke(vibration=Vibration())),
-        Line(start_mm=(0.0, 0.0), end_mm=(60.0, 40.0), stroke=Stroke(width_mm=2.0)),
+        StraightLine(start_mm=(0.0, 0.0), end_mm=(60.0, 40.0), stroke=Stroke(width_mm=2.0)),
     ),
 )
 

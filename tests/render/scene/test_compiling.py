@@ -15,7 +15,7 @@ from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Fill, Group, Image, Line, Tile
+from vbraille.scene.patterns import Circle, Fill, Group, Image, StraightLine, Tile
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Along, Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
@@ -67,7 +67,7 @@ def test_neighbours_vibrate_against_each_other():
 
 
 def test_a_line_hides_what_is_beneath_it():
-    line = Line(start_mm=(0.0, 40.0), end_mm=(100.0, 40.0), stroke=Stroke(width_mm=4.0))
+    line = StraightLine(start_mm=(0.0, 40.0), end_mm=(100.0, 40.0), stroke=Stroke(width_mm=4.0))
     shown = frame(compiled(Uniform(level=0.25), line))
     _, y = actuators()
     across = np.abs(y - 40)
@@ -139,7 +139,7 @@ def test_poses_are_frames(dtype):
 
 def test_a_change_gives_what_compiling_anew_gives():
     elements = [
-        Line(
+        StraightLine(
             start_mm=(5.0 * n, 10.0),
             end_mm=(5.0 * n + 8, 60.0),
             stroke=Stroke(width_mm=2.0, along=Along() if n % 2 else None),
@@ -172,7 +172,7 @@ def test_the_head_tells_what_moves():
     still, moving = (
         compiled(LinearGrating(ridge_mm=2.0)),
         compiled(
-            Line(
+            StraightLine(
                 start_mm=(0, 0), end_mm=(9, 9), stroke=Stroke(vibration=Vibration(frequency_hz=30))
             )
         ),

@@ -14,7 +14,7 @@ from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Fill, Label, Line, Polygon
+from vbraille.scene.patterns import Circle, Fill, Label, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
@@ -79,7 +79,7 @@ def drawn(rng, center_mm):
     else:
         size_mm = rng.uniform(20, 32)
         start, end = corners(2, size_mm / 2)
-        pattern = Line(start_mm=start, end_mm=end, **look)
+        pattern = StraightLine(start_mm=start, end_mm=end, **look)
     about = Drawn(shape, center_mm, size_mm, turned_deg, kind, wave_mm, wave_deg, frequency_hz)
     return about, pattern
 

@@ -8,13 +8,13 @@ import pytest
 from tests.benchmarks.scenes import DISPLAY, nested, shapes, short_lines
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Fill, Group, Line
+from vbraille.scene.patterns import Circle, Fill, Group, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 
 _CIRCLE = Circle(center_mm=(40.0, 30.0), radius_mm=12.0, stroke=Stroke(width_mm=3.0))
-_LINE = Line(start_mm=(10.0, 10.0), end_mm=(60.0, 45.0), stroke=Stroke(width_mm=4.0))
+_LINE = StraightLine(start_mm=(10.0, 10.0), end_mm=(60.0, 45.0), stroke=Stroke(width_mm=4.0))
 _GRATING = LinearGrating(ridge_mm=3.0)
 
 

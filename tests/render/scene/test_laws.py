@@ -27,7 +27,7 @@ from vbraille.render.scene import reference
 from vbraille.scene.bounds import bounds
 from vbraille.scene.fitting import axial_cycle
 from vbraille.scene.moving import moved
-from vbraille.scene.patterns import Circle, Fill, Group, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import with_children
 
@@ -207,7 +207,7 @@ def regular(pattern):
         pattern = replace(pattern, velocity_deg_s=axial_cycle(pattern).length)
     if hasattr(pattern, "frequency_hz"):
         pattern = replace(pattern, frequency_hz=float(math.ceil(pattern.frequency_hz)))
-    if isinstance(pattern, Line | Circle | Polygon | Path):
+    if isinstance(pattern, StraightLine | Circle | Polygon | PathShape):
         pattern = _regular_shape(pattern)
     if isinstance(pattern, Polygon) and pattern.markers is not None:
         swing = _whole(pattern.markers.vibration)

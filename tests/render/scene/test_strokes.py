@@ -15,8 +15,16 @@ from vbraille.render.scene.referencestrokes import (
     profile,
     textured,
 )
-from vbraille.scene.patterns import Circle, Dots, Fill, Line, Path, Polygon
-from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, Markers, Stroke, Vibration
+from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
+from vbraille.scene.strokes import (
+    Across,
+    Along,
+    DotStyle,
+    Dotting,
+    Stroke,
+    VertexMarkers,
+    Vibration,
+)
 from vbraille.scene.textures import Uniform
 
 R = np.linspace(-6, 6, 12_001)
@@ -79,12 +87,12 @@ def test_a_dot_with_a_plateau_is_eq_6_1():
 
 def test_a_texture_runs_on_through_the_round_ends_of_a_line():
     seen = coordinates(
-        Line(start_mm=(1, 1), end_mm=(4, 5), stroke=Stroke()), at([1, 4, 7], [1, 5, 9])
+        StraightLine(start_mm=(1, 1), end_mm=(4, 5), stroke=Stroke()), at([1, 4, 7], [1, 5, 9])
     )
     np.testing.assert_allclose(seen.along_mm, [0, 5, 10], atol=1e-12)
     np.testing.assert_allclose(seen.across_mm, [0, 0, 5], atol=1e-12)
     beside = coordinates(
-        Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke()), at([-3, 4], [4, -2])
+        StraightLine(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke()), at([-3, 4], [4, -2])
     )
     np.testing.assert_allclose(beside.across_mm, [5, 2])
     np.testing.assert_allclose(beside.along_mm, [-3, 4])
@@ -154,7 +162,7 @@ def _beside(turn, far):
 def test_contours_of_a_path_have_places_of_their_own():
     two = (((0, 0), (20, 0)), ((0, 10), (10, 10), (10, 20)))
     seen = coordinates(
-        Path(contours_mm=two, stroke=Stroke()), at([5, 3, 11, 12, -1], [1, 9, 15, 22, 11])
+        PathShape(contours_mm=two, stroke=Stroke()), at([5, 3, 11, 12, -1], [1, 9, 15, 22, 11])
     )
     np.testing.assert_allclose(seen.along_mm, [5, 3, 15, 22, -1])
     np.testing.assert_array_equal(seen.contour, [0, 1, 1, 1, 1])
@@ -163,7 +171,7 @@ def test_contours_of_a_path_have_places_of_their_own():
 def test_inside_is_by_the_even_odd_rule():
     ring = (SQUARE, ((10, 10), (20, 10), (20, 20), (10, 20)))
     fill = Fill(texture=Uniform())
-    path = Path(contours_mm=ring, closed=True, fill=fill)
+    path = PathShape(contours_mm=ring, closed=True, fill=fill)
     np.testing.assert_array_equal(
         is_inside(path, at([5, 15, 40], [5, 15, 5])), [True, False, False]
     )
@@ -179,11 +187,11 @@ def test_a_texture_along_cuts_into_the_stroke():
         )
 
     x = np.array([1, 2.5, 0.5])  # in the middle of a cut, between, and halfway in
-    line = Line(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke())
+    line = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke())
     np.testing.assert_allclose(felt(line, x), [0, 0.8, 0.4], atol=1e-12)
-    shallow = Line(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke(amplitude=0.5))
+    shallow = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke(amplitude=0.5))
     np.testing.assert_allclose(felt(shallow, x), [0.4, 0.8, 0.6], atol=1e-12)
-    whole = Line(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke(whole_edges=True))
+    whole = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke(whole_edges=True))
     np.testing.assert_allclose(felt(whole, x), [0, 0.8, 0.4], atol=1e-12)
     np.testing.assert_allclose(felt(whole, x, 3), [0.8, 0.8, 0.8], atol=1e-12)
     np.testing.assert_allclose(felt(line, x, 3), [0, 0.8, 0.4], atol=1e-12)
@@ -194,19 +202,19 @@ def test_what_is_up_vibrates_or_what_is_down():
     x = np.array([1, 2.5])  # in a cut, and between
     for of, low, high in (("high", [0, 0], [0, 1]), ("low", [1, 1], [0, 1])):
         stroke = Stroke(width_mm=8, along=along, vibration=Vibration(of=of))
-        line = Line(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke)
+        line = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke)
         np.testing.assert_allclose(felt(line, x, time_s=0.015), low, atol=1e-9)
         np.testing.assert_allclose(felt(line, x, time_s=0.005), high, atol=1e-9)
 
 
 def test_an_outlined_stroke_is_two_lines():
-    line = Line(
+    line = StraightLine(
         start_mm=(0, 0), end_mm=(30, 0), stroke=Stroke(width_mm=8, edge_mm=1, outlined=True)
     )
     np.testing.assert_allclose(felt(line, 15, [0, 2, 3, 3.5, 4]), [0, 0, 1, 0.5, 0], atol=1e-12)
 
 
-# Markers: figs. 8.19, 8.20
+# VertexMarkers: figs. 8.19, 8.20
 
 
 @pytest.mark.parametrize(
@@ -220,7 +228,7 @@ def test_an_outlined_stroke_is_two_lines():
     ],
 )
 def test_markers_are_within_their_bounds(span, inside, outside):
-    markers = Markers(span=span, blend_mm=0.05)
+    markers = VertexMarkers(span=span, blend_mm=0.05)
     square = Polygon(vertices_mm=SQUARE, markers=markers, stroke=Stroke(width_mm=4))
     here = at(*np.array([inside, outside, (15, 0), (-3, -3)]).T)
     share = marked(square, markers, 4, coordinates(square, here), here)
@@ -228,7 +236,7 @@ def test_markers_are_within_their_bounds(span, inside, outside):
 
 
 def test_a_marker_grows_over_its_blend_beyond_the_place_where_edges_meet():
-    markers = Markers(span="square", blend_mm=1)
+    markers = VertexMarkers(span="square", blend_mm=1)
     square = Polygon(vertices_mm=SQUARE, markers=markers, stroke=Stroke(width_mm=4))
     here = at([1, 2, 2.25, 2.75, 3, 4], 0)
     share = marked(square, markers, 4, coordinates(square, here), here)
@@ -239,7 +247,7 @@ def test_a_marker_takes_the_place_of_the_texture_within_the_profile():
     swing = Vibration(frequency_hz=10)
     polygon = Polygon(
         vertices_mm=SQUARE,
-        markers=Markers(span="square", vibration=swing),
+        markers=VertexMarkers(span="square", vibration=swing),
         stroke=Stroke(width_mm=4, edge_mm=1, amplitude=0.5, along=Along(ridge_mm=2)),
     )
     for time_s, want in ((0.025, 1), (0.075, 0)):
@@ -248,7 +256,7 @@ def test_a_marker_takes_the_place_of_the_texture_within_the_profile():
         )
     plain = Polygon(
         vertices_mm=SQUARE,
-        markers=Markers(vibration=None),
+        markers=VertexMarkers(vibration=None),
         stroke=Stroke(width_mm=4, along=Along(ridge_mm=2)),
     )
     np.testing.assert_allclose(felt(plain, [0, 30, 30], [0, 0, 30]), 1)
@@ -308,10 +316,12 @@ def test_a_strokes_mask_is_its_profile_at_full_amplitude_whatever_is_in_it():
     stroke = Stroke(
         width_mm=4, amplitude=0.2, along=Along(ridge_mm=2), vibration=Vibration(frequency_hz=1)
     )
-    line = Line(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke, amplitude=0.5)
+    line = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke, amplitude=0.5)
     x = np.linspace(3, 27, 50)
     np.testing.assert_allclose(mask(line, None, at(x, 1.5)), 0.5)
-    outlined = Line(start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=8, outlined=True))
+    outlined = StraightLine(
+        start_mm=(0, 0), end_mm=(9, 0), stroke=Stroke(width_mm=8, outlined=True)
+    )
     assert mask(outlined, None, at(5.0)) == 1
 
 

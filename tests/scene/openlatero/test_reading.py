@@ -15,7 +15,7 @@ from tests.scene.openlatero.files import (
 )
 from vbraille.errors import InputError
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.patterns import Circle, Group, Line, Path, Tile
+from vbraille.scene.patterns import Circle, Group, PathShape, StraightLine, Tile
 from vbraille.scene.strokes import Along, Stroke, Vibration
 from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform
 
@@ -80,7 +80,7 @@ def test_the_third_of_a_blend_weighs_the_first_which_is_our_second(read):
     (group,) = read(circle(), line(), grating(), operation="<operation>blend</operation>") \
         .scene.elements  # fmt: skip
     assert isinstance(group, Group)
-    assert [type(part) for part in group.parts] == [Line, Circle]
+    assert [type(part) for part in group.parts] == [StraightLine, Circle]
     assert isinstance(group.by, LinearGrating)
 
 
@@ -137,7 +137,7 @@ def test_places_have_a_comma_between_x_and_y_and_some_have_decimal_commas(
 def test_a_polygon_that_crosses_itself_is_a_path(read):
     found = read(polygon(stroke(), ("0,0", "30,30", "30,0", "0,30")))
     (path,) = found.scene.elements
-    assert isinstance(path, Path)
+    assert isinstance(path, PathShape)
     assert path.closed
     assert "its edges cross" in said(found)
 

@@ -14,14 +14,14 @@ from vbraille.scene.patterns import (
     Fill,
     Group,
     Label,
-    Line,
     LinearGrating,
     Polygon,
+    StraightLine,
     Uniform,
     UniformVibration,
     Use,
 )
-from vbraille.scene.patterns import Path as Lines
+from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.stock import stock_textures
@@ -172,7 +172,7 @@ SHAPES = {
     '<path d="M0 0h10v10z" stroke="#000" fill="none"/>': Lines(
         contours_mm=(((0, 0), (10, 0), (10, 10)),), closed=True, stroke=Stroke(width_mm=2)
     ),
-    '<line x1="1" y1="2" x2="3" y2="4" stroke="black" stroke-width="5"/>': Line(
+    '<line x1="1" y1="2" x2="3" y2="4" stroke="black" stroke-width="5"/>': StraightLine(
         start_mm=(1, 2), end_mm=(3, 4), stroke=Stroke(width_mm=5)
     ),
     '<polyline points="1,2 3,4 5,0" stroke="#808080" fill="none" stroke-width="3"/>': Lines(
@@ -435,7 +435,7 @@ def test_classes_that_are_not_right_are_said_with_their_line(tmp_path, line, sai
 def test_a_class_may_be_dotted_or_hidden(read):
     looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
     found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
-    assert element_of(found) == Line(start_mm=(0, 0), end_mm=(9, 0), dots=Dotting())
+    assert element_of(found) == StraightLine(start_mm=(0, 0), end_mm=(9, 0), dots=Dotting())
     with pytest.raises(ValueError, match="dots cannot be given beside a stroke"):
         ClassLook(dots=Dotting(), stroke=Stroke())
 

@@ -46,7 +46,7 @@ SPEED_RULE = (
 
 
 @dataclass(frozen=True, slots=True)
-class Stroke:
+class HandStroke:
     """A motion in one direction.
 
     Parameters
@@ -140,7 +140,7 @@ def read(trajectory: Trajectory) -> Reading:
 
 def strokes(
     x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], least_mm: float = REVERSAL_MM
-) -> list[Stroke]:
+) -> list[HandStroke]:
     """Cut a way into strokes.
 
     Strokes go to the right and to the left in turn. Each begins where the one before it ends, and
@@ -200,7 +200,9 @@ def turning_points(x_mm: NDArray[np.float64], least_mm: float) -> NDArray[np.int
     return at if abs(x_mm[at[-1]] - x_mm[at[0]]) >= least_mm else np.zeros(0, np.intp)
 
 
-def _stroke(x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], start: int, end: int) -> Stroke:
+def _stroke(
+    x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], start: int, end: int
+) -> HandStroke:
     way_mm = x_mm[start : end + 1]
     from_mm, to_mm = float(way_mm[0]), float(way_mm[-1])
     # No place of a stroke is beyond its ends.
@@ -211,7 +213,7 @@ def _stroke(x_mm: NDArray[np.float64], time_ns: NDArray[np.int64], start: int, e
     leaves, comes = end - int(np.argmax(at_start[::-1])), start + int(np.argmax(at_end))
     if leaves >= comes:  # a short way that only goes to and fro
         leaves, comes = start, end
-    return Stroke(
+    return HandStroke(
         start,
         end,
         from_mm,
@@ -230,6 +232,6 @@ def _pattern(seen: float, passes: int, rescans: int) -> str:
     return {1: ONE_PASS, 2: TWO_PASSES}.get(passes, MORE_PASSES)
 
 
-def _speed_mm_s(made: Iterable[Stroke]) -> float | None:
+def _speed_mm_s(made: Iterable[HandStroke]) -> float | None:
     seconds = sum(stroke.seconds for stroke in made)
     return sum(stroke.length_mm for stroke in made) / seconds if seconds > 0 else None

@@ -17,7 +17,7 @@ _FAR = 1e30  # stands for infinity
 EVERYWHERE = (-_FAR, -_FAR, _FAR, _FAR)
 
 
-class Placed(NamedTuple):
+class TableEntry(NamedTuple):
     """Something of a block that belongs into the table: pixels, or words of braille.
 
     Parameters
@@ -32,7 +32,7 @@ class Placed(NamedTuple):
     entries: NDArray[np.uint16]
 
 
-class Block:
+class WordBlock:
     """Words and constants of one pattern, gathered bit by bit.
 
     The words are said in the order in which the machine takes them. Each takes its constants from
@@ -78,7 +78,7 @@ class Block:
 
     def finish(
         self, box: tuple[float, float, float, float] | None
-    ) -> tuple[NDArray[np.float64], list[Placed]]:
+    ) -> tuple[NDArray[np.float64], list[TableEntry]]:
         """Make the numbers of the block, and tell what of it belongs into the table.
 
         Parameters
@@ -95,4 +95,4 @@ class Block:
         numbers = np.array([*within, *said, words.RETURN, *constants])
         if not np.isfinite(numbers).all():
             raise ValueError("a number of a pattern is not finite")
-        return numbers, [Placed(first + at, entries) for at, entries in self._entries]
+        return numbers, [TableEntry(first + at, entries) for at, entries in self._entries]

@@ -13,7 +13,7 @@ from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.elements import FlatElements, check_depth
 from vbraille.render.scene.flat import flatten
-from vbraille.render.scene.grid import Grid, assemble
+from vbraille.render.scene.grid import TileGrid, assemble
 from vbraille.render.scene.trees import ONE, mask
 from vbraille.render.work import ProgramKind
 from vbraille.scene.patterns import Group
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
 
 _THREADS = 2
-_Numbers = tuple["NDArray[np.float64]", "NDArray[np.uint16]", Grid]
+_Numbers = tuple["NDArray[np.float64]", "NDArray[np.uint16]", TileGrid]
 
 
 class SceneMap:
@@ -118,7 +118,7 @@ class SceneMap:
     def _assemble(self, flat: Flat | None) -> _Numbers:
         head = np.zeros(words.GRID)
         head[work.KIND] = ProgramKind.SCENE
-        grid = Grid.over(self._scene.canvas, 0.0)
+        grid = TileGrid.over(self._scene.canvas, 0.0)
         return (*assemble(head, self._scene.canvas, grid, flat), grid)
 
 

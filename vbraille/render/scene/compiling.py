@@ -10,7 +10,7 @@ from vbraille.render.machine import words
 from vbraille.render.program import Program, head
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.elements import FlatElements
-from vbraille.render.scene.grid import Grid, assemble
+from vbraille.render.scene.grid import TileGrid, assemble
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class SceneCompiler:
         flat = self._elements.put_together(scene, assets or _NO_ASSETS, self._rate_hz)
         display = self._display
         radius_mm = 0.5 * math.hypot(display.span_mm, display.depth_mm)
-        grid = Grid.over(scene.canvas, radius_mm, self._pruned)
+        grid = TileGrid.over(scene.canvas, radius_mm, self._pruned)
         numbers = head(display, ProgramKind.SCENE, words.GRID)
         numbers[words.COLUMN_MM] = display.column_pitch_mm
         numbers[words.ROW_MM] = display.row_pitch_mm

@@ -9,13 +9,13 @@ import numpy as np
 
 from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
-from vbraille.render.scene.blocks import Block
-from vbraille.render.scene.nodes import NodeKind, Reach
+from vbraille.render.scene.blocks import WordBlock
+from vbraille.render.scene.nodes import LeafReach, NodeKind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.render.scene.blocks import Placed
+    from vbraille.render.scene.blocks import TableEntry
     from vbraille.render.scene.nodes import Node
 
 
@@ -35,7 +35,7 @@ class Flat:
         Blocks of its leaves, and constants of its changes.
     changes : float64[j]
         Words of its changes; their arguments are places in ``numbers``.
-    entries : tuple of Placed
+    entries : tuple of TableEntry
         What belongs into the table, by places in ``numbers``.
     depth
         Rows of the stack that it takes.
@@ -47,7 +47,7 @@ class Flat:
     reach: NDArray[np.float64]
     numbers: NDArray[np.float64]
     changes: NDArray[np.float64]
-    entries: tuple[Placed, ...]
+    entries: tuple[TableEntry, ...]
     depth: int
     frequency_hz: float = 0.0
 
@@ -76,7 +76,7 @@ class _Flattening:
         self.reach: list[tuple[float, ...]] = []
         self.numbers: list[NDArray[np.float64]] = []
         self.changes: list[int] = []
-        self.entries: list[Placed] = []
+        self.entries: list[TableEntry] = []
         self._size = 0
 
     def add(self, node: Node, ordinal: int = 0) -> int:
@@ -101,7 +101,7 @@ class _Flattening:
 
     def _add_leaf(self, node: Node, row: list[float], number: int) -> None:
         assert node.say is not None
-        block = Block()
+        block = WordBlock()
         kept = node.say(block, node.parts)
         places = [place + block.first_constant for place in kept]
         numbers, entries = block.finish(node.box)
@@ -111,7 +111,7 @@ class _Flattening:
         if node.box is None or node.box.is_empty:
             return
         if not node.enclosed:
-            self.reach.append((number, 0.0, Reach.BOX, *node.box, 0.0))
+            self.reach.append((number, 0.0, LeafReach.BOX, *node.box, 0.0))
             return
         for index, enclosed in enumerate(node.enclosed):
             part = places[index] if node.parts else 0

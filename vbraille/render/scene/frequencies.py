@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.scene.patterns import Circle, Dots, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 from vbraille.scene.walking import each
 
@@ -57,7 +57,7 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
             yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
     elif isinstance(pattern, Dots):
         yield from _of(pattern.dot.vibration)
-    elif isinstance(pattern, Line | Circle | Polygon | Path):
+    elif isinstance(pattern, StraightLine | Circle | Polygon | PathShape):
         if pattern.stroke is not None:
             yield from _of(pattern.stroke.vibration)
             along = pattern.stroke.along

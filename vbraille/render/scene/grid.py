@@ -29,7 +29,7 @@ _MOST_TILES = 40_000
 
 
 @dataclass(frozen=True, slots=True)
-class Grid:
+class TileGrid:
     """Tiles over a canvas.
 
     Parameters
@@ -57,7 +57,7 @@ class Grid:
     @classmethod
     def over(
         cls, canvas: Canvas, radius_mm: float, pruned: bool = True, tile_mm: float = TILE_MM
-    ) -> Grid:
+    ) -> TileGrid:
         """Lay a grid over a canvas, for arrays of a radius; not pruned it is one tile."""
         width_mm, height_mm = canvas.width_mm + 2 * radius_mm, canvas.height_mm + 2 * radius_mm
         # The array is on the canvas still where its centre is on the grid's far edge.
@@ -71,7 +71,7 @@ class Grid:
 
 
 def assemble(
-    head: NDArray[np.float64], canvas: Canvas, grid: Grid, flat: Flat | None
+    head: NDArray[np.float64], canvas: Canvas, grid: TileGrid, flat: Flat | None
 ) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
     """Make the numbers and the table of a program.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.render.scene.blocks import Block
+    from vbraille.render.scene.blocks import WordBlock
     from vbraille.scene.bounds import Box
 
 
@@ -34,7 +34,7 @@ class Pushes(IntEnum):
     COVER = 2  # a deflection whose mask is 1 everywhere
 
 
-class Reach(IntEnum):
+class LeafReach(IntEnum):
     """What encloses a leaf or a part of it."""
 
     BOX = 0  # left, top, right, bottom
@@ -46,7 +46,7 @@ class Reach(IntEnum):
 class Enclosed:
     """What a leaf or a part of it lies in."""
 
-    kind: Reach
+    kind: LeafReach
     numbers: tuple[float, float, float, float]
     reach_mm: float = 0.0
 
@@ -84,7 +84,7 @@ class Node:
 
     kind: NodeKind
     children: tuple[Node, ...] = ()
-    say: Callable[[Block, bool], list[int]] | None = None
+    say: Callable[[WordBlock, bool], list[int]] | None = None
     box: Box | None = None
     enclosed: tuple[Enclosed, ...] = ()
     parts: bool = False

@@ -40,9 +40,9 @@ from vbraille.scene.patterns import (
     Group,
     Image,
     Label,
-    Line,
-    Path,
+    PathShape,
     Polygon,
+    StraightLine,
     Tile,
 )
 from vbraille.scene.textures import (
@@ -156,7 +156,7 @@ def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
             if pattern.texture is None:
                 return values
             return values * deflection(pattern.texture, assets, at)
-        case Line() | Circle() | Polygon() | Path():
+        case StraightLine() | Circle() | Polygon() | PathShape():
             return shape(pattern, assets, at)
         case Dots():
             return dots_deflection(_placed(pattern), pattern.dot, at)
@@ -167,14 +167,16 @@ def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     raise TypeError(f"a {type(pattern).__name__} is not rendered; resolve the scene first")
 
 
-def shape(shape: Line | Circle | Polygon | Path, assets: Assets, at: ActuatorPlaces) -> Values:
+def shape(
+    shape: StraightLine | Circle | Polygon | PathShape, assets: Assets, at: ActuatorPlaces
+) -> Values:
     """Compute a shape: its stroke or dots, and its fill, fig. 8.21.
 
     A blended fill is eq. 8.20 with the profile at full amplitude, or else a weak stroke would let
     the fill through. Another fill begins at the stroke's inner edge, and does not overlap it.
     """
     up = drawn(shape, at)
-    fill = None if isinstance(shape, Line) else shape.fill
+    fill = None if isinstance(shape, StraightLine) else shape.fill
     if fill is None:
         return up
     inner = np.where(is_inside(shape, at), deflection(fill.texture, assets, at), 0.0)
@@ -234,9 +236,9 @@ def mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
     match pattern:
         case Image():
             return intensity(opaque(assets.bitmaps[pattern]), at)
-        case Line() | Circle() | Polygon() | Path():
+        case StraightLine() | Circle() | Polygon() | PathShape():
             own = drawn_mask(pattern, at)
-            if isinstance(pattern, Line) or pattern.fill is None:
+            if isinstance(pattern, StraightLine) or pattern.fill is None:
                 return own
             return np.where(is_inside(pattern, at), 1.0, own)
         case Dots():

@@ -28,7 +28,7 @@ from vbraille.scene.joints import (
     places_along_mm,
     rounding_radius_mm,
 )
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 
     from vbraille.scene.fitting import Cycle
     from vbraille.scene.measures import Point
-    from vbraille.scene.strokes import Across, Along, DotStyle, Markers, Stroke, Vibration
+    from vbraille.scene.strokes import Across, Along, DotStyle, Stroke, VertexMarkers, Vibration
 
-AnyShape = Line | Circle | Polygon | Path
+AnyShape = StraightLine | Circle | Polygon | PathShape
 
 
 # Profiles
@@ -97,7 +97,7 @@ def coordinates(shape: AnyShape, at: ActuatorPlaces) -> Coordinates:
     """Compute the coordinates of places, seen from a shape: eqs. 8.15-8.19 and fig. 8.18."""
     if isinstance(shape, Circle):
         return _of_circle(shape, at)
-    if isinstance(shape, Line):
+    if isinstance(shape, StraightLine):
         return _of_contour((shape.start_mm, shape.end_mm), at, closed=False)
     if isinstance(shape, Polygon):
         seen = _of_contour(shape.vertices_mm, at, closed=True)
@@ -191,7 +191,7 @@ def is_inside(shape: AnyShape, at: ActuatorPlaces) -> NDArray[np.bool_]:
     if isinstance(shape, Circle):
         return np.hypot(*at.from_point(*shape.center_mm)) < shape.radius_mm
     inside = np.zeros(at.x_mm.shape, bool)
-    if isinstance(shape, Line):
+    if isinstance(shape, StraightLine):
         return inside
     contours = (shape.vertices_mm,) if isinstance(shape, Polygon) else shape.contours_mm
     for points in contours:
@@ -247,7 +247,7 @@ def _cut(along: Along, cycles: Sequence[Cycle], seen: Coordinates, time_s: float
 
 
 def marked(
-    polygon: Polygon, markers: Markers, width: float, seen: Coordinates, at: ActuatorPlaces
+    polygon: Polygon, markers: VertexMarkers, width: float, seen: Coordinates, at: ActuatorPlaces
 ) -> Values:
     """Compute the share of the markers in a polygon's stroke: 8.4.3, figs. 8.19 and 8.20.
 

@@ -16,12 +16,12 @@ from vbraille.scene.joints import (
     places_along_mm,
     rounding_radius_mm,
 )
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vbraille.render.scene.blocks import Block
+    from vbraille.render.scene.blocks import WordBlock
     from vbraille.scene.dotting import PlacedDot
     from vbraille.scene.fitting import Cycle
     from vbraille.scene.joints import Joint
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import Dots, Fill
     from vbraille.scene.strokes import Across, DotStyle, Stroke, Vibration
 
-AnyShape = Line | Circle | Polygon | Path
+AnyShape = StraightLine | Circle | Polygon | PathShape
 _SHARPEST = 1e9  # 1/mm, of a fill that does not fade in
 _OPEN = -1e30  # stands for minus infinity
 _NO_CORNER = (_OPEN, *(0.0,) * (places.CORNER_NUMBERS - 1))
@@ -38,14 +38,14 @@ _SWINGS = {"high": strokes.HIGH, "low": strokes.LOW}
 
 def fill_of(shape: AnyShape) -> Fill | None:
     """Fill of a shape, if it has one."""
-    return None if isinstance(shape, Line) else shape.fill
+    return None if isinstance(shape, StraightLine) else shape.fill
 
 
 # Words
 
 
 def say_shape(
-    shape: AnyShape, block: Block, say_fill: Callable[[Block], None] | None, parts: bool
+    shape: AnyShape, block: WordBlock, say_fill: Callable[[WordBlock], None] | None, parts: bool
 ) -> list[int]:
     """Say the deflection of a shape; the coordinates of its path are left for its mask.
 
@@ -94,7 +94,9 @@ def say_shape(
     return kept
 
 
-def say_shape_mask(shape: AnyShape, block: Block, parts: bool, paired: bool = False) -> list[int]:
+def say_shape_mask(
+    shape: AnyShape, block: WordBlock, parts: bool, paired: bool = False
+) -> list[int]:
     """Say the opacity mask of a shape, whose coordinates are there already if it is paired."""
     fill = fill_of(shape)
     if shape.stroke is None and fill is None:
@@ -116,7 +118,7 @@ def say_shape_mask(shape: AnyShape, block: Block, parts: bool, paired: bool = Fa
 def say_dots(
     style: DotStyle,
     dots: Sequence[PlacedDot],
-    block: Block,
+    block: WordBlock,
     parts: bool,
     vertices: Vibration | None = None,
 ) -> list[int]:
@@ -134,7 +136,7 @@ def say_dots(
 def say_dots_mask(
     style: DotStyle,
     dots: Sequence[PlacedDot],
-    block: Block,
+    block: WordBlock,
     parts: bool,
     across: Across | None,
     paired: bool = False,
@@ -228,14 +230,14 @@ def _drawn_radius(shape: AnyShape) -> float:
 # Parts
 
 
-def _keep_dots(dots: Sequence[PlacedDot], block: Block, parts: bool) -> list[int]:
+def _keep_dots(dots: Sequence[PlacedDot], block: WordBlock, parts: bool) -> list[int]:
     kept = block.keep((dot.x_mm, dot.y_mm, float(dot.vertex)) for dot in dots)
     if not parts:
         block.say_parts(kept)
     return kept
 
 
-def _say_places(shape: AnyShape, block: Block, parts: bool) -> list[int]:
+def _say_places(shape: AnyShape, block: WordBlock, parts: bool) -> list[int]:
     stroke = shape.stroke
     along = stroke is not None and stroke.along is not None
     marked = isinstance(shape, Polygon) and shape.markers is not None and stroke is not None
@@ -269,11 +271,11 @@ def edges_of(shape: AnyShape) -> Iterator[tuple[Point, Point]]:
 
 def _contours(shape: AnyShape) -> tuple[tuple[tuple[Point, ...], ...], bool]:
     """Contours of a shape, and whether they are closed; a circle has none."""
-    if isinstance(shape, Line):
+    if isinstance(shape, StraightLine):
         return ((shape.start_mm, shape.end_mm),), False
     if isinstance(shape, Polygon):
         return (shape.vertices_mm,), True
-    return (shape.contours_mm, shape.closed) if isinstance(shape, Path) else ((), True)
+    return (shape.contours_mm, shape.closed) if isinstance(shape, PathShape) else ((), True)
 
 
 def _segments(shape: AnyShape, along: bool) -> Iterator[tuple[float, ...]]:

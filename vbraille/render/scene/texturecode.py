@@ -14,12 +14,12 @@ from vbraille.scene.measures import travel_deg
 from vbraille.scene.textures import Gradual, TurnPeak
 
 if TYPE_CHECKING:
-    from vbraille.render.scene.blocks import Block
+    from vbraille.render.scene.blocks import WordBlock
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.textures import AxialGrating, LinearGrating, Peak, RadialGrating
 
 
-def say_linear(grating: LinearGrating, block: Block) -> None:
+def say_linear(grating: LinearGrating, block: WordBlock) -> None:
     """Say a linear grating."""
     angle = math.radians(travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg))
     right, down = math.cos(angle), math.sin(angle)
@@ -29,14 +29,14 @@ def say_linear(grating: LinearGrating, block: Block) -> None:
     block.say(words.LINEAR, right, down, x * right + y * down, *waveform)
 
 
-def say_radial(grating: RadialGrating, block: Block) -> None:
+def say_radial(grating: RadialGrating, block: WordBlock) -> None:
     """Say a radial grating."""
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
     waveform = _waveform(cycle, grating.velocity_mm_s, grating.distortion)
     block.say(words.RADIAL, *grating.center_mm, *waveform)
 
 
-def say_axial(grating: AxialGrating, block: Block) -> None:
+def say_axial(grating: AxialGrating, block: WordBlock) -> None:
     """Say an axial grating."""
     cycle = axial_cycle(grating)
     waveform = _waveform(cycle, grating.velocity_deg_s, grating.distortion)
@@ -48,7 +48,7 @@ def say_axial(grating: AxialGrating, block: Block) -> None:
     block.say(words.AXIAL, *grating.center_mm, grating.start_deg, *fade, *waveform)
 
 
-def say_bitmap(bitmap: Bitmap, block: Block) -> None:
+def say_bitmap(bitmap: Bitmap, block: WordBlock) -> None:
     """Say a bitmap."""
     rows, columns = bitmap.intensities.shape
     outside = round(bitmap.outside * WHOLE)

@@ -10,7 +10,7 @@ from vbraille.render.machine import words
 from vbraille.render.machine.labelplaces import TABLE
 from vbraille.render.scene import shapecode, texturecode
 from vbraille.render.scene.brailleplaces import box_of, pack_label
-from vbraille.render.scene.nodes import Enclosed, Node, NodeKind, Pushes, Reach, joined
+from vbraille.render.scene.nodes import Enclosed, LeafReach, Node, NodeKind, Pushes, joined
 from vbraille.render.scene.shapecode import AnyShape, fill_of
 from vbraille.scene.bounds import bounds, drawn_radius_mm, is_everywhere
 from vbraille.scene.dotting import PlacedDot, dots_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from vbraille.render.scene.assets import Assets
-    from vbraille.render.scene.blocks import Block
+    from vbraille.render.scene.blocks import WordBlock
     from vbraille.render.scene.brailleplaces import PackedLabel
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.pattern import Pattern
@@ -217,7 +217,7 @@ def _pair(pattern: AnyShape | Dots, own: Node) -> Node:
 
 
 def _parted(
-    pattern: AnyShape | Dots, say: Callable[[Block, bool], list[int]], depth: int = 1
+    pattern: AnyShape | Dots, say: Callable[[WordBlock, bool], list[int]], depth: int = 1
 ) -> Node:
     """Leaf of a shape or of dots, with what they lie in."""
     box = bounds(pattern)
@@ -234,16 +234,16 @@ def _enclosed(pattern: AnyShape | Dots) -> Iterable[Enclosed]:
     """What each of the parts lies in, in their order."""
     if isinstance(pattern, Dots):
         radius = pattern.dot.radius_mm
-        return (Enclosed(Reach.CAPSULE, (x, y, x, y), radius) for x, y in pattern.centers_mm)
+        return (Enclosed(LeafReach.CAPSULE, (x, y, x, y), radius) for x, y in pattern.centers_mm)
     radius = drawn_radius_mm(pattern)
     if pattern.dots is not None:
         places = dots_of(pattern)
-        return (Enclosed(Reach.CAPSULE, (dot.x_mm, dot.y_mm) * 2, radius) for dot in places)
+        return (Enclosed(LeafReach.CAPSULE, (dot.x_mm, dot.y_mm) * 2, radius) for dot in places)
     if isinstance(pattern, Circle):
         ring = (*pattern.center_mm, pattern.radius_mm, 0.0)
-        return (Enclosed(Reach.RING, ring, radius),)
+        return (Enclosed(LeafReach.RING, ring, radius),)
     return (
-        Enclosed(Reach.CAPSULE, (*start, *end), radius)
+        Enclosed(LeafReach.CAPSULE, (*start, *end), radius)
         for start, end in shapecode.edges_of(pattern)
     )
 
@@ -257,7 +257,7 @@ def _image(pattern: Image, assets: Assets) -> Node:
 # What leaves say
 
 
-def say_whole(node: Node, block: Block) -> None:
+def say_whole(node: Node, block: WordBlock) -> None:
     """Say all of a tree in one block, wherever its parts are."""
     if node.kind is NodeKind.LEAF:
         assert node.say is not None
@@ -284,7 +284,7 @@ def say_whole(node: Node, block: Block) -> None:
         block.say(operation, *constants)
 
 
-def _say_texture(pattern: AnyPattern, block: Block, _parts: bool) -> list[int]:
+def _say_texture(pattern: AnyPattern, block: WordBlock, _parts: bool) -> list[int]:
     match pattern:
         case Uniform():
             block.say(words.LEVEL, pattern.level)
@@ -301,7 +301,7 @@ def _say_texture(pattern: AnyPattern, block: Block, _parts: bool) -> list[int]:
     return []
 
 
-def _say_one(block: Block, _parts: bool) -> list[int]:
+def _say_one(block: WordBlock, _parts: bool) -> list[int]:
     block.say(words.LEVEL, 1.0)
     return []
 
@@ -309,51 +309,51 @@ def _say_one(block: Block, _parts: bool) -> list[int]:
 ONE = Node(NodeKind.LEAF, say=_say_one, one=True)
 
 
-def _say_bitmap(bitmap: Bitmap, block: Block, _parts: bool) -> list[int]:
+def _say_bitmap(bitmap: Bitmap, block: WordBlock, _parts: bool) -> list[int]:
     texturecode.say_bitmap(bitmap, block)
     return []
 
 
-def _say_label(word: int, packed: PackedLabel, block: Block, _parts: bool) -> list[int]:
+def _say_label(word: int, packed: PackedLabel, block: WordBlock, _parts: bool) -> list[int]:
     block.say_table(word, *packed.numbers.tolist(), at=TABLE, entries=packed.table)
     return []
 
 
-def _say_tile(tile: Tile, part: Node, block: Block, _parts: bool) -> list[int]:
+def _say_tile(tile: Tile, part: Node, block: WordBlock, _parts: bool) -> list[int]:
     block.say(words.WRAP, *tile.origin_mm, tile.width_mm, tile.height_mm)
     say_whole(part, block)
     block.say(words.UNWRAP)
     return []
 
 
-def _say_changed(say, changes, block: Block, parts: bool) -> list[int]:
+def _say_changed(say, changes, block: WordBlock, parts: bool) -> list[int]:
     kept = say(block, parts)
     for operation, constants in changes:
         block.say(operation, *constants)
     return kept
 
 
-def _say_pair(say, say_mask, block: Block, parts: bool) -> list[int]:
+def _say_pair(say, say_mask, block: WordBlock, parts: bool) -> list[int]:
     kept = say(block, parts)
     say_mask(block, parts, paired=True)
     return kept
 
 
-def _say_shape(pattern: AnyShape, say_fill, block: Block, parts: bool) -> list[int]:
+def _say_shape(pattern: AnyShape, say_fill, block: WordBlock, parts: bool) -> list[int]:
     return shapecode.say_shape(pattern, block, say_fill, parts)
 
 
 def _say_shape_mask(
-    pattern: AnyShape, block: Block, parts: bool, paired: bool = False
+    pattern: AnyShape, block: WordBlock, parts: bool, paired: bool = False
 ) -> list[int]:
     return shapecode.say_shape_mask(pattern, block, parts, paired)
 
 
-def _say_dots(pattern: Dots, block: Block, parts: bool) -> list[int]:
+def _say_dots(pattern: Dots, block: WordBlock, parts: bool) -> list[int]:
     return shapecode.say_dots(pattern.dot, _placed(pattern), block, parts)
 
 
-def _say_dots_mask(pattern: Dots, block: Block, parts: bool, paired: bool = False) -> list[int]:
+def _say_dots_mask(pattern: Dots, block: WordBlock, parts: bool, paired: bool = False) -> list[int]:
     style, dots = pattern.dot, _placed(pattern)
     return shapecode.say_dots_mask(style, dots, block, parts, style.across, paired)
 

@@ -10,8 +10,8 @@ from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, vibration
 from vbraille.scene.openlatero.strokes import across_of, drawn, edge_of, filling
-from vbraille.scene.patterns import Circle, Dots, Line, Path, Polygon
-from vbraille.scene.strokes import DotStyle, Markers, Vibration
+from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
+from vbraille.scene.strokes import DotStyle, VertexMarkers, Vibration
 
 if TYPE_CHECKING:
     from vbraille.scene.measures import Point
@@ -43,7 +43,7 @@ def read_line(element: GenElement, context: GenContext) -> AnyPattern | None:
     look = drawn(element, context)
     if look.stroke is None and look.dots is None:
         return _nothing(element)
-    return Line(
+    return StraightLine(
         start_mm=start, end_mm=end, amplitude=look.intensity, stroke=look.stroke, dots=look.dots
     )
 
@@ -124,12 +124,12 @@ def _path(
     vertices: tuple[Point, ...],
     look: StrokeLook,
     fill: Fill | None,
-    markers: Markers | None,
-) -> Path:
+    markers: VertexMarkers | None,
+) -> PathShape:
     """Path for a polygon whose edges cross, which no polygon is here."""
     lost = " and its markers are left out" if markers is not None else ""
     element.say(f"its edges cross, so it is a path here; textures jump at its corners{lost}")
-    return Path(
+    return PathShape(
         contours_mm=(vertices,),
         closed=True,
         amplitude=look.intensity,
@@ -200,7 +200,7 @@ def _vertices(element: GenElement) -> tuple[Point, ...]:
     return tuple(kept)
 
 
-def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> Markers | None:
+def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> VertexMarkers | None:
     """Markers at the vertices of a polygon."""
     span = corner.word("span", _SPANS, "circle intercept")
     kind = corner.word("type", ("solid", "invert vib"), "solid")
@@ -215,7 +215,7 @@ def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> Marke
             corner.say("markers are plain here, and have the texture of the stroke there")
         swing = Vibration() if stroke.vibration is None else None
     corner.forget()
-    return Markers(span=_SPANS[span], angle_deg=angle, blend_mm=blend, vibration=swing)  # pyright: ignore[reportArgumentType]
+    return VertexMarkers(span=_SPANS[span], angle_deg=angle, blend_mm=blend, vibration=swing)  # pyright: ignore[reportArgumentType]
 
 
 def _fill(element: GenElement, context: GenContext, look: StrokeLook) -> Fill | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.measures import LEAST_MM
-from vbraille.scene.patterns import Circle, Line, Path, Polygon
+from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 from vbraille.scene.svg.numbers import length_px, numbers_of
 from vbraille.scene.svg.outlines import Contour, contour, contours_of_path
 from vbraille.scene.svg.tree import name_of
@@ -129,10 +129,10 @@ def patterns_of(
             return [Polygon(vertices_mm=rings[0], fill=drawn.fill, **lines)]
         edges = _edges(rings) if nonzero and len(rings) > 1 else rings
         if edges and (not shown or (edges == rings and all(one.closed for one in contours))):
-            return [Path(contours_mm=tuple(edges), closed=True, fill=drawn.fill, **lines)]
+            return [PathShape(contours_mm=tuple(edges), closed=True, fill=drawn.fill, **lines)]
         found: list[AnyPattern] = []
         if edges:
-            found.append(Path(contours_mm=tuple(edges), closed=True, fill=drawn.fill))
+            found.append(PathShape(contours_mm=tuple(edges), closed=True, fill=drawn.fill))
     else:
         found = []
         if _is_polygon(name, contours) and not _crosses(rings[0]):
@@ -141,11 +141,11 @@ def patterns_of(
         return found
     if name == "line" and contours:
         start, end = contours[0].points_mm
-        return [Line(start_mm=start, end_mm=end, **lines)]
+        return [StraightLine(start_mm=start, end_mm=end, **lines)]
     for closed in (True, False):
         points = tuple(one.points_mm for one in contours if one.closed == closed)
         if points:
-            found.append(Path(contours_mm=points, closed=closed, **lines))
+            found.append(PathShape(contours_mm=points, closed=closed, **lines))
     return found
 
 
