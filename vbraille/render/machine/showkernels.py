@@ -8,7 +8,7 @@ call it by its name, as they call functions of the C library.
 import math
 
 from llvmlite import binding, ir
-from numba import carray, cfunc, config, types
+from numba import carray, cfunc, config, types  # pyright: ignore[reportPrivateImportUsage]
 from numba.extending import intrinsic
 
 from vbraille.caching import keep_compiled
@@ -72,8 +72,8 @@ def _call(
     return types.void(*(types.int64,) * 6, *(types.float64,) * 5), code
 
 
-if config.DISABLE_JIT:
-    run = evaluate
+if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    run = evaluate  # pyright: ignore[reportAssignmentType]
 else:
     # Kept as long as the process, for compiled code calls it by its address.
     _evaluate = cfunc(_SIGNATURE, cache=keep_compiled(), error_model="numpy", nogil=True)(
@@ -84,7 +84,7 @@ else:
     @compiled
     def run(numbers, table, rows, start, count, time, left, right, top, bottom):
         """Do as `scenekernels.evaluate` does, which is not compiled into the caller."""
-        _call(
+        _call(  # pyright: ignore[reportCallIssue]
             numbers.ctypes.data,
             table.ctypes.data,
             rows.ctypes.data,

@@ -305,6 +305,7 @@ def _segments_along(
     corners = None
     marks: list[tuple[float, ...]] = [()] * count
     middles: Sequence[float] = ()
+    corner_numbers: Sequence[tuple[float, ...]] = ()
     if isinstance(shape, Polygon):
         if shape.join == "rounded":
             corners = joints(points, rounding_radius_mm(shape))
@@ -314,7 +315,6 @@ def _segments_along(
             marks = [_mark(shape, corner) for corner in inner]
             # Directions at a corner are alike for every radius.
             corner_numbers = [_corner(corner, 0.0, turns=False) for corner in inner]
-            starts = ends = corner_numbers
     begin = 0.0
     for i, segment in enumerate(segments):
         length = segment[places.LENGTH]
@@ -329,7 +329,7 @@ def _segments_along(
             end = _corner(there, middles[i + 1])
             own = middles[i] + here.arc_mm / 2 - here.reach_mm
         elif marks[i]:
-            start, end, own = starts[i], ends[(i + 1) % count], begin
+            start, end, own = corner_numbers[i], corner_numbers[(i + 1) % count], begin
         else:
             start, end, own = _NO_CORNER, _NO_CORNER, begin
         yield (*segment, *half, *end_half, bias, own, *texture, *start, *end, *marks[i])

@@ -238,7 +238,8 @@ def _enclosed(pattern: AnyShape | Dots) -> Iterable[Enclosed]:
     radius = drawn_radius_mm(pattern)
     if pattern.dots is not None:
         places = dots_of(pattern)
-        return (Enclosed(LeafReach.CAPSULE, (dot.x_mm, dot.y_mm) * 2, radius) for dot in places)
+        dots = ((dot.x_mm, dot.y_mm) for dot in places)
+        return (Enclosed(LeafReach.CAPSULE, (x, y, x, y), radius) for x, y in dots)
     if isinstance(pattern, Circle):
         ring = (*pattern.center_mm, pattern.radius_mm, 0.0)
         return (Enclosed(LeafReach.RING, ring, radius),)
