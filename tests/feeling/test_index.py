@@ -6,8 +6,9 @@ import pytest
 from vbraille.feeling.index import SceneIndex
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.reference import opacity
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, Uniform
 

@@ -14,8 +14,11 @@ from vbraille.pictures.looks import RAISED
 from vbraille.pictures.raised import MARGIN_MM, raised_drawing
 from vbraille.render import LATERO
 from vbraille.render.scene.assets import Assets, Written
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Label, Polygon, StraightLine
+from vbraille.scene.dots import Dots
+from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Along, DotStyle, Dotting, Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform, UniformVibration
 

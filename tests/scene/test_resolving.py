@@ -9,23 +9,23 @@ import pytest
 from tests.tiers import heavy
 from vbraille.errors import InputError
 from vbraille.scene import moving, naming, walking
+from vbraille.scene.dots import Dots
+from vbraille.scene.labels import Label
 from vbraille.scene.moving import LISTS, ONE, SEVERAL, moved
 from vbraille.scene.patterns import (
     AnyPattern,
     Circle,
-    Dots,
     Fill,
     Group,
     Image,
-    Label,
     PathShape,
     Polygon,
-    StraightLine,
     Tile,
     Use,
 )
 from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import with_children

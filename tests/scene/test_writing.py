@@ -7,9 +7,10 @@ from hypothesis import given
 
 from tests.render.scene.scenes import scenes
 from tests.tiers import examples
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, StraightLine, Use
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Use
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
 from vbraille.scene.textures import LinearGrating, Peak, Uniform
 from vbraille.scene.writing import LONGEST, write_scene
@@ -105,7 +106,7 @@ def test_the_text_has_one_thing_on_a_line_and_nothing_that_is_as_usual():
         operation = "overwrite"
         inverted = true
 
-        # StraightLine 7.
+        # Line 7.
         #
         [[elements.parts]]
         kind = "uniform"

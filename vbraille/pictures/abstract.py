@@ -24,17 +24,10 @@ from vbraille.pictures.inkshapes import (
 from vbraille.pictures.looks import ABSTRACT, InkLook
 from vbraille.pictures.regions import TEXTURES, Regions
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Group,
-    Image,
-    Label,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-)
+from vbraille.scene.dots import Dots
+from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.textures import Uniform, UniformVibration
 
 if TYPE_CHECKING:

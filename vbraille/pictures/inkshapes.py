@@ -18,7 +18,8 @@ from vbraille.pictures.hatching import dotted
 from vbraille.pictures.ink import InkDiscs, InkLine
 from vbraille.scene.dotting import dots_of
 from vbraille.scene.fitting import stroke_cycles
-from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
     from vbraille.pictures.ink import Contours, PlainMark
     from vbraille.pictures.looks import InkLook
     from vbraille.render.scene.assets import Written
+    from vbraille.scene.dots import Dots
     from vbraille.scene.fitting import Cycle
-    from vbraille.scene.patterns import Label
+    from vbraille.scene.labels import Label
     from vbraille.scene.strokes import DotStyle, Stroke
 
 AnyShape = StraightLine | Circle | Polygon | PathShape

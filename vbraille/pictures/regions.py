@@ -11,7 +11,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from vbraille.pictures.scenes import map_places
-from vbraille.scene.patterns import Group, Image, Label, Tile
+from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Group, Image, Tile
 from vbraille.scene.scene import Scene
 from vbraille.scene.textures import (
     AxialGrating,

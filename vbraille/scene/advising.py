@@ -8,8 +8,10 @@ from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.labels import Label
 from vbraille.scene.moving import ONE
-from vbraille.scene.patterns import Circle, Group, Image, Label, PathShape, Polygon, Shape, Tile
+from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, Tile
+from vbraille.scene.shapes import Shape
 from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import each, with_children
 

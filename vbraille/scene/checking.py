@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.scene import advising, vibrating
 from vbraille.scene.bounds import Box, bounds
-from vbraille.scene.patterns import Label
+from vbraille.scene.labels import Label
 from vbraille.scene.walking import each
 from vbraille.wording import count
 

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
+from vbraille.scene.dots import ImageDots
 from vbraille.scene.including import form_of
-from vbraille.scene.patterns import Image, ImageDots
+from vbraille.scene.patterns import Image
 from vbraille.scene.walking import with_children
 from vbraille.scene.writing import LONGEST, write_scene
 

@@ -22,7 +22,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

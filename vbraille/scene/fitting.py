@@ -11,7 +11,8 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm, places_along_mm
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 
 if TYPE_CHECKING:
     from vbraille.scene.textures import AxialGrating, TurnPeak

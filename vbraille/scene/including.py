@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
+from vbraille.scene.dots import ImageDots
+from vbraille.scene.labels import Label
 from vbraille.scene.opened import Origins
 from vbraille.scene.origins import ForeignOrigin, TomlOrigin
-from vbraille.scene.patterns import AnyPattern, Group, Image, ImageDots, Label, Operation
+from vbraille.scene.patterns import AnyPattern, Group, Image, Operation
 from vbraille.scene.resolving import MOST_PATTERNS
 from vbraille.scene.scene import Scene
 from vbraille.scene.scenefile import SceneFile

@@ -34,7 +34,8 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
     ValueError
         If something would be farther than 10 m from the origin.
 
-    >>> from vbraille.scene.patterns import Circle, Stroke
+    >>> from vbraille.scene.patterns import Circle
+    >>> from vbraille.scene.strokes import Stroke
     >>> moved(Circle(center_mm=(10, 20), radius_mm=5, stroke=Stroke()), (1, -2)).center_mm
     (11, 18)
     """

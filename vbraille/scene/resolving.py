@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, NoReturn
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
+from vbraille.scene.dots import ImageDots
 from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.opened import Origins
-from vbraille.scene.patterns import Group, ImageDots, Use
+from vbraille.scene.patterns import Group, Use
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.walking import each, placed_children, with_children
 from vbraille.wording import nearest

@@ -6,7 +6,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from vbraille.scene.bounds import bounds
-from vbraille.scene.patterns import Circle, Dots, Group, PathShape, Polygon, Shape
+from vbraille.scene.dots import Dots
+from vbraille.scene.patterns import Circle, Group, PathShape, Polygon
+from vbraille.scene.shapes import Shape
 from vbraille.scene.textures import UniformVibration
 from vbraille.scene.walking import children
 
@@ -14,7 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from vbraille.scene.bounds import Box
-    from vbraille.scene.patterns import AnyPattern, Image, Label, Operation
+    from vbraille.scene.labels import Label
+    from vbraille.scene.patterns import AnyPattern, Image, Operation
     from vbraille.scene.strokes import Vibration
 
     Boxes = Mapping[Image | Label, Box]

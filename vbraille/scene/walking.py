@@ -25,7 +25,8 @@ def children(pattern: AnyPattern) -> tuple[AnyPattern, ...]:
 def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
     """Patterns that stand directly in a pattern, with the keys that lead from it to each.
 
-    >>> from vbraille.scene.patterns import Tile, Uniform
+    >>> from vbraille.scene.patterns import Tile
+    >>> from vbraille.scene.textures import Uniform
     >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
     [('part',)]
     """

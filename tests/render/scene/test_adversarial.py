@@ -8,18 +8,10 @@ import pytest
 from tests.render.scene.scenes import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
 from tests.tiers import by_tier, heavy
 from vbraille.render.scene import reference
-from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Fill,
-    Group,
-    Image,
-    Label,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-)
+from vbraille.scene.dots import Dots
+from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon, Tile
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import (
     Across,
     Along,

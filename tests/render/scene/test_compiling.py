@@ -15,8 +15,9 @@ from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Fill, Group, Image, StraightLine, Tile
+from vbraille.scene.patterns import Circle, Fill, Group, Image, Tile
 from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Along, Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 

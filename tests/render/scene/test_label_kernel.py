@@ -21,7 +21,7 @@ from vbraille.render.scene.brailleplaces import (
     size_mm,
 )
 from vbraille.render.scene.referencebraille import label_deflections, label_opacity
-from vbraille.scene.patterns import Label
+from vbraille.scene.labels import Label
 
 _FIRST, _WORDS = 7, 11  # a label's numbers and words stand anywhere in those of a program
 

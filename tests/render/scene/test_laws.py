@@ -27,7 +27,8 @@ from vbraille.render.scene import reference
 from vbraille.scene.bounds import bounds
 from vbraille.scene.fitting import axial_cycle
 from vbraille.scene.moving import moved
-from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
 from vbraille.scene.walking import with_children
 

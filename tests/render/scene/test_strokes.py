@@ -15,7 +15,9 @@ from vbraille.render.scene.referencestrokes import (
     profile,
     textured,
 )
-from vbraille.scene.patterns import Circle, Dots, Fill, PathShape, Polygon, StraightLine
+from vbraille.scene.dots import Dots
+from vbraille.scene.patterns import Circle, Fill, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import (
     Across,
     Along,
@@ -214,7 +216,7 @@ def test_an_outlined_stroke_is_two_lines():
     np.testing.assert_allclose(felt(line, 15, [0, 2, 3, 3.5, 4]), [0, 0, 1, 0.5, 0], atol=1e-12)
 
 
-# VertexMarkers: figs. 8.19, 8.20
+# Markers: figs. 8.19, 8.20
 
 
 @pytest.mark.parametrize(

@@ -251,10 +251,12 @@ CASES = {
 }
 
 
-def places(count=80):
+def places(canvas, count=80):
     chance = random.Random(5)
     near = [(chance.uniform(12, 78), chance.uniform(12, 68)) for _ in range(count)]
-    return near + [(chance.uniform(-20, 290), chance.uniform(-20, 230)) for _ in range(count // 5)]
+    width, height = canvas.width_mm, canvas.height_mm
+    anywhere = [(chance.uniform(0, width), chance.uniform(0, height)) for _ in range(count // 5)]
+    return near + anywhere
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -263,7 +265,7 @@ def test_a_scene_feels_as_there(name, tmp_path):
     path = tmp_path / "old.gen"
     path.write_text(text)
     found = read_gen(path).scene
-    at = places()
+    at = places(found.canvas)
     x, y = zip(*at, strict=True)
     for parity, sign, time in ((0, 1.0, 0.0), (1, -1.0, 0.0137)):
         ours = deflections(found, Assets(), x, y, parity, time)

@@ -9,14 +9,13 @@ from hypothesis import strategies as st
 
 from tests.tiers import examples, heavy
 from vbraille.errors import InputError
+from vbraille.scene.labels import Label
 from vbraille.scene.patterns import (
     Circle,
     Fill,
     Group,
-    Label,
     LinearGrating,
     Polygon,
-    StraightLine,
     Uniform,
     UniformVibration,
     Use,
@@ -24,6 +23,7 @@ from vbraille.scene.patterns import (
 from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scenefile import SceneFile
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.stock import stock_textures
 from vbraille.scene.strokes import Along, Dotting, Stroke
 from vbraille.scene.svg.colors import color_of, hue_of

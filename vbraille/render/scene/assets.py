@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.patterns import Image, Label
+    from vbraille.scene.labels import Label
+    from vbraille.scene.patterns import Image
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
+from vbraille.scene.dots import Dots
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 from vbraille.scene.walking import each
 

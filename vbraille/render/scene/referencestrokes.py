@@ -28,7 +28,8 @@ from vbraille.scene.joints import (
     places_along_mm,
     rounding_radius_mm,
 )
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

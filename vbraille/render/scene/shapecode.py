@@ -16,17 +16,19 @@ from vbraille.scene.joints import (
     places_along_mm,
     rounding_radius_mm,
 )
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from vbraille.render.scene.blocks import WordBlock
+    from vbraille.scene.dots import Dots
     from vbraille.scene.dotting import PlacedDot
     from vbraille.scene.fitting import Cycle
     from vbraille.scene.joints import Joint
     from vbraille.scene.measures import Point
-    from vbraille.scene.patterns import Dots, Fill
+    from vbraille.scene.patterns import Fill
     from vbraille.scene.strokes import Across, DotStyle, Stroke, Vibration
 
 AnyShape = StraightLine | Circle | Polygon | PathShape

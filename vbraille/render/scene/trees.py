@@ -13,9 +13,11 @@ from vbraille.render.scene.brailleplaces import box_of, pack_label
 from vbraille.render.scene.nodes import Enclosed, LeafReach, Node, NodeKind, Pushes, joined
 from vbraille.render.scene.shapecode import AnyShape, fill_of
 from vbraille.scene.bounds import bounds, drawn_radius_mm, is_everywhere
+from vbraille.scene.dots import Dots
 from vbraille.scene.dotting import PlacedDot, dots_of
+from vbraille.scene.labels import Label
 from vbraille.scene.opaque import bitmap_box, opaque
-from vbraille.scene.patterns import Circle, Dots, Group, Image, Label, Polygon, Tile
+from vbraille.scene.patterns import Circle, Group, Image, Polygon, Tile
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,

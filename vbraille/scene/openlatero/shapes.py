@@ -6,11 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.scene.crossing import meeting_edges
+from vbraille.scene.dots import Dots
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.context import SURFACE_MM, vibration
 from vbraille.scene.openlatero.strokes import across_of, drawn, edge_of, filling
-from vbraille.scene.patterns import Circle, Dots, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import DotStyle, VertexMarkers, Vibration
 
 if TYPE_CHECKING:
