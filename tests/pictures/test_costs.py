@@ -9,17 +9,18 @@ from vbraille.pictures.costs import costs_drawing, costs_words, draw_costs
 from vbraille.pictures.ink import InkArea, InkRaster, InkText
 
 MEAN_US = np.array([[10.0, 20.0, np.nan], [10.0, 10.0, 30.0]])
+FRAME_US = np.array([1.0, 1.0, 1.0, 5.0])
 
 
 def test_darker_squares_cost_more_and_white_ones_are_not_known():
-    drawing = costs_drawing(MEAN_US, 2.0, "house")
+    drawing = costs_drawing(MEAN_US, 2.0, "house", FRAME_US)
     raster = next(mark for mark in drawing.marks if isinstance(mark, InkRaster))
     assert raster.pixels.tolist() == [[230, 115, 255], [230, 230, 0]]
     assert raster.width_mm / raster.height_mm == pytest.approx(1.5)
 
 
 def test_the_histogram_counts_frames():
-    drawing = costs_drawing(MEAN_US, 2.0, "house", np.array([1.0, 1.0, 1.0, 5.0]))
+    drawing = costs_drawing(MEAN_US, 2.0, "house", FRAME_US)
     bars = next(mark for mark in drawing.marks if isinstance(mark, InkArea)).contours
     tall = [bar[:, 1].max() - bar[:, 1].min() for bar in bars]
     assert len(tall) == 2
@@ -37,7 +38,7 @@ def test_words_say_where_it_costs_most():
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_files(tmp_path, suffix):
     path = tmp_path / f"costs.{suffix}"
-    draw_costs(MEAN_US, 2.0, path, title="house")
+    draw_costs(MEAN_US, 2.0, path, title="house", frame_us=FRAME_US)
     assert path.stat().st_size > 500
     if suffix == "png":
         with Image.open(path) as image:
@@ -47,7 +48,9 @@ def test_files(tmp_path, suffix):
 
 def test_what_cannot_be_drawn_is_refused(tmp_path):
     with pytest.raises(InputError, match="end its name in"):
-        draw_costs(MEAN_US, 2.0, tmp_path / "a.gif", title="house")
+        draw_costs(MEAN_US, 2.0, tmp_path / "a.gif", title="house", frame_us=FRAME_US)
     with pytest.raises(InputError, match="no frame was on the canvas"):
-        draw_costs(np.full((2, 2), np.nan), 2.0, tmp_path / "a.png", title="house")
+        draw_costs(
+            np.full((2, 2), np.nan), 2.0, tmp_path / "a.png", title="house", frame_us=FRAME_US
+        )
     assert not list(tmp_path.iterdir())

@@ -35,7 +35,7 @@ def _turn(step: int) -> Callable[[Feeler], None]:
 
 
 def _does(name: str) -> Callable[[Feeler], None]:
-    """Give the method of a name."""
+    """Make a function that calls a method of the feeler."""
 
     def handler(feeler: Feeler) -> None:
         getattr(feeler, name)()

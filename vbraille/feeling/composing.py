@@ -1,12 +1,8 @@
-"""Programs of scenes, and how they look from above."""
+"""Programs of scenes."""
 
 from __future__ import annotations
 
-import io
-import math
 from typing import TYPE_CHECKING, Final
-
-import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.render import work
@@ -20,9 +16,6 @@ if TYPE_CHECKING:
     from vbraille.feeling.loading import LoadedScene
 
 _COMPILED: Final = ("multiply", "add", "maximum", "overwrite")  # others are a group's
-_MOST_PIXELS: Final = 300_000
-_FINEST_MM: Final = 0.25
-_MOST_BYTES: Final = 120_000
 
 
 class Composer:
@@ -85,27 +78,3 @@ def at_height(program: Program, y_mm: float) -> Program:
     numbers = program.numbers.copy()
     numbers[work.OWN_Y] = y_mm
     return Program(numbers, program.table)
-
-
-def seen_from_above(loaded: LoadedScene) -> bytes:
-    """Draw the deflection map of a scene as a PNG of some 100 kB: black is full deflection.
-
-    Lévesque 2009, 8.3.3; what vibrates is drawn as it is at the beginning.
-    """
-    # Only a live view needs these.
-    from PIL import Image
-
-    from vbraille.render.scene.canvas import SceneMap
-
-    canvas = loaded.scene.canvas
-    step_mm = max(_FINEST_MM, math.sqrt(canvas.width_mm * canvas.height_mm / _MOST_PIXELS))
-    scene_map = SceneMap(loaded.scene, loaded.assets)
-    while True:
-        x_mm = np.arange(step_mm / 2, max(canvas.width_mm, step_mm), step_mm)
-        y_mm = np.arange(step_mm / 2, max(canvas.height_mm, step_mm), step_mm)
-        inked = np.rint(255 * scene_map.deflections(x_mm, y_mm))
-        file = io.BytesIO()
-        Image.fromarray((255 - inked).astype(np.uint8)).save(file, "PNG")
-        if file.tell() <= _MOST_BYTES:
-            return file.getvalue()
-        step_mm *= 1.5

@@ -187,7 +187,7 @@ def _resolution_ns() -> int:
 
 
 def cost_map(costs: Costs, canvas: Canvas, step_mm: float = _MAP_MM) -> CostMap:
-    """Mean the costs of a path over squares of the canvas: Lévesque 2009, fig. 8.31.
+    """Compute the mean cost of a path in each square of the canvas: Lévesque 2009, fig. 8.31.
 
     Parameters
     ----------

@@ -6,7 +6,6 @@ import base64
 from typing import TYPE_CHECKING, Final
 
 from vbraille.devices.base import Placing
-from vbraille.feeling.composing import seen_from_above
 from vbraille.live.messages import SceneShown, ViewState
 from vbraille.live.states import array_shown
 
@@ -101,7 +100,10 @@ class FeltView:
     def _scene(self, loaded: LoadedScene) -> SceneShown:
         """Picture from above, which is drawn once."""
         if self._drawn is None or self._drawn[0] is not loaded:
-            drawn = base64.b64encode(seen_from_above(loaded)).decode()
+            # Only a live view waits for what draws it.
+            from vbraille.pictures.scenes import small_png
+
+            drawn = base64.b64encode(small_png(loaded.scene, loaded.assets)).decode()
             self._drawn = loaded, scene_shown(loaded, f"data:image/png;base64,{drawn}")
         return self._drawn[1]
 

@@ -37,7 +37,7 @@ def draw_costs(
     path: Path,
     *,
     title: str,
-    frame_us: NDArray[np.float64] | None = None,
+    frame_us: NDArray[np.float64],
 ) -> None:
     """Draw a map of what a frame costs at each place, and a histogram, into a file.
 
@@ -53,7 +53,7 @@ def draw_costs(
     title
         What was rendered.
     frame_us : float64[n]
-        Times that the histogram counts; None for those of the squares.
+        Times that the histogram counts, one or more.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def costs_drawing(
     mean_us: NDArray[np.float64],
     step_mm: float,
     title: str,
-    frame_us: NDArray[np.float64] | None = None,
+    frame_us: NDArray[np.float64],
 ) -> InkDrawing:
     """Make the drawing of `draw_costs`, whose arguments it has.
 
@@ -88,7 +88,6 @@ def costs_drawing(
             f"no frame was on the canvas, so that there is nothing to draw; choose another "
             f"{setting('path')}"
         )
-    times = known if frame_us is None else frame_us[np.isfinite(frame_us)]
     low, high = float(known.min()), float(known.max())
     rows, columns = mean_us.shape
     scale = _LONGEST_MM / (max(rows, columns) * step_mm)
@@ -108,7 +107,7 @@ def costs_drawing(
         InkLine((edge,), _HAIR_MM, closed=True),
         *_bar_of_mm(left, top + height + 3.0, scale, columns * step_mm),
         *_ramp(ramp_left, top, low, high),
-        *_histogram(times, bars_left, top),
+        *_histogram(frame_us, bars_left, top),
     )
     words = costs_words(mean_us, step_mm)
     return InkDrawing(

@@ -7,6 +7,7 @@ either the deflections of one moment, or random ones of the same range in their 
 from __future__ import annotations
 
 import io
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,6 +36,8 @@ MOST_PIXELS = 100_000_000
 MOST_CSV_ROWS = 10_000_000  # of a CSV
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
 _MM_PER_INCH = 25.4
+# Limits of a small map, which a page loads and a recording keeps.
+_SMALL_PIXELS, _SMALL_BYTES = 300_000, 120_000
 
 
 def map_places(
@@ -180,23 +183,24 @@ def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
     return (255.0 * (1.0 - deflections) + 0.5).astype(np.uint8)
 
 
-def map_png(scene: Scene, assets: Assets, pixels_per_mm: float = PIXELS_PER_MM) -> bytes:
-    """Make the deflection map of a scene as a PNG, with noise where it vibrates and no axes.
+def small_png(scene: Scene, assets: Assets) -> bytes:
+    """Make the deflection map of a scene as a PNG of 120 kB at most, for pages and recordings.
+
+    What vibrates is as it is at the beginning, since noise would make the file larger.
 
     Parameters
     ----------
     scene, assets
         A resolved scene, and what it takes from image files and labels.
-    pixels_per_mm
-        Resolution.
-
-    Raises
-    ------
-    InputError
-        As `map_places` has it.
     """
-    told = {"Title": scene.title, "Description": scene.description}
-    return png([grays(map_deflections(scene, assets, pixels_per_mm))], pixels_per_mm, told)
+    canvas = scene.canvas
+    area_mm2 = canvas.width_mm * canvas.height_mm
+    per_mm = min(PIXELS_PER_MM, math.sqrt(_SMALL_PIXELS / area_mm2))
+    while True:
+        content = png([grays(map_deflections(scene, assets, per_mm, noise_seed=None))], per_mm)
+        if len(content) <= _SMALL_BYTES:
+            return content
+        per_mm /= 1.5
 
 
 def png(

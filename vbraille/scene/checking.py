@@ -1,4 +1,4 @@
-"""What a scene holds, and what whoever feels it might miss: the report of its author."""
+"""What a scene holds, and what may be hard to feel: the report for its author."""
 
 from __future__ import annotations
 

@@ -65,7 +65,13 @@ def run(arguments: argparse.Namespace) -> int:
         from vbraille.pictures.costs import draw_costs
 
         drawn = cost_map(costs, loaded.scene.canvas)
-        draw_costs(drawn.mean_us, drawn.step_mm, Path(arguments.map), title=loaded.title)
+        draw_costs(
+            drawn.mean_us,
+            drawn.step_mm,
+            Path(arguments.map),
+            title=loaded.title,
+            frame_us=costs.frame_us,
+        )
         say_line(f"written: {arguments.map}")
     return 0
 

@@ -13,10 +13,11 @@ from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose, seen_from_above
+from vbraille.feeling.composing import compose
 from vbraille.feeling.loading import load_scene
 from vbraille.feeling.paths import PathOptions, path_of
 from vbraille.newfile import new_file
+from vbraille.pictures.scenes import small_png
 from vbraille.recording import Recorder, SceneRecorded
 from vbraille.render import MODELS
 from vbraille.wording import count
@@ -64,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
                 description=loaded.scene.description,
                 width_mm=loaded.scene.canvas.width_mm,
                 height_mm=loaded.scene.canvas.height_mm,
-                map_png=seen_from_above(loaded),
+                map_png=small_png(loaded.scene, loaded.assets),
             ),
             model=model,
             rate_hz=rate_hz,

@@ -84,7 +84,9 @@ def path(parser: ArgumentParser) -> None:
 
 def profile(parser: ArgumentParser) -> None:
     """Add the options of ``vbraille profile``."""
-    parser.add_argument("file", metavar="FILE", help="Take the scene in this file.")
+    parser.add_argument(
+        "file", metavar="FILE", help="Time the frames of this scene, SVG or file of OpenLatero's."
+    )
     parser.add_argument(
         "--model",
         choices=MODELS,

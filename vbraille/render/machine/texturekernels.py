@@ -1,7 +1,7 @@
 """Textures and images of scenes: Lévesque 2009, 8.4.1 and 8.4.2.
 
 Each kernel fills one row of ``rows``, ``top``, from the places in the rows X and Y. ``at`` is the
-first of its constants in ``numbers``, whose order is that of `vbraille.render.scene.patterncode`.
+first of its constants in ``numbers``, whose order is that of `vbraille.render.scene.texturecode`.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The words of compiled scenes: what each tells the machine in `vbraille.render.scene.machine`.
+"""The words of compiled scenes: what each tells the machine in `scenekernels`.
 
 A scene is compiled to a program of a small stack machine. Each word works on all actuators at
 once: on rows of numbers, one for each, so that its loops become vector instructions and reading the

@@ -28,7 +28,7 @@ class Flat:
     Parameters
     ----------
     nodes : float64[n, NODE_COLUMNS]
-        Its nodes, each after its children; the last is the uppermost.
+        Nodes, each after its children; the last is the uppermost.
     reach : float64[m, REACH_COLUMNS]
         What its leaves and their parts lie in.
     numbers : float64[k]

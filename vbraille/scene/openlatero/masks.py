@@ -91,7 +91,7 @@ def _plain(value_mm: float) -> float:
 
 
 def _found(file: GenElement, context: GenContext) -> _Found | None:
-    """MaskPicture that an element names."""
+    """Picture that an element names."""
     name = file.text.strip().rstrip("\\").strip()
     # OpenLatero itself writes "/mask.png" for a picture that stands beside the scene.
     beside = name.rpartition("/")[2]
