@@ -155,13 +155,12 @@ def changes_of_large_pictures() -> Iterator[Result]:
         f"{lost} ({late} late)",
         lost == 0,
     )
+    most_us = ticks["work_ns"].max() / 1000
     yield Result(
-        "work of a tick meanwhile, 99 % and at most",
-        "≤ 1 ms",
-        " µs, ".join(f"{np.percentile(ticks['work_ns'], share) / 1000:.0f}" for share in (99, 100))
-        + " µs",
-        np.percentile(ticks["work_ns"], 99) <= 1_000_000,
+        "work of a tick meanwhile, at most", "≤ 1 ms", f"{most_us:.0f} µs", most_us <= 1000
     )
+    usual_us = np.percentile(ticks["work_ns"], 99) / 1000
+    yield Result("the same, 99 %", "reported", f"{usual_us:.0f} µs", True)
     yield Result(
         "from showing 3 MB to the fade's first frame, median",
         "≤ 50 ms",
