@@ -37,7 +37,7 @@ def _name(table):
     if tag is not None:
         return f'kind = "{tag}"'
     named = {"SceneFile": "The file as a whole", "Canvas": "[canvas]", "DotStyle": "table dot"}
-    named["ClassLook"] = "table [classes.NAME]"
+    named |= {"ClassLook": "table [classes.NAME]", "VertexMarkers": "table markers"}
     named |= {"Dotting": "table dots, of shapes", "TurnPeak": "table distortion, of axial gratings"}
     return named.get(table.__name__, f"table {table.__name__.lower()}")
 
@@ -54,7 +54,8 @@ def _keys(schema, texts, keys, kinds):
 def _takes(field, kinds):
     """What a key takes, in words."""
     if "enum" in field:
-        return "one of " + ", ".join(f'"{value}"' for value in field["enum"])
+        words = ", ".join(f'"{value}"' for value in field["enum"])
+        return words if len(field["enum"]) == 1 else f"one of {words}"
     if "$ref" in field:
         return kinds[field["$ref"].rpartition("/")[2]]
     if "anyOf" in field:

@@ -98,8 +98,7 @@ def test_items_of_tables_that_come_again(stop, speed, sentence):
         ),
         (
             "[door]\nspeed = 1\nside = 2024-01-01",
-            " line 3: [door] side is datetime.date(2024, 1, 1); "
-            "it must be a string, in quotation marks",
+            " line 3: [door] side is datetime.date(2024, 1, 1); it must be 'left' or 'right'",
         ),
     ],
 )

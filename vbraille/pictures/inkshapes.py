@@ -90,7 +90,7 @@ def shape_marks(shape: AnyShape, look: InkLook, strength: float) -> Iterator[Pla
     if isinstance(shape, Polygon) and shape.markers is not None:
         radius = max((shape.stroke.width_mm if shape.stroke else 2.0) / 2, look.dot_mm / 2)
         yield InkDiscs(np.array(shape.vertices_mm), radius, look.ink(1.0))
-        if shape.markers.vibration is not None and not look.raised:
+        if shape.markers.swing is not None and not look.raised:
             yield InkDiscs(np.array(shape.vertices_mm), radius / 2, 1.0)
 
 

@@ -95,7 +95,7 @@ def vibrations(pattern: AnyPattern) -> list[Vibration]:
             found += [part.stroke.vibration] if part.stroke else []
             found += [part.dots.dot.vibration, part.dots.vertex_vibration] if part.dots else []
         if isinstance(part, Polygon) and part.markers is not None:
-            found.append(part.markers.vibration)
+            found.append(part.markers.swing)
     return [vibration for vibration in found if vibration is not None]
 
 

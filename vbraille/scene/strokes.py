@@ -122,8 +122,7 @@ class Stroke(Table, frozen=True, kw_only=True):
     width_mm
         Width w of the stroke.
     edge_mm
-        Length ε of its edge; half of the width or more (in Python also None) makes a smooth
-        stroke.
+        Length ε of its edge; "smooth" for half of the width, which is the most that it can be.
     amplitude
         Deflection k of its middle, from 0 to 1.
     outlined
@@ -140,7 +139,7 @@ class Stroke(Table, frozen=True, kw_only=True):
     """
 
     width_mm: float = 4.0
-    edge_mm: float | None = 1.0
+    edge_mm: float | Literal["smooth"] = 1.0
     amplitude: float = 1.0
     outlined: bool = False
     across: Across | None = None
@@ -149,7 +148,8 @@ class Stroke(Table, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         check_length("width", self.width_mm)
-        check_length("edge", self.edge_mm)
+        if self.edge_mm != "smooth":
+            check_length("edge", self.edge_mm)
         check_share("amplitude", self.amplitude)
         if self.outlined and self.along is not None:
             raise ValueError("outlined cannot be given beside along; whole_edges keeps the outline")
@@ -167,7 +167,7 @@ class Stroke(Table, frozen=True, kw_only=True):
     def edge(self) -> float:
         """Length of the edge that the stroke has, in mm."""
         half = self.width_mm / 2
-        return half if self.edge_mm is None else min(self.edge_mm, half)
+        return half if self.edge_mm == "smooth" else min(self.edge_mm, half)
 
 
 def _check_high(vibration: Vibration | None, what: str) -> None:
@@ -264,21 +264,31 @@ class VertexMarkers(Table, frozen=True, kw_only=True):
     blend_mm
         Distance over which a marker goes over into the stroke's texture.
     vibration
-        Vibration of the markers; an amplitude of 0 (in Python also None) makes plain ones.
+        Vibration of the markers.
+    plain
+        Whether the markers are up all over in place of that, as a stroke without a texture is.
 
     Raises
     ------
     ValueError
-        If a number is out of range, or what is down vibrates.
+        If a number is out of range, what is down vibrates, or plain markers have a vibration.
     """
 
     span: Literal["angle", "square", "edges", "arc"] = "edges"
     angle_deg: float = 30.0
     blend_mm: float = 1.0
-    vibration: Vibration | None = Vibration()
+    vibration: Vibration = Vibration()
+    plain: bool = False
 
     def __post_init__(self) -> None:
         check_angle("angle", self.angle_deg)
         check_range("angle", self.angle_deg, 1.0, 180.0, "°")
         check_length("blend", self.blend_mm)
         _check_high(self.vibration, "markers")
+        if self.plain and self.vibration != Vibration():
+            raise ValueError("vibration cannot be given beside plain = true; leave one out")
+
+    @property
+    def swing(self) -> Vibration | None:
+        """Vibration that the markers have; None if they are plain."""
+        return None if self.plain else self.vibration

@@ -122,7 +122,7 @@ def _own(pattern: AnyPattern) -> set[float]:
     if pattern.stroke is not None:
         found |= _of(pattern.stroke.vibration)
         if isinstance(pattern, Polygon) and pattern.markers is not None:
-            found |= _of(pattern.markers.vibration)
+            found |= _of(pattern.markers.swing)
     if pattern.dots is not None:
         found |= _of(pattern.dots.dot.vibration) | _of(pattern.dots.vertex_vibration)
     return found

@@ -15,7 +15,6 @@ from msgspec import structs
 
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import Group
-from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.toml.tomlfile import Table
 
 if TYPE_CHECKING:
@@ -32,9 +31,6 @@ _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 def write_scene(scene: Scene, comments: Mapping[Steps, tuple[str, ...]] | None = None) -> str:
     """Text of a scene's file.
-
-    TOML has no word for nothing. A smooth stroke has an edge of half its width in the file, and a
-    plain marker has a vibration of amplitude 0: both look the same, but are other values.
 
     Parameters
     ----------
@@ -90,10 +86,7 @@ def _said(table: Table) -> list[tuple[str, object]]:
         value = getattr(table, name)
         if value == usual and not (isinstance(table, Group) and name == "operation"):
             continue
-        if value is None:
-            value = _nothing(table, name)
-        if value is not None:
-            said[key] = value
+        said[key] = value
     first = [key for key in _FIRST if key in said]
     last = [key for key in _LAST if key in said and isinstance(table, Pattern)]
     middle = [key for key in said if key not in (*first, *last)]
@@ -123,13 +116,6 @@ def _depth(value: object) -> int:
     if isinstance(value, Mapping):
         return 2
     return 3 if isinstance(value, tuple) and any(isinstance(v, Table) for v in value) else 0
-
-
-def _nothing(table: Table, name: str) -> object:
-    """What a file says where a value is nothing, which is not as usual."""
-    if name == "vibration":
-        return Vibration(amplitude=0.0)
-    return table.width_mm / 2 if isinstance(table, Stroke) and name == "edge_mm" else None
 
 
 def _valued(key: str, value: object) -> list[str]:

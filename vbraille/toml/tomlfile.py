@@ -193,8 +193,8 @@ class TomlFile:
             self._fail(path, f"lacks {message.split('`')[1]}; add it")
         if message.startswith("Object contains unknown") and isinstance(value, dict):
             self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
+        names = [str(n) for t in types if isinstance(t, inspect.LiteralType) for n in t.values]
         if message.startswith("Invalid"):
-            names = [str(n) for t in types if isinstance(t, inspect.LiteralType) for n in t.values]
             self._fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
             items = [f.name for t in types if isinstance(t, inspect.StructType) for f in t.fields]
@@ -203,7 +203,8 @@ class TomlFile:
         if expected and any(map(_is_tables, types)):
             self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
-            wanted = [_WANTED.get(name) for name in expected[1].split(" | ")]
+            words = {**_WANTED, "str": " or ".join(map(quote, names))} if names else _WANTED
+            wanted = [words.get(name) for name in expected[1].split(" | ")]
             self._refuse(path, " or ".join(filter(None, wanted)))
         self._fail(path, f"cannot be used: {message}")
 

@@ -153,7 +153,9 @@ def strokes(draw):
     outlined = along is None and draw(st.booleans())
     width = draw(numbers(0.5, 15))
     four = outlined or (along is not None and along.whole_edges)
-    edge = draw(numbers(0.05, max(0.06, width / 4)) if four else st.none() | numbers(0.05, 5))
+    edge = draw(
+        numbers(0.05, max(0.06, width / 4)) if four else st.just("smooth") | numbers(0.05, 5)
+    )
     if four:
         width = max(width, 4 * edge)
     return Stroke(
@@ -193,11 +195,13 @@ drawn = st.one_of(
     st.fixed_dictionaries({"stroke": strokes()}), st.fixed_dictionaries({"dots": dottings})
 )
 markers = st.builds(
-    VertexMarkers,
-    span=st.sampled_from(["angle", "square", "edges", "arc"]),
-    angle_deg=numbers(1, 180),
-    blend_mm=numbers(0.05, 4),
-    vibration=st.none() | high,
+    lambda span, angle, blend, swing: VertexMarkers(
+        span=span, angle_deg=angle, blend_mm=blend, **swing
+    ),
+    st.sampled_from(["angle", "square", "edges", "arc"]),
+    numbers(1, 180),
+    numbers(0.05, 4),
+    st.just({"plain": True}) | st.fixed_dictionaries({"vibration": high}),
 )
 
 

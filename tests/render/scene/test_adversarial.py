@@ -112,7 +112,7 @@ def test_markers_of_any_corner(name, span, rng):
         Polygon(
             vertices_mm=SHAPES[name],
             stroke=wide(5, along=Along(ridge_mm=1)),
-            markers=VertexMarkers(span=span, angle_deg=180, blend_mm=0.05, vibration=None),
+            markers=VertexMarkers(span=span, angle_deg=180, blend_mm=0.05, plain=True),
         )
     )
     everywhere(scene, rng, count=4)

@@ -258,7 +258,7 @@ def test_a_marker_takes_the_place_of_the_texture_within_the_profile():
         )
     plain = Polygon(
         vertices_mm=SQUARE,
-        markers=VertexMarkers(vibration=None),
+        markers=VertexMarkers(plain=True),
         stroke=Stroke(width_mm=4, along=Along(ridge_mm=2)),
     )
     np.testing.assert_allclose(felt(plain, [0, 30, 30], [0, 0, 30]), 1)

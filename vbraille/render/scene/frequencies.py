@@ -69,7 +69,7 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
             yield from _of(pattern.dots.dot.vibration)
             yield from _of(pattern.dots.vertex_vibration)
         if isinstance(pattern, Polygon) and pattern.markers is not None:
-            yield from _of(pattern.markers.vibration)
+            yield from _of(pattern.markers.swing)
 
 
 def _of(vibration: Vibration | None) -> Iterator[float]:

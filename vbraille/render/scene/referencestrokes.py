@@ -232,7 +232,7 @@ def stroke_deflection(shape: AnyShape, stroke: Stroke, at: ActuatorPlaces) -> Va
         texture = texture * share_left(at, swing)  # 8.13
     if isinstance(shape, Polygon) and shape.markers is not None:
         share = marked(shape, shape.markers, width, seen, at)
-        marker = vibrated(np.ones(r.shape), at, shape.markers.vibration)
+        marker = vibrated(np.ones(r.shape), at, shape.markers.swing)
         texture = (1 - share) * texture + share * marker
     return stroke.amplitude * up * texture
 

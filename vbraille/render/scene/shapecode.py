@@ -205,7 +205,7 @@ def _stroke_numbers(shape: AnyShape, stroke: Stroke) -> list[float]:
             numbers[strokes.VELOCITY] = stroke.along.velocity_mm_s
     numbers[strokes.SWING : strokes.SWING + 3] = _swing(stroke.vibration)
     if isinstance(shape, Polygon) and shape.markers is not None:
-        swing = _swing(shape.markers.vibration)
+        swing = _swing(shape.markers.swing)
         numbers[strokes.MARKS : strokes.MARKS + 3] = (1.0, *swing[1:])
     return numbers
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from vbraille.scene.crossing import meeting_edges
 from vbraille.scene.dots import Dots
 from vbraille.scene.joints import joints, rounding_radius_mm
@@ -217,7 +219,8 @@ def _markers(corner: GenElement, context: GenContext, look: StrokeLook) -> Verte
             corner.say("markers are plain here, and have the texture of the stroke there")
         swing = Vibration() if stroke.vibration is None else None
     corner.forget()
-    return VertexMarkers(span=_SPANS[span], angle_deg=angle, blend_mm=blend, vibration=swing)  # pyright: ignore[reportArgumentType]
+    made = VertexMarkers(span=_SPANS[span], angle_deg=angle, blend_mm=blend)  # pyright: ignore[reportArgumentType]
+    return replace(made, plain=True) if swing is None else replace(made, vibration=swing)
 
 
 def _fill(element: GenElement, context: GenContext, look: StrokeLook) -> Fill | None:
