@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.render.scene.scenes import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
+from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
 from tests.tiers import by_tier, heavy
 from vbraille.render.scene import reference
 from vbraille.scene.dots import Dots
