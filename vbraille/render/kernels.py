@@ -358,7 +358,8 @@ def poses(numbers, table, scratch, at, parts, out):
         if out.shape[1] != numbers[ROWS] or out.shape[2] != numbers[COLUMNS]:
             raise ValueError("the frames have not the shape of the array")
         # It has one part, and is shown at any angle.
-        parts[:] = 0
+        for n in range(parts.size):
+            parts[n] = 0
         _show_scenes(numbers, table, scratch, at, out)
         return
     part = NO_PART

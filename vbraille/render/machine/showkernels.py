@@ -150,14 +150,13 @@ def show(numbers, table, rows, at, out):
 @compiled
 def show_all(numbers, table, rows, at, out):
     """Fill a frame for each pose and time, of which each is a row of ``at``."""
-    # Most of many a picture is empty, and this is the fastest way to say so.
-    flat = out.reshape(out.size)
-    for n in range(flat.size):
-        flat[n] = 0.0
-    for n in range(at.shape[0]):
+    count, above, across = out.shape
+    for n in range(count):
         start = _words_at(numbers, at[n, X], at[n, Y])
-        if start != 0:
-            _show_tile(numbers, table, rows, start, at[n], out[n])
+        if start == 0 or not _show_tile(numbers, table, rows, start, at[n], out[n]):
+            for i in range(above):
+                for j in range(across):
+                    out[n, i, j] = 0.0
 
 
 @compiled

@@ -92,12 +92,13 @@ def entries(reach, radius, left, top, tile_mm, columns, rows):
     tiles_per_mm = 1.0 / tile_mm
     grown = radius + tile_mm * math.sqrt(0.5)
     begins = np.zeros(columns * rows + 1, np.int64)
-    free = begins[1:].copy()
+    free = np.zeros(columns * rows, np.int64)
     filled = np.empty(0, np.int64)
     for filling in range(2):
         if filling:
-            begins[1:] = np.cumsum(free)
-            free = begins[:-1].copy()
+            for tile in range(columns * rows):
+                begins[tile + 1] = begins[tile] + free[tile]
+                free[tile] = begins[tile]
             filled = np.empty(begins[-1], np.int64)
         for n in range(reach.shape[0]):
             first, last, upper, lower = _range(
