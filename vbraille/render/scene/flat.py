@@ -112,6 +112,9 @@ class _Flattening:
             return
         if not node.enclosed:
             self.reach.append((number, 0.0, LeafReach.BOX, *node.box, 0.0))
+            if node.inside is not None:
+                inside = node.inside
+                self.reach.append((number, 0.0, inside.kind, *inside.numbers, inside.reach_mm))
             return
         for index, enclosed in enumerate(node.enclosed):
             part = places[index] if node.parts else 0
