@@ -28,7 +28,7 @@ class Flat:
     Parameters
     ----------
     nodes : float64[n, NODE_COLUMNS]
-        Its nodes, each after its children; the last is the uppermost.
+        Nodes, each after its children; the last is the uppermost.
     reach : float64[m, REACH_COLUMNS]
         What its leaves and their parts lie in.
     numbers : float64[k]
@@ -157,12 +157,15 @@ class Together:
         """Elements from ``first`` to before ``end``, as views."""
         begins = self.sizes[:first].sum(axis=0)
         ends = begins + self.sizes[first:end].sum(axis=0)
-        arrays = (
+        nodes, reach, numbers, changes = (
             array[begin:past]
             for array, begin, past in zip(_arrays(self), begins, ends, strict=True)
         )
         return Together(
-            *arrays,
+            nodes,
+            reach,
+            numbers,
+            changes,
             tuple(entry for entry in self.entries if begins[2] <= entry.at < ends[2]),
             self.sizes[first:end],
             begins,
@@ -189,8 +192,8 @@ def side_by_side(parts: list[Flat]) -> Together:
     sizes = np.array([list(map(len, _arrays(part))) for part in parts], np.int64)
     begins = np.cumsum(sizes, axis=0) - sizes
     nodes, reach, numbers, changes = map(np.concatenate, columns)
-    by = (np.repeat(begins, sizes[:, n], axis=0) for n in (0, 1, 3))
-    _move(nodes, reach, changes, *by)
+    nodes_by, reach_by, changes_by = (np.repeat(begins, sizes[:, n], axis=0) for n in (0, 1, 3))
+    _move(nodes, reach, changes, nodes_by, reach_by, changes_by)
     entries = tuple(
         entry._replace(at=entry.at + int(begins[n, 2]))
         for n, part in enumerate(parts)
@@ -211,11 +214,7 @@ def in_a_row(runs: tuple[Together, ...]) -> Together:
     for run in runs:
         end = at + run.sizes.sum(axis=0)
         by = at - run.begins
-        own = (
-            array[i:j]
-            for array, i, j in zip((nodes, reach, changes), at[_MOVED], end[_MOVED], strict=True)
-        )
-        _move(*own, by, by, by)
+        _move(nodes[at[0] : end[0]], reach[at[1] : end[1]], changes[at[3] : end[3]], by, by, by)
         entries += [entry._replace(at=entry.at + int(by[2])) for entry in run.entries]
         at = end
     return Together(
@@ -229,9 +228,6 @@ def in_a_row(runs: tuple[Together, ...]) -> Together:
         np.concatenate([run.depths for run in runs]),
         np.concatenate([run.frequencies_hz for run in runs]),
     )
-
-
-_MOVED = [0, 1, 3]
 
 
 def _move(

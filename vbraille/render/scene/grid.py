@@ -78,7 +78,7 @@ def assemble(
     Parameters
     ----------
     head : float64[GRID]
-        Its head, with what belongs to the display.
+        Head of a program, with what belongs to the display.
     canvas, grid
         The canvas, and the tiles over it.
     flat
