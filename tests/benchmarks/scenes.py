@@ -150,3 +150,21 @@ def within_ten(count: int, places: int) -> np.ndarray:
     inside = np.random.default_rng(SEED).uniform((7.0, 7.0), (wide - 7.0, high - 7.0), (places, 2))
     block = np.random.default_rng(SEED + 1).integers(0, blocks, places)
     return inside + np.stack([wide * (block % across), high * (block // across)], axis=1)
+
+
+def through_tens(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Path of a finger through a scene of so many shapes, at 100 mm/s and 1,000 frames a second.
+
+    It goes once through each ten of them, as far as the array reaches nothing beyond these.
+
+    Returns
+    -------
+    float64[n, 2], float64[count / 10, 2]
+        Places of the path within a ten, and the corners of the tens, line by line.
+    """
+    blocks = np.arange(count // 10)
+    across = max(n for n in range(1, int(blocks.size**0.5) + 1) if blocks.size % n == 0)
+    wide, high = _BLOCK[0] * _PLACE_MM, _BLOCK[1] * _PLACE_MM
+    x_mm = np.arange(7.0, wide - 7.0, 0.1)
+    within = np.stack([x_mm, np.linspace(7.0, high - 7.0, x_mm.size)], axis=1)
+    return within, np.stack([wide * (blocks % across), high * (blocks // across)], axis=1)

@@ -12,10 +12,16 @@ from vbraille.engine.hosted import warm_up
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS
 from vbraille.render.program import scratch_for
+from vbraille.render.scene.canvas import SceneMap
+from vbraille.render.scene.compiling import compile_scene
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.textures import Uniform
 
 
 def main() -> None:
-    """Compile the ticks, the frames of `vbraille render`, and those of a replay."""
+    """Compile the ticks, the frames of `vbraille render`, those of a replay, and pictures."""
+    scene = Scene(canvas=Canvas(width_mm=10.0, height_mm=10.0), elements=(Uniform(),))
+    SceneMap(scene).deflections(np.zeros(1), np.zeros(1))
     for model in MODELS.values():
         display, style = model.display, model.style
         warm_up(display, shared.Extent(display.rows, display.columns, 0, 2))
@@ -23,6 +29,7 @@ def main() -> None:
         line.path(np.zeros(1))
         line.poses(np.zeros(1), np.zeros(1))
         line.frame(0.0, np.zeros(display.shape))
+        compile_scene(scene, display).poses(np.zeros(1), np.zeros(1))
         ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
         frames = np.zeros((4, 1, *display.shape))
         scratch = scratch_for(display.shape)

@@ -18,6 +18,7 @@ the polynomials of `vbraille.render.waves` instead of the library's sine.
 import math
 
 from vbraille.render.machine.showkernels import show as _show_scene
+from vbraille.render.machine.showkernels import show_all as _show_scenes
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.waves import cos_pi as _cos_pi
 from vbraille.render.waves import inlined as _inlined
@@ -353,6 +354,14 @@ def poses(numbers, table, scratch, at, parts, out):
     ``at`` is float64[n, 6], each row as `frame` takes it; ``parts``, int64[n], and ``out``,
     float[n, rows, columns], are filled. An array that is turned too far is at rest.
     """
+    if numbers[KIND] == SCENE:
+        if out.shape[1] != numbers[ROWS] or out.shape[2] != numbers[COLUMNS]:
+            raise ValueError("the frames have not the shape of the array")
+        # It has one part, and is shown at any angle.
+        for n in range(parts.size):
+            parts[n] = 0
+        _show_scenes(numbers, table, scratch, at, out)
+        return
     part = NO_PART
     turned = False
     for n in range(at.shape[0]):

@@ -159,6 +159,36 @@ def test_a_change_gives_what_compiling_anew_gives():
         assert np.array_equal(changed.table, anew.table)
 
 
+def test_elements_come_and_go_and_change_places():
+    """Pictures and labels keep their places in the table, whatever comes before them."""
+    image, other = Image(file="a.png", amplitude=0.5), Image(file="b.png")
+    bitmaps = {
+        one: Bitmap(np.full((4, 4), level, np.uint16), (10.0, 10.0), 50.0, 40.0)
+        for one, level in ((image, 30_000), (other, 50_000))
+    }
+    assets = Assets(bitmaps)
+    lines = [
+        StraightLine(start_mm=(5.0 * n, 10.0), end_mm=(5.0 * n, 60.0), stroke=Stroke(width_mm=2.0))
+        for n in range(9)
+    ]
+    grating = LinearGrating(ridge_mm=3.0, velocity_mm_s=9.0, amplitude=0.5)
+    compiler = SceneCompiler(DISPLAY)
+    for elements in (
+        [*lines[:4], image],
+        [*lines[:3], image],
+        [grating, *lines[:3], image, *lines[3:]],
+        [*lines[:3], other, image, *lines[5:]],
+        [image, *lines[3:], other],
+        [*reversed(lines)],
+        lines,
+        [other],
+    ):
+        scene = Scene(canvas=CANVAS, operation="maximum", elements=tuple(elements))
+        changed, anew = compiler.compile(scene, assets), compile_scene(scene, DISPLAY, assets)
+        assert np.array_equal(changed.numbers, anew.numbers)
+        assert np.array_equal(changed.table, anew.table)
+
+
 def test_a_change_keeps_pictures_of_elements_that_stay():
     image = Image(file="a.png")
     bitmap = Bitmap(np.full((4, 4), 65_535, np.uint16), (0.0, 0.0), 100.0, 80.0)

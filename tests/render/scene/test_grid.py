@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 import pytest
 
 from tests.benchmarks.scenes import DISPLAY, nested, shapes, short_lines
+from vbraille.render.machine import words
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Fill, Group
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Stroke
@@ -17,6 +19,12 @@ from vbraille.scene.textures import LinearGrating, Uniform
 _CIRCLE = Circle(center_mm=(40.0, 30.0), radius_mm=12.0, stroke=Stroke(width_mm=3.0))
 _LINE = StraightLine(start_mm=(10.0, 10.0), end_mm=(60.0, 45.0), stroke=Stroke(width_mm=4.0))
 _GRATING = LinearGrating(ridge_mm=3.0)
+_DISC = Circle(center_mm=(40.0, 30.0), radius_mm=24.0, fill=Fill(texture=_GRATING, gap_mm=2.0))
+_RECTANGLE = Polygon(
+    vertices_mm=((10.0, 5.0), (70.0, 5.0), (70.0, 55.0), (10.0, 55.0)),
+    fill=Fill(texture=Uniform(level=0.3)),
+    stroke=Stroke(width_mm=2.0),
+)
 
 
 def _scene(*elements, operation="overwrite"):
@@ -44,6 +52,9 @@ def _group(operation, *parts, **more):
         _scene(_GRATING, _group("overwrite", _LINE, _group("maximum", _CIRCLE, _LINE))),
         _scene(_LINE, _group("weighted", _CIRCLE, _LINE, weights=(0.3, 0.7)), operation="add"),
         _scene(_LINE, Circle(center_mm=(40.0, 30.0), radius_mm=9.0, fill=Fill(texture=_GRATING))),
+        _scene(_LINE, _GRATING, _DISC, _LINE),
+        _scene(_GRATING, _group("overwrite", _LINE, _RECTANGLE, _CIRCLE)),
+        _scene(_LINE, _DISC, _RECTANGLE, operation="add"),
     ],
 )  # fmt: skip
 def test_pruning_changes_nothing(scene):
@@ -67,3 +78,24 @@ def test_where_nothing_can_be_touched_nothing_is_said():
     out = np.ones((8, 8))
     program.frame(48.0, out, y_mm=50.0)
     assert not out.any()
+
+
+@pytest.mark.parametrize("top", [_DISC, _RECTANGLE])
+def test_what_a_filled_shape_hides_costs_nothing(top):
+    """In the middle of it words call nothing but the shape."""
+    hidden = tuple(msgspec.structs.replace(_LINE, amplitude=n / 40) for n in range(1, 40))
+    covered, alone = (compile_scene(_scene(*under, top), DISPLAY) for under in (hidden, ()))
+    assert _calls(covered, 40.0, 30.0) == _calls(alone, 40.0, 30.0) == 1
+    assert _calls(covered, 12.0, 12.0) == 40
+
+
+def _calls(program, x_mm, y_mm):
+    numbers = program.numbers
+    column = int((x_mm - numbers[words.GRID_LEFT_MM]) * numbers[words.TILES_PER_MM])
+    row = int((y_mm - numbers[words.GRID_TOP_MM]) * numbers[words.TILES_PER_MM])
+    at = int(numbers[words.GRID + row * int(numbers[words.GRID_COLUMNS]) + column])
+    calls = 0
+    while (operation := int(numbers[at]) % words.OPERATIONS) != words.END:
+        calls += operation in (words.CALL, words.CALL_PARTS)
+        at += 1 + (1 + int(numbers[at + 1]) if operation == words.CALL_PARTS else 0)
+    return calls

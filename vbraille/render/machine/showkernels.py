@@ -100,21 +100,70 @@ else:
 
 
 @compiled
-def show(numbers, table, rows, at, out):
-    """Fill a frame with the deflections of a scene at a pose and a time."""
-    above, across = out.shape
-    x, y = at[X], at[Y]
+def _words_at(numbers, x, y):
+    """Place of the words of the tile that an array's centre is in; 0 if it has none."""
     column = math.floor((x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM])
     row = math.floor((y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM])
     columns = numbers[w.GRID_COLUMNS]
     # Beyond the grid no actuator is on the canvas; NaN, too, is nowhere.
     if not (0.0 <= column < columns and 0.0 <= row < numbers[w.GRID_ROWS]):
-        out[:] = 0.0
-        return
+        return 0
     start = int(numbers[w.GRID + int(row * columns + column)])
-    if int(numbers[start]) == w.END:
-        out[:] = 0.0
-        return
+    return 0 if int(numbers[start]) == w.END else start
+
+
+@compiled
+def _is_out_of_reach(numbers, at, left, right, top, bottom):
+    """Tell whether words only call patterns of which none is in a box, which gives 0 then."""
+    while True:
+        word = int(numbers[at])
+        at += 1
+        operation, argument = word & (w.OPERATIONS - 1), word >> 6
+        if operation == w.CALL or operation == w.CALL_PARTS:
+            block = argument >> 3
+            if not (
+                numbers[block + w.BOX_RIGHT] < left
+                or numbers[block + w.BOX_LEFT] > right
+                or numbers[block + w.BOX_BOTTOM] < top
+                or numbers[block + w.BOX_TOP] > bottom
+            ):
+                return False
+            if operation == w.CALL_PARTS:
+                at += 1 + int(numbers[at])
+        elif operation == w.END:
+            return True
+        elif operation != w.DROP:
+            return False
+
+
+@compiled
+def show(numbers, table, rows, at, out):
+    """Fill a frame with the deflections of a scene at a pose and a time."""
+    start = _words_at(numbers, at[X], at[Y])
+    if start == 0 or not _show_tile(numbers, table, rows, start, at, out):
+        above, across = out.shape
+        for i in range(above):
+            for j in range(across):
+                out[i, j] = 0.0
+
+
+@compiled
+def show_all(numbers, table, rows, at, out):
+    """Fill a frame for each pose and time, of which each is a row of ``at``."""
+    count, above, across = out.shape
+    for n in range(count):
+        start = _words_at(numbers, at[n, X], at[n, Y])
+        if start == 0 or not _show_tile(numbers, table, rows, start, at[n], out[n]):
+            for i in range(above):
+                for j in range(across):
+                    out[n, i, j] = 0.0
+
+
+@compiled
+def _show_tile(numbers, table, rows, start, at, out):
+    """Fill a frame by the words of a tile; False, and nothing is done, if nothing is in reach."""
+    above, across = out.shape
+    x, y = at[X], at[Y]
     lanes = above * across
     cosine, sine = 1.0, 0.0
     theta = at[THETA]
@@ -122,6 +171,11 @@ def show(numbers, table, rows, at, out):
         cosine, sine = math.cos(theta), math.sin(theta)
     half_down = 0.5 * (above - 1) * numbers[w.ROW_MM]
     half_aside = 0.5 * (across - 1) * numbers[w.COLUMN_MM]
+    wide = half_aside * abs(cosine) + half_down * abs(sine) + _ROUNDING_MM
+    high = half_down * abs(cosine) + half_aside * abs(sine) + _ROUNDING_MM
+    x0, x1, y0, y1 = x - wide, x + wide, y - high, y + high
+    if _is_out_of_reach(numbers, start, x0, x1, y0, y1):
+        return False
     n = 0
     for i in range(above):
         down = (i - 0.5 * (above - 1)) * numbers[w.ROW_MM]
@@ -131,9 +185,6 @@ def show(numbers, table, rows, at, out):
             rows[w.Y_ROW, n] = y + down * cosine - aside * sine
             rows[w.SIGN_ROW, n] = 1.0 - 2.0 * ((i + j) & 1)
             n += 1
-    wide = half_aside * abs(cosine) + half_down * abs(sine) + _ROUNDING_MM
-    high = half_down * abs(cosine) + half_aside * abs(sine) + _ROUNDING_MM
-    x0, x1, y0, y1 = x - wide, x + wide, y - high, y + high
     run(numbers, table, rows, start, lanes, at[TIME], x0, x1, y0, y1)
     left, right = numbers[w.LEFT_MM], numbers[w.RIGHT_MM]
     top, bottom = numbers[w.TOP_MM], numbers[w.BOTTOM_MM]
@@ -149,3 +200,4 @@ def show(numbers, table, rows, at, out):
             value = value if value > 0.0 else 0.0
             out[i, j] = value if value < 1.0 else 1.0
             n += 1
+    return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.render.machine import words
-from vbraille.render.scene.flat import exchanged, flatten, put_together
+from vbraille.render.scene.flat import flatten, in_a_row, side_by_side
 from vbraille.render.scene.frequencies import highest_hz
 from vbraille.render.scene.nodes import NodeKind
 from vbraille.render.scene.trees import deflection, layer
@@ -51,35 +51,41 @@ class FlatElements:
             )
         if not scene.elements:
             return None
+        before, parts, whole = self._elements, self._parts, self._whole
         if scene.operation != self._operation:
-            self._elements, self._parts, self._whole = (), [], None
-        pairs = zip(self._elements, scene.elements, strict=False)
-        changed = [n for n, (old, new) in enumerate(pairs) if old is not new]
-        before = self._whole
-        same = len(self._elements) == len(scene.elements)
-        if before is not None and same and (assets is self._assets or not before.flat.entries):
-            parts = self._parts.copy()
-            for n in changed:
-                parts[n] = _flattened(scene, n, assets, rate_hz)
-            whole = exchanged(before, parts, changed)
-        else:
-            known = self._known(assets)
-            parts = [
-                known.get(id(element)) or _flattened(scene, n, assets, rate_hz)
-                for n, element in enumerate(scene.elements)
-            ]
-            whole = None
-        whole = whole or put_together(parts, _KINDS[scene.operation])
-        check_depth(whole.flat)
+            before, parts, whole = (), [], None  # A layer has a mask, too.
+        elif whole is not None and whole.entries and assets is not self._assets:
+            # Bitmaps and labels may be others.
+            kept = [n for n, part in enumerate(parts) if not part.entries]
+            before, parts, whole = tuple(before[n] for n in kept), [parts[n] for n in kept], None
+        first, end, new_end = _changed(before, scene.elements)
+        known = dict(zip(map(id, before[first:end]), parts[first:end], strict=True))
+        new = [
+            known.get(id(scene.elements[n])) or _flattened(scene, n, assets, rate_hz)
+            for n in range(first, new_end)
+        ]
+        parts = [*parts[:first], *new, *parts[end:]]
+        if whole is None:
+            whole = side_by_side(parts)
+        elif first < max(end, new_end):
+            between = (side_by_side(new),) if new else ()
+            whole = in_a_row((whole.some(0, first), *between, whole.some(end, len(before))))
+        flat = whole.under(_KINDS[scene.operation])
+        check_depth(flat)
         self._elements, self._parts, self._whole = scene.elements, parts, whole
         self._assets, self._operation = assets, scene.operation
-        return whole.flat
+        return flat
 
-    def _known(self, assets: Assets) -> dict[int, Flat]:
-        """Arrays of the elements before, by their identity, but for other bitmaps and labels."""
-        pairs = zip(self._elements, self._parts, strict=True)
-        same = assets is self._assets
-        return {id(element): part for element, part in pairs if same or not part.entries}
+
+def _changed(before: tuple[AnyPattern, ...], after: tuple[AnyPattern, ...]) -> tuple[int, int, int]:
+    """Find what has changed: first element that has, and ends of these, before and after."""
+    same = (old is new for old, new in zip(before, after, strict=False))
+    shorter = min(len(before), len(after))
+    first = next((n for n, is_same in enumerate(same) if not is_same), shorter)
+    backwards = zip(reversed(before[first:]), reversed(after[first:]), strict=False)
+    same = (old is new for old, new in backwards)
+    kept = next((n for n, is_same in enumerate(same) if not is_same), shorter - first)
+    return first, len(before) - kept, len(after) - kept
 
 
 def _flattened(scene: Scene, n: int, assets: Assets, rate_hz: float) -> Flat:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -112,6 +112,9 @@ class _Flattening:
             return
         if not node.enclosed:
             self.reach.append((number, 0.0, LeafReach.BOX, *node.box, 0.0))
+            if node.inside is not None:
+                inside = node.inside
+                self.reach.append((number, 0.0, inside.kind, *inside.numbers, inside.reach_mm))
             return
         for index, enclosed in enumerate(node.enclosed):
             part = places[index] if node.parts else 0
@@ -124,86 +127,123 @@ class _Flattening:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Together:
-    """Elements put together, and where each begins.
+    """Elements side by side, one behind the other.
 
     Parameters
     ----------
-    flat
-        All of them, under one more node, which is the last.
-    nodes, reach, numbers, changes : int64[n]
-        Where the rows and numbers of each element begin.
+    nodes, reach, numbers, changes, entries
+        All of theirs, as in `Flat`.
+    sizes : int64[n, 4]
+        How many rows of nodes and reach, numbers and words of changes each element has.
+    begins : int64[4]
+        What places count from: the elements may be some of many.
+    depths : int64[n]
+        Rows of the stack that each takes.
+    frequencies_hz : float64[n]
+        Highest frequency in each.
     """
 
-    flat: Flat
-    nodes: NDArray[np.int64]
-    reach: NDArray[np.int64]
-    numbers: NDArray[np.int64]
-    changes: NDArray[np.int64]
+    nodes: NDArray[np.float64]
+    reach: NDArray[np.float64]
+    numbers: NDArray[np.float64]
+    changes: NDArray[np.float64]
+    entries: tuple[TableEntry, ...]
+    sizes: NDArray[np.int64]
+    begins: NDArray[np.int64]
+    depths: NDArray[np.int64]
+    frequencies_hz: NDArray[np.float64]
+
+    def some(self, first: int, end: int) -> Together:
+        """Elements from ``first`` to before ``end``, as views."""
+        begins = self.sizes[:first].sum(axis=0)
+        ends = begins + self.sizes[first:end].sum(axis=0)
+        nodes, reach, numbers, changes = (
+            array[begin:past]
+            for array, begin, past in zip(_arrays(self), begins, ends, strict=True)
+        )
+        return Together(
+            nodes,
+            reach,
+            numbers,
+            changes,
+            tuple(entry for entry in self.entries if begins[2] <= entry.at < ends[2]),
+            self.sizes[first:end],
+            begins,
+            self.depths[first:end],
+            self.frequencies_hz[first:end],
+        )
+
+    def under(self, kind: NodeKind) -> Flat:
+        """Put the elements under one more node, which is the last."""
+        top = np.zeros((1, g.NODE_COLUMNS))
+        top[0, g.KIND], top[0, g.CHILDREN] = kind, len(self.sizes)
+        nodes = np.concatenate([self.nodes, top])
+        uppermost = np.cumsum(self.sizes[:, 0]) - 1
+        nodes[uppermost, g.PARENT] = len(nodes) - 1 - uppermost
+        nodes[uppermost, g.ORDINAL] = np.arange(len(uppermost))
+        depth = max(int(self.depths[0]), int(self.depths[1:].max(initial=0)) + 1)
+        highest = float(self.frequencies_hz.max())
+        return Flat(nodes, self.reach, self.numbers, self.changes, self.entries, depth, highest)
 
 
-def put_together(parts: list[Flat], kind: NodeKind) -> Together:
-    """Put elements together under one more node."""
-    columns = tuple(zip(*map(_arrays, parts), strict=True))
-    counts = [np.fromiter(map(len, column), np.int64) for column in columns]
-    starts = [np.cumsum(count) - count for count in counts]
-    top = np.zeros((1, g.NODE_COLUMNS))
-    top[0, g.KIND], top[0, g.CHILDREN] = kind, len(parts)
-    nodes = np.concatenate([*(part.nodes for part in parts), top])
-    reach, numbers, changes = map(np.concatenate, columns[1:])
-    nodes[:-1, g.BLOCK] += np.repeat(starts[2], counts[0])
-    nodes[:-1, g.CHANGES] += np.repeat(starts[3], counts[0])
-    reach[:, g.NODE] += np.repeat(starts[0], counts[1])
-    changes += words.OPERATIONS * np.repeat(starts[2], counts[3])
-    uppermost = starts[0] + counts[0] - 1
-    nodes[uppermost, g.PARENT] = len(nodes) - 1 - uppermost
-    nodes[uppermost, g.ORDINAL] = np.arange(len(parts))
+def side_by_side(parts: list[Flat]) -> Together:
+    """Put elements, at least one, side by side."""
+    columns = zip(*map(_arrays, parts), strict=True)
+    sizes = np.array([list(map(len, _arrays(part))) for part in parts], np.int64)
+    begins = np.cumsum(sizes, axis=0) - sizes
+    nodes, reach, numbers, changes = map(np.concatenate, columns)
+    nodes_by, reach_by, changes_by = (np.repeat(begins, sizes[:, n], axis=0) for n in (0, 1, 3))
+    _move(nodes, reach, changes, nodes_by, reach_by, changes_by)
     entries = tuple(
-        entry._replace(at=entry.at + int(starts[2][n]))
+        entry._replace(at=entry.at + int(begins[n, 2]))
         for n, part in enumerate(parts)
         if part.entries
         for entry in part.entries
     )
-    depth = max(part.depth + (number > 0) for number, part in enumerate(parts))
-    flat = Flat(nodes, reach, numbers, changes, entries, depth, _highest(parts))
-    return Together(flat, *starts)
+    depths = np.array([part.depth for part in parts], np.int64)
+    highest = np.array([part.frequency_hz for part in parts], np.float64)
+    start = np.zeros(4, np.int64)
+    return Together(nodes, reach, numbers, changes, entries, sizes, start, depths, highest)
 
 
-def exchanged(whole: Together, parts: list[Flat], changed: list[int]) -> Together | None:
-    """Exchange some of the elements; None if they do not fit into the places of those before."""
-    flat = whole.flat
-    if flat.entries or any(parts[n].entries for n in changed):
-        return None
-    arrays = tuple(array.copy() for array in _arrays(flat))
-    starts = (whole.nodes, whole.reach, whole.numbers, whole.changes)
-    for n in changed:
-        places = [int(start[n]) for start in starts]
-        # Where the next element begins; the one more node is no element's.
-        sizes = (len(flat.nodes) - 1, len(flat.reach), flat.numbers.size, flat.changes.size)
-        ends = [
-            int(start[n + 1]) if n + 1 < start.size else size
-            for start, size in zip(starts, sizes, strict=True)
-        ]
-        own = _arrays(parts[n])
-        if [len(array) for array in own] != [b - a for a, b in zip(places, ends, strict=True)]:
-            return None
-        for array, part, start, end in zip(arrays, own, places, ends, strict=True):
-            array[start:end] = part
-        nodes, reach, _, changes = arrays
-        nodes[places[0] : ends[0], g.BLOCK] += places[2]
-        nodes[places[0] : ends[0], g.CHANGES] += places[3]
-        reach[places[1] : ends[1], g.NODE] += places[0]
-        changes[places[3] : ends[3]] += words.OPERATIONS * places[2]
-        nodes[ends[0] - 1, g.PARENT] = len(nodes) - ends[0]
-        nodes[ends[0] - 1, g.ORDINAL] = n
-    depth = max(part.depth + (number > 0) for number, part in enumerate(parts))
-    nodes, reach, numbers, changes = arrays
-    flat = Flat(nodes, reach, numbers, changes, (), depth, _highest(parts))
-    return replace(whole, flat=flat)
+def in_a_row(runs: tuple[Together, ...]) -> Together:
+    """Put runs of elements one behind the other."""
+    nodes, reach, numbers, changes = map(np.concatenate, zip(*map(_arrays, runs), strict=True))
+    entries: list[TableEntry] = []
+    at = np.zeros(4, np.int64)
+    for run in runs:
+        end = at + run.sizes.sum(axis=0)
+        by = at - run.begins
+        _move(nodes[at[0] : end[0]], reach[at[1] : end[1]], changes[at[3] : end[3]], by, by, by)
+        entries += [entry._replace(at=entry.at + int(by[2])) for entry in run.entries]
+        at = end
+    return Together(
+        nodes,
+        reach,
+        numbers,
+        changes,
+        tuple(entries),
+        np.concatenate([run.sizes for run in runs]),
+        np.zeros(4, np.int64),
+        np.concatenate([run.depths for run in runs]),
+        np.concatenate([run.frequencies_hz for run in runs]),
+    )
 
 
-def _arrays(part: Flat) -> tuple[NDArray[np.float64], ...]:
+def _move(
+    nodes: NDArray[np.float64],
+    reach: NDArray[np.float64],
+    changes: NDArray[np.float64],
+    nodes_by: NDArray[np.int64],
+    reach_by: NDArray[np.int64],
+    changes_by: NDArray[np.int64],
+) -> None:
+    """Count places from elsewhere: each row by int64[4], or all of them by one."""
+    nodes[:, g.BLOCK] += nodes_by[..., 2]
+    nodes[:, g.CHANGES] += nodes_by[..., 3]
+    reach[:, g.NODE] += reach_by[..., 0]
+    changes += words.OPERATIONS * changes_by[..., 2]
+
+
+def _arrays(part: Flat | Together) -> tuple[NDArray[np.float64], ...]:
     return part.nodes, part.reach, part.numbers, part.changes
-
-
-def _highest(parts: list[Flat]) -> float:
-    return max(part.frequency_hz for part in parts)

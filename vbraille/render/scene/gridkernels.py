@@ -40,14 +40,18 @@ NODE_COLUMNS = 11
 REACH_COLUMNS = 8
 
 LEAF, ADD, MAXIMUM, MULTIPLY, BLEND, OVER, LAYER, CHANGE = range(8)
-BOX, CAPSULE, RING = range(3)
+BOX, CAPSULE, RING, DISC_INSIDE, BOX_INSIDE = range(5)
 ITSELF, PAIR, COVER = range(3)
 _NONE = -1
+_ROUNDING_MM = 1e-6
 
 
 @compiled
 def _is_near(reach, n, x, y, radius):
-    """Tell whether anything of a thing is nearer than that to a place."""
+    """Tell whether anything of a thing is nearer than that to a place.
+
+    Of what is inside of a shape: whether all that is nearer than that to a place is inside.
+    """
     a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
     radius += reach[n, REACH_MM]
     kind = reach[n, REACH_KIND]
@@ -56,6 +60,11 @@ def _is_near(reach, n, x, y, radius):
         return dx * dx + dy * dy <= radius * radius
     if kind == RING:
         return abs(math.sqrt((x - a) ** 2 + (y - b) ** 2) - c) <= radius
+    if kind == DISC_INSIDE:
+        return math.sqrt((x - a) ** 2 + (y - b) ** 2) + radius + _ROUNDING_MM <= c
+    if kind == BOX_INSIDE:
+        radius += _ROUNDING_MM
+        return a <= x - radius and x + radius <= c and b <= y - radius and y + radius <= d
     dx, dy = c - a, d - b
     u, v = x - a, y - b
     square = dx * dx + dy * dy
@@ -71,7 +80,7 @@ def _range(reach, n, radius, left, top, tiles_per_mm, columns, rows):
     """Range of the tiles that a thing can be near to: columns, and rows."""
     a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
     radius += reach[n, REACH_MM]
-    if reach[n, REACH_KIND] == RING:
+    if reach[n, REACH_KIND] == RING or reach[n, REACH_KIND] == DISC_INSIDE:
         a, b, c, d = a - c, b - c, a + c, b + c
     x0, x1 = (min(a, c) - radius - left) * tiles_per_mm, (max(a, c) + radius - left) * tiles_per_mm
     y0, y1 = (min(b, d) - radius - top) * tiles_per_mm, (max(b, d) + radius - top) * tiles_per_mm
@@ -92,12 +101,13 @@ def entries(reach, radius, left, top, tile_mm, columns, rows):
     tiles_per_mm = 1.0 / tile_mm
     grown = radius + tile_mm * math.sqrt(0.5)
     begins = np.zeros(columns * rows + 1, np.int64)
-    free = begins[1:].copy()
+    free = np.zeros(columns * rows, np.int64)
     filled = np.empty(0, np.int64)
     for filling in range(2):
         if filling:
-            begins[1:] = np.cumsum(free)
-            free = begins[:-1].copy()
+            for tile in range(columns * rows):
+                begins[tile + 1] = begins[tile] + free[tile]
+                free[tile] = begins[tile]
             filled = np.empty(begins[-1], np.int64)
         for n in range(reach.shape[0]):
             first, last, upper, lower = _range(
@@ -117,8 +127,8 @@ def entries(reach, radius, left, top, tile_mm, columns, rows):
 
 
 # Columns of what is known of the nodes of one tile: the row of the nodes in reach is `_STAMP`.
-_STAMP, _HAVE, _LOWEST, _MASK, _ALIVE, _FIRST, _LAST = range(7)
-ROOM_COLUMNS = 7
+_STAMP, _HAVE, _LOWEST, _MASK, _ALIVE, _FIRST, _LAST, _COVERS = range(8)
+ROOM_COLUMNS = 8
 
 
 @compiled
@@ -133,6 +143,9 @@ def _gather(nodes, always, reach, listed, room, active, stamp):
             node = int(reach[n, NODE])
             if room[node, _STAMP] != stamp:
                 room[node, _FIRST] = k - always.size
+                room[node, _COVERS] = 0
+            if reach[n, REACH_KIND] >= DISC_INSIDE:
+                room[node, _COVERS] = 1
             room[node, _LAST] = k - always.size + 1
         while room[node, _STAMP] != stamp:
             room[node, _STAMP] = stamp
@@ -196,12 +209,15 @@ def _choose(nodes, room, active, count):
         if nodes[node, PARENT] == 0.0:
             continue
         parent = node + int(nodes[node, PARENT])
+        kind_is_leaf = nodes[node, KIND] == LEAF and nodes[node, ALWAYS] == 0.0
         room[parent, _HAVE] += 1
         if nodes[node, ORDINAL] < 3.0:
             room[parent, _MASK] |= 1 << int(nodes[node, ORDINAL])
         if nodes[node, ONE] != 0.0 and nodes[node, ORDINAL] == 2.0:
             room[parent, _MASK] |= 8
-        covers = nodes[parent, KIND] == OVER and nodes[node, PUSHES] == COVER
+        covers = nodes[parent, KIND] == OVER and (
+            nodes[node, PUSHES] == COVER or (kind_is_leaf and room[node, _COVERS] != 0)
+        )
         if covers or room[parent, _LOWEST] == _NONE:
             room[parent, _LOWEST] = node
     for k in range(count - 1, -1, -1):

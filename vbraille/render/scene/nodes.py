@@ -40,6 +40,9 @@ class LeafReach(IntEnum):
     BOX = 0  # left, top, right, bottom
     CAPSULE = 1  # start, end; all that is no farther from the line between them than the reach
     RING = 2  # centre, radius; all that is no farther from the circle than the reach
+    # What a leaf is opaque in, so that it hides what is beneath it.
+    DISC_INSIDE = 3  # centre, radius
+    BOX_INSIDE = 4  # left, top, right, bottom
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,8 @@ class Node:
         What a leaf, or each of its parts, lies in; empty for its box.
     parts
         Whether ``enclosed`` is about parts.
+    inside
+        Where a leaf that pushes a mask is opaque, as far as it is simple to tell.
     pushes
         What it leaves on the stack below an OVER.
     changes : tuple of (operation, constants)
@@ -88,6 +93,7 @@ class Node:
     box: Box | None = None
     enclosed: tuple[Enclosed, ...] = ()
     parts: bool = False
+    inside: Enclosed | None = None
     pushes: Pushes = Pushes.ITSELF
     changes: tuple[tuple[int, tuple[float, ...]], ...] = field(default=())
     everywhere: bool = False

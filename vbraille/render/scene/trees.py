@@ -46,6 +46,7 @@ _KINDS = {
 }
 
 
+_CORNERS = 4  # of a rectangle
 _JOINS = {
     NodeKind.ADD: words.ADD,
     NodeKind.MAXIMUM: words.MAXIMUM,
@@ -215,7 +216,23 @@ def _pair(pattern: AnyShape | Dots, own: Node) -> Node:
     assert own.say is not None
     say_mask = _say_dots_mask if isinstance(pattern, Dots) else _say_shape_mask
     say = partial(_say_pair, own.say, partial(say_mask, pattern))
-    return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1)
+    return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1, inside=_inside(pattern))
+
+
+def _inside(pattern: AnyShape | Dots) -> Enclosed | None:
+    """Where a filled shape is opaque, if it is a circle or an upright rectangle."""
+    if isinstance(pattern, Dots) or fill_of(pattern) is None:
+        return None
+    if isinstance(pattern, Circle):
+        return Enclosed(LeafReach.DISC_INSIDE, (*pattern.center_mm, pattern.radius_mm, 0.0))
+    if not isinstance(pattern, Polygon) or len(pattern.vertices_mm) != _CORNERS:
+        return None
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = pattern.vertices_mm
+    lying, standing = (y0, x1, y2, x3) == (y1, x2, y3, x0), (x0, y1, x2, y3) == (x1, y2, x3, y0)
+    if not (lying or standing):
+        return None
+    box = (min(x0, x2), min(y0, y2), max(x0, x2), max(y0, y2))
+    return Enclosed(LeafReach.BOX_INSIDE, box)
 
 
 def _parted(
