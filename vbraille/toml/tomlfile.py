@@ -193,7 +193,8 @@ class TomlFile:
             self._fail(path, f"lacks {message.split('`')[1]}; add it")
         if message.startswith("Object contains unknown") and isinstance(value, dict):
             self._fail_unknown(path, value, [t for t in types if isinstance(t, inspect.StructType)])
-        names = [str(n) for t in types if isinstance(t, inspect.LiteralType) for n in t.values]
+        literals = dict.fromkeys(t.values for t in types if isinstance(t, inspect.LiteralType))
+        names = [str(name) for values in literals for name in values]
         if message.startswith("Invalid"):
             self._fail(path, f"is {quote(value)}{which(str(value), names)}")
         if expected and expected[2]:
@@ -203,7 +204,9 @@ class TomlFile:
         if expected and any(map(_is_tables, types)):
             self._fail(path, f"must be tables; write each under [[{path[-1]}]]")
         if expected:
-            words = {**_WANTED, "str": " or ".join(map(quote, names))} if names else _WANTED
+            # Words of one list are few; those that tell kinds of tables apart are many.
+            few = len(literals) == 1
+            words = {**_WANTED, "str": " or ".join(map(quote, names))} if few else _WANTED
             wanted = [words.get(name) for name in expected[1].split(" | ")]
             self._refuse(path, " or ".join(filter(None, wanted)))
         self._fail(path, f"cannot be used: {message}")
