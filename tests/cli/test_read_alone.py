@@ -152,4 +152,5 @@ def test_a_page_is_read_on_a_device_built_from_the_protocol_page_alone(tmp_path)
     assert "contrast: 0.2" in said
     assert log["frame"].max() > 0.9
     assert after["frame"].max() <= 0.2 + 1 / MAKE.top_level
-    assert device.dropped == 0
+    # Where this machine stands still, the host's driver may cut the line that it was sending.
+    assert device.dropped == device.cut

@@ -235,7 +235,7 @@ class SecondVersion:
         self.make = make or Make()
         self.info = SimpleNamespace(version=2)
         self.buttons, self.knobs = 0, bytes(4)
-        self.trips = self.dropped = 0
+        self.trips = self.dropped = self.cut = 0
         self.taken: list[Taken] = []
         self.levels = self._from = self.make.rest
         self._greeted = self._armed = self._tripped = False
@@ -276,6 +276,7 @@ class SecondVersion:
         body = body_of(line) if len(line) <= self.make.room else None
         if body is None:
             self.dropped += 1
+            self.cut += 1
         elif body[0] == HELLO and body[1:2] > b"\0":
             self._rest(now_us)
             self._greeted = body[1] == 2

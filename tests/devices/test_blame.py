@@ -1,12 +1,13 @@
 """Drivers of others that raise, or are no drivers: named with file and line, in one sentence."""
 
+import importlib
 import sys
 
 import pytest
 
 from tests import drivers
 from tests.engine.test_loop import info
-from vbraille.devices import opened_device
+from vbraille.devices import opened_device, registry
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.shared import Extent, attach
@@ -79,6 +80,19 @@ def test_what_a_driver_raises_names_it_with_file_and_line(driver, tmp_path, body
 def test_a_driver_that_is_not_there_is_named(driver):
     driver("pass", opener="open_another")
     with pytest.raises(DeviceError, match=r"AttributeError: .*\) at other:open_another; no line"):
+        use()
+
+
+def test_what_finds_drivers_is_not_blamed(tmp_path, monkeypatch):
+    """A package that brings a newer `importlib.metadata` puts its own in the place of Python's."""
+    source = "from importlib.metadata import EntryPoint\nclass Found(EntryPoint):\n"
+    source += "    def load(self):\n        raise AttributeError('open_another')\n"
+    (tmp_path / "backport_of_metadata.py").write_text(source)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    found = importlib.import_module("backport_of_metadata")
+    driver = found.Found("other", "json:open_another", registry.GROUP)
+    monkeypatch.setattr(registry, "entry_points", lambda **_: [driver])
+    with pytest.raises(DeviceError, match=r"\) at json:open_another; no line"):
         use()
 
 

@@ -66,7 +66,10 @@ def _place(driver: EntryPoint, error: BaseException) -> str | None:
     at_work = [line for line in lines if home is not None and line[0].startswith(home)]
     if not at_work:  # a package that the driver calls, or the driver itself while it is loaded
         ours = max(number for number, (name, _) in enumerate(lines) if name.startswith(_OURS))
-        at_work = [line for line in lines[ours + 1 :] if not _is_python(line[0])]
+        # What found the driver is not always Python's own: a package may bring its backport.
+        finder = sys.modules[type(driver).__module__].__file__
+        others = [line for line in lines[ours + 1 :] if line[0] != finder]
+        at_work = [line for line in others if not _is_python(line[0])]
     if not at_work:
         return None
     name, number = at_work[-1]
