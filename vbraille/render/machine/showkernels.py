@@ -102,13 +102,13 @@ else:
 @compiled
 def _words_at(numbers, x, y):
     """Place of the words of the tile that an array's centre is in; 0 if it has none."""
-    column = math.floor((x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM])
-    row = math.floor((y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM])
-    columns = numbers[w.GRID_COLUMNS]
-    # Beyond the grid no actuator is on the canvas; NaN, too, is nowhere.
+    column = (x - numbers[w.GRID_LEFT_MM]) * numbers[w.TILES_PER_MM]
+    row = (y - numbers[w.GRID_TOP_MM]) * numbers[w.TILES_PER_MM]
+    columns = int(numbers[w.GRID_COLUMNS])
+    # Beyond the grid no actuator is on the canvas. NaN is nowhere, and has no whole number.
     if not (0.0 <= column < columns and 0.0 <= row < numbers[w.GRID_ROWS]):
         return 0
-    start = int(numbers[w.GRID + int(row * columns + column)])
+    start = int(numbers[w.GRID + int(row) * columns + int(column)])
     return 0 if int(numbers[start]) == w.END else start
 
 
