@@ -16,10 +16,11 @@ class Shown(NamedTuple):
     scene: str
     more: str = ""
     options: tuple[str, ...] = ()
+    kind: str = "png"
 
     @property
     def name(self) -> str:
-        return f"{self.scene}{self.more}.png"
+        return f"{self.scene}{self.more}.{self.kind}"
 
     def command(self, folder: Path) -> list[str]:
         """Command that draws it into a folder."""
@@ -34,7 +35,7 @@ GALLERY = [
         Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
         for path in sorted(SCENES.glob("*.scene"))
     ),
-    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE)),
+    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE), "gif"),
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
     Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
     Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
