@@ -28,7 +28,7 @@ class Shown(NamedTuple):
         return ["map", str(scene), "--out", str(folder / self.name), "--force", *self.options]
 
 
-COARSE = ("--resolution", "3")
+COARSE, FINE = ("--resolution", "3"), ("--resolution", "8")
 LARGE = {"distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
 GALLERY = [
     *(
@@ -39,6 +39,10 @@ GALLERY = [
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
     Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
     Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
+    Shown("joints", "-raised", ("--raised", *FINE)),
+    Shown("markers", "-abstract", ("--abstract", *FINE)),
+    Shown("markers", "-raised", ("--raised", *FINE)),
+    Shown("dotted", "-raised", ("--raised", *FINE)),
     Shown("labelled", "-raised", ("--raised", "--resolution", "5")),
 ]
 
