@@ -67,10 +67,7 @@ def felt_contours(
     if not (left < right and top < bottom):
         return ()
     per_mm = min(_PIXELS_PER_MM, math.sqrt(_MOST_PIXELS / ((right - left) * (bottom - top))))
-    x_mm, y_mm = (
-        first + (np.arange(math.ceil((last - first) * per_mm) + 1) - 0.5) / per_mm
-        for first, last in ((left, right), (top, bottom))
-    )
+    x_mm, y_mm = _places_mm(left, right, per_mm), _places_mm(top, bottom, per_mm)
     felt = _deflections(bare, canvas, x_mm, y_mm)
     for x, y in dots_mm:
         near = np.hypot(x_mm - x, (y_mm - y)[:, None])
@@ -173,6 +170,12 @@ def _coarse(stroke: Stroke, look: InkLook) -> Stroke:
         along=along,
         vibration=None,
     )
+
+
+def _places_mm(first: float, last: float, per_mm: float) -> NDArray[np.float64]:
+    """Places from one to another and a little beyond both."""
+    count = math.ceil((last - first) * per_mm) + 2
+    return first + (np.arange(count, dtype=np.float64) - 0.5) / per_mm
 
 
 def _deflections(
