@@ -29,7 +29,7 @@ class Shown(NamedTuple):
 
 
 COARSE, FINE = ("--resolution", "3"), ("--resolution", "8")
-LARGE = {"distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
+LARGE = {"bank": "2.5", "distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
 GALLERY = [
     *(
         Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
