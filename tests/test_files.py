@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from vbraille.errors import InputError, VbrailleError
-from vbraille.files import whole_file, write_file
+from vbraille.files import whole_file, write_file, write_files
 
 
 def names(folder):
@@ -78,3 +78,63 @@ def test_a_place_that_takes_no_file_is_told_in_a_sentence(tmp_path, path, match)
 def test_a_path_without_a_name_is_a_directory():
     with pytest.raises(InputError, match="is a directory; give the name of a file with ‹out›"):
         write_file(Path("/"), b"")
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def set_in(folder, content=b"new", numbers="123"):
+    return [(folder / number, content + number.encode()) for number in numbers]
+
+
+@pytest.mark.parametrize("links", [True, False])
+@pytest.mark.parametrize("replace", [False, True])
+def test_several_files_are_written(tmp_path, monkeypatch, links, replace):
+    def no_links(*_):
+        raise OSError(1, "Operation not permitted")
+
+    if not links:
+        monkeypatch.setattr("os.link", no_links)
+    if replace:
+        (tmp_path / "2").write_bytes(b"old")
+    write_files(set_in(tmp_path), replace=replace)
+    assert contents(tmp_path) == {"1": b"new1", "2": b"new2", "3": b"new3"}
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_of_several_files_none_is_written_where_one_is_there(tmp_path, monkeypatch, links):
+    def no_links(*_):
+        raise OSError(1, "Operation not permitted")
+
+    if not links:
+        monkeypatch.setattr("os.link", no_links)
+    (tmp_path / "2").write_bytes(b"old")
+    with pytest.raises(InputError, match="2 is there already; give another name with ‹out›"):
+        write_files(set_in(tmp_path))
+    assert contents(tmp_path) == {"2": b"old"}
+
+
+def test_what_several_files_replaced_is_there_again_if_one_cannot_be(tmp_path):
+    for name in "12":
+        (tmp_path / name).write_bytes(b"old")
+    (tmp_path / "3").mkdir()
+    (tmp_path / "3" / "own").write_bytes(b"own")
+    (tmp_path / ".3.before").mkdir()  # so that the third cannot be moved out of the way
+    (tmp_path / ".3.before" / "own").write_bytes(b"own")
+    with pytest.raises(VbrailleError, match="3 cannot be written: Directory not empty"):
+        write_files(set_in(tmp_path), replace=True)
+    assert sorted(names(tmp_path)) == [".3.before", "1", "2", "3"]
+    assert (tmp_path / "1").read_bytes() == (tmp_path / "2").read_bytes() == b"old"
+
+
+def test_several_files_leave_nothing_if_making_them_is_ended(tmp_path):
+    def made():
+        yield tmp_path / "1", b"one"
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_files(made())
+    with pytest.raises(InputError, match="a cannot be written: No such file or directory"):
+        write_files([(tmp_path / "1", b"one"), (tmp_path / "none" / "a", b"two")])
+    assert names(tmp_path) == []

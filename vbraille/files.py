@@ -17,7 +17,7 @@ from vbraille.errors import InputError, VbrailleError
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from typing import BinaryIO
 
 SETTINGS = "settings.toml"
@@ -89,6 +89,75 @@ def write_file(path: Path, content: bytes, *, replace: bool = False, durable: bo
         ) from None
     except OSError as error:
         raise VbrailleError(f"{path} could not be written: {error.strerror}") from None
+
+
+def write_files(files: Iterable[tuple[Path, bytes]], *, replace: bool = False) -> None:
+    """Write several files: all of them whole, or none of them.
+
+    No file gets its name before all are written. If one cannot have its name, those that already
+    have theirs are taken back, and what they replaced stands there again.
+
+    Parameters
+    ----------
+    files
+        Path and content of each; they may be made while they are asked for.
+    replace
+        Whether existing files may be replaced.
+
+    Raises
+    ------
+    InputError
+        If a file exists and may not be replaced, or cannot be made.
+    VbrailleError
+        If the disk cannot take the files.
+    """
+    written: list[Path] = []
+    named: list[Path] = []
+    path = Path()
+    try:
+        for path, content in files:
+            partial = _partial(path)
+            file = partial.open("wb")
+            written.append(path)
+            with file:
+                _fill(file, content, durable=False)
+        for path in written:
+            named.append(path)
+            if replace and path.exists():
+                path.replace(_before(path))
+            _name(_partial(path), path)
+    except BaseException as fault:
+        for path_again in named:
+            _take_back(path_again)
+        if isinstance(fault, FileExistsError):
+            raise InputError(
+                f"{path} is there already; give another name with {setting('out')}"
+            ) from None
+        if isinstance(fault, OSError):
+            kind = VbrailleError if path in written else InputError
+            raise kind(f"{path} cannot be written: {fault.strerror}") from None
+        raise
+    finally:
+        for path_again in written:
+            for other in (_partial(path_again), _before(path_again)):
+                with suppress(OSError):
+                    other.unlink(missing_ok=True)
+
+
+def _take_back(path: Path) -> None:
+    """Undo that a file got its name; what it replaced has it again."""
+    with suppress(OSError):
+        # A file that somebody else made meanwhile is theirs.
+        if _partial(path).exists() and path.exists() and not path.samefile(_partial(path)):
+            return
+        path.unlink(missing_ok=True)
+        if _before(path).exists():
+            _before(path).replace(path)
+
+
+def _before(path: Path) -> Path:
+    """Path that a file has which is replaced, until all others are."""
+    return path.with_name(f".{path.name}.before")
 
 
 def write_folder(

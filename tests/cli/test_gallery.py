@@ -1,6 +1,7 @@
 """The gallery of docs/graphics.md: its pictures are those that the program draws, in words too."""
 
 import re
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -8,7 +9,9 @@ from PIL import Image, ImageSequence
 
 from tests.pictures.gallery import GALLERY, PICTURES, ROOT, SCENES
 from tests.tiers import by_tier
+from vbraille.scene.patterns import AnyPattern, Group, Operation
 from vbraille.scene.reading import open_scene
+from vbraille.scene.walking import each
 
 PAGE = (ROOT / "docs/graphics.md").read_text(encoding="utf-8")
 EVERYDAY = ("pictured.png", "pictured-raised.png", "operators.png", "images.png", "labelled.png")
@@ -61,3 +64,15 @@ def test_each_figure_of_the_source_has_a_picture(figure):
             ends = [int(end) for end in re.findall(r"8\.([0-9]+)", part)]
             found |= set(range(ends[0], ends[-1] + 1)) if ends else set()
     assert figure in found
+
+
+def test_each_kind_of_pattern_and_of_group_has_a_picture():
+    shown = set()
+    for name in {picture.scene for picture in GALLERY}:
+        written = open_scene(SCENES / f"{name}.scene").written
+        for part in each(*written.elements):
+            shown.add(part.__struct_config__.tag)
+            if isinstance(part, Group):
+                shown.add(part.operation)
+    kinds = {kind.__struct_config__.tag for kind in get_args(AnyPattern)}
+    assert kinds | set(get_args(Operation)) <= shown

@@ -1,6 +1,8 @@
 """``vbraille map``: its files, what it says, and what it refuses."""
 
+import base64
 import csv
+import io
 import re
 from xml.etree import ElementTree
 
@@ -89,31 +91,96 @@ def test_csv_has_a_row_for_each_pixel(scene, call, tmp_path):
     assert deflection == pytest.approx(0.5 * (0.5 - 0.5 * np.cos(2 * np.pi / 4)), abs=1e-6)
 
 
-@pytest.mark.parametrize("suffix", ["png", "gif"])
-def test_a_sequence_swings(scene, call, tmp_path, suffix):
-    out = tmp_path / f"ring.{suffix}"
-    options = ("--vibration", "sequence", "--frames", 4, "--resolution", 1)
-    done = call("map", scene, "--out", out, *options)
+SEQUENCE = ("--vibration", "sequence", "--frames", 4)
+# sin 2πft at the quarters of a swing, through δ¹ of an amplitude of 1 (eq. 8.1).
+QUARTERS = [127.5, 0, 127.5, 255]
+
+
+def test_an_animation_swings(scene, call, tmp_path):
+    out = tmp_path / "ring.gif"
+    done = call("map", scene, "--out", out, *SEQUENCE, "--resolution", 1)
     assert done.code == 0
-    assert "time between maps: 10 ms, of one slowest swing of 40 ms" in done.out
+    assert "time between maps: 10 ms, of one slowest swing of 40 ms; each is shown" in done.out
     with Image.open(out) as image:
         assert image.n_frames == 4
         grays = []
         for frame in range(4):
             image.seek(frame)
             grays.append(image.convert("L").getpixel((12, 15)))
-    # sin 2πft at the quarters of a swing, through δ¹ of an amplitude of 1 (eq. 8.1).
-    assert np.abs(np.array(grays) - [127.5, 0, 127.5, 255]).max() <= 3
+    assert np.abs(np.array(grays) - QUARTERS).max() <= 3
+
+
+def gray_at_the_ring(path):
+    """Gray 8 mm left of the middle, where the ring swings most, from any file of a map."""
+    content = path.read_bytes()
+    if path.suffix == ".csv":
+        rows = csv.DictReader(content.decode().splitlines())
+        at = {(float(row["x_mm"]), float(row["y_mm"])): float(row["deflection"]) for row in rows}
+        return 255 * (1 - at[12.5, 15.5])
+    if path.suffix == ".svg":
+        encoded = re.search(rb"data:image/png;base64,([^\"]*)", content)[1]
+        content = base64.b64decode(encoded)
+    with Image.open(io.BytesIO(content)) as image:
+        return image.convert("L").getpixel((12, 15))
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "csv"])
+def test_a_sequence_is_numbered_files_over_one_period(scene, call, tmp_path, suffix):
+    done = call("map", scene, "--out", tmp_path / f"r.{suffix}", *SEQUENCE, "--resolution", 1)
+    assert (done.code, done.err) == (0, "")
+    paths = [tmp_path / f"r-00{number}.{suffix}" for number in (1, 2, 3, 4)]
+    assert sorted(tmp_path.iterdir()) == [*paths, scene]
+    assert f"drawn: 4 files, {paths[0]} to {paths[3]}\n" in done.out
+    assert "time between maps: 10 ms, of one slowest swing of 40 ms\n" in done.out
+    assert np.abs(np.array([gray_at_the_ring(path) for path in paths]) - QUARTERS).max() <= 3
+
+
+def test_each_of_a_sequence_says_its_number_and_its_time(scene, call, tmp_path):
+    options = ("--array", "12,15", "--axes")
+    assert call("map", scene, "--out", tmp_path / "r.png", *SEQUENCE, *options).code == 0
+    told = []
+    for number in (1, 2, 3, 4):
+        with Image.open(tmp_path / f"r-00{number}.png") as image:
+            told.append(image.text["Description"])
+    assert "number 2 of 4; time: 10 ms after the beginning" in told[1]
+    assert all("bars that vibrate: as they are" in words for words in told)
+    assert len(set(told)) == 4
+
+
+@pytest.mark.parametrize("number", ["001", "003", "007"])
+def test_a_sequence_is_written_over_none_of_another(scene, call, tmp_path, number):
+    kept = tmp_path / f"r-{number}.csv"
+    kept.write_text("mine")
+    options = ("--out", tmp_path / "r.csv", *SEQUENCE, "--resolution", 1)
+    done = call("map", scene, *options)
+    assert done.code == 2
+    assert f"{kept} is there already; give another name with --out, or --force" in done.err
+    assert sorted(tmp_path.iterdir()) == [kept, scene]
+    assert kept.read_text() == "mine"
+    done = call("map", scene, *options, "--force")
+    assert (done.code, len(list(tmp_path.glob("r-*.csv")))) == (0, 4 + (number == "007"))
+    left = f"left as it was: {kept}, which is not of this sequence"
+    assert (left in done.out, kept.read_text() == "mine") == ((number == "007"),) * 2
+
+
+def test_a_sequence_is_refused_as_a_whole_before_anything_is_written(scene, call, tmp_path):
+    out = tmp_path / "none" / "r.png"
+    done = call("map", scene, "--out", out, *SEQUENCE, "--resolution", 1)
+    assert done.code == 2
+    assert "r-001.png cannot be written: No such file or directory" in done.err
+    done = call("map", scene, "--out", tmp_path / "r.csv", *SEQUENCE, "--resolution", 50)
+    assert done.code == 2
+    assert "4 maps would each be 2000 × 1500 pixels, and there is room for 10 million" in done.err
+    assert list(tmp_path.iterdir()) == [scene]
 
 
 def test_parities_swing_against_each_other(scene, call, tmp_path):
     for parity in (0, 1):
-        options = ("--vibration", "sequence", "--frames", 4, "--parity", parity)
+        options = (*SEQUENCE, "--parity", parity)
         assert call("map", scene, "--out", tmp_path / f"{parity}.png", *options).code == 0
-    with Image.open(tmp_path / "0.png") as one, Image.open(tmp_path / "1.png") as other:
-        one.seek(1)
-        other.seek(3)
-        assert np.abs(np.array(one, float) - np.array(other, float)).max() <= 1
+    one, other = pixels_of(tmp_path / "0-002.png"), pixels_of(tmp_path / "1-004.png")
+    assert np.abs(one - other).max() <= 1
+    assert np.abs(one - pixels_of(tmp_path / "1-002.png")).max() > 100
 
 
 def test_the_array_is_drawn_where_it_is(scene, call, tmp_path):
@@ -180,7 +247,10 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--array", "5"), "'5' is no place; give X,Y in mm"),
         (("--out", "a.png", "--abstract", "--raised"), "leave one of them out"),
         (("--out", "a.csv", "--abstract"), "--abstract is no map; end --out in .svg"),
-        (("--out", "a.svg", "--vibration", "sequence"), "end --out in .png or .gif"),
+        (
+            ("--out", "a.gif", "--vibration", "sequence", "--axes"),
+            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
+        ),
         (("--out", "a.gif"), "GIF is for --vibration sequence"),
         (("--out", "a.png", "--frames", "4"), "--frames and --parity are for --vibration sequ"),
         (("--out", "a.png", "--vibration", "sequence", "--frames", "1"), "--frames is 1; it must"),

@@ -16,10 +16,11 @@ class Shown(NamedTuple):
     scene: str
     more: str = ""
     options: tuple[str, ...] = ()
+    kind: str = "png"
 
     @property
     def name(self) -> str:
-        return f"{self.scene}{self.more}.png"
+        return f"{self.scene}{self.more}.{self.kind}"
 
     def command(self, folder: Path) -> list[str]:
         """Command that draws it into a folder."""
@@ -27,17 +28,21 @@ class Shown(NamedTuple):
         return ["map", str(scene), "--out", str(folder / self.name), "--force", *self.options]
 
 
-COARSE = ("--resolution", "3")
-LARGE = {"distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
+COARSE, FINE = ("--resolution", "3"), ("--resolution", "8")
+LARGE = {"bank": "2.5", "distortions": "2.8", "layers": "2.5", "mixed": "3"}  # would be above 15 kB
 GALLERY = [
     *(
         Shown(path.stem, options=("--resolution", LARGE.get(path.stem, "4")))
         for path in sorted(SCENES.glob("*.scene"))
     ),
-    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE)),
+    Shown("pictured", "-sequence", ("--vibration", "sequence", "--frames", "4", *COARSE), "gif"),
     Shown("pictured", "-array", ("--array", "14,27", "--resolution", "5", "--axes")),
     Shown("pictured", "-abstract", ("--abstract", "--resolution", "5")),
     Shown("pictured", "-raised", ("--raised", "--resolution", "5")),
+    Shown("joints", "-raised", ("--raised", *FINE)),
+    Shown("markers", "-abstract", ("--abstract", *FINE)),
+    Shown("markers", "-raised", ("--raised", *FINE)),
+    Shown("dotted", "-raised", ("--raised", *FINE)),
     Shown("labelled", "-raised", ("--raised", "--resolution", "5")),
 ]
 

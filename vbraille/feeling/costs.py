@@ -22,7 +22,7 @@ from vbraille.render.scene.compiling import SceneCompiler
 from vbraille.scene.bounds import bounds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -129,6 +129,26 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
     ValueError
         If the path has less than one batch of frames.
     """
+    at = batches_of(path)
+    taken_us = time_frames([program], at, repeats)[0]
+    middle = at.mean(axis=1)
+    return Costs(
+        middle[:, work.X],
+        middle[:, work.Y],
+        np.maximum(np.median(taken_us, axis=0), 0),
+        program.shape[0] * program.shape[1],
+        _resolution_ns() / BATCH_FRAMES / 1000,
+    )
+
+
+def batches_of(path: PosedPath) -> NDArray[np.float64]:
+    """Put the poses of a path into batches, as float64[batches, frames, 6] of `work`'s columns.
+
+    Raises
+    ------
+    ValueError
+        If the path has less than one batch of frames.
+    """
     batches = path.t_s.size // BATCH_FRAMES
     if not batches:
         raise ValueError(f"a path of {path.t_s.size} frames is too short to be timed")
@@ -136,30 +156,52 @@ def measure(program: Program, path: PosedPath, repeats: int = REPEATS) -> Costs:
     at = np.zeros((count, 6))
     at[:, work.X], at[:, work.Y] = path.x_mm[:count], path.y_mm[:count]
     at[:, work.THETA], at[:, work.TIME] = path.theta_rad[:count], path.t_s[:count]
-    at = at.reshape(batches, BATCH_FRAMES, 6)
-    parts = np.zeros(BATCH_FRAMES, np.int64)
-    out = np.empty((BATCH_FRAMES, *program.shape), np.float32)
-    numbers, table = program.numbers, program.table
-    scratch = scratch_for(program.shape, program.kind)
-    taken_ns = np.empty((repeats, batches), np.int64)
-    kernels.poses(numbers, table, scratch, at[0], parts, out)  # compiled, or loaded
-    empty_ns = _call_ns(program)
+    return at.reshape(batches, BATCH_FRAMES, 6)
+
+
+def time_frames(
+    programs: Sequence[Program], at: NDArray[np.float64], repeats: int
+) -> NDArray[np.float64]:
+    """Time the frames of programs for one display at the same poses, batch by batch.
+
+    Each batch is timed with all of the programs in turn, so that what slows the machine for a
+    while slows all of them.
+
+    Parameters
+    ----------
+    programs
+        The programs.
+    at : float64[batches, frames, 6]
+        Poses, as `batches_of` has them.
+    repeats
+        How often each batch is timed.
+
+    Returns
+    -------
+    float64[programs, repeats, batches]
+        Time of a frame in µs, without that of the call.
+    """
+    shape, kind = programs[0].shape, programs[0].kind
+    batches, frames, _ = at.shape
+    parts = np.zeros(frames, np.int64)
+    out = np.empty((frames, *shape), np.float32)
+    scratch = scratch_for(shape, kind)
+    taken_ns = np.empty((len(programs), repeats, batches), np.int64)
+    compiled = [(program.numbers, program.table) for program in programs]
+    kernels.poses(*compiled[0], scratch, at[0], parts, out)  # compiled, or loaded
+    empty_ns = _call_ns(programs[0])
     now_ns = time.perf_counter_ns
     for repeat in range(repeats):
+        # Whoever comes first finds the poses far away in memory, and so they take turns.
+        order = [(number + repeat) % len(compiled) for number in range(len(compiled))]
         for batch in range(batches):
             here = at[batch]
-            begun_ns = now_ns()
-            kernels.poses(numbers, table, scratch, here, parts, out)
-            taken_ns[repeat, batch] = now_ns() - begun_ns
-    frame_us = np.maximum(np.median(taken_ns, axis=0) - empty_ns, 0) / BATCH_FRAMES / 1000
-    middle = at.mean(axis=1)
-    return Costs(
-        middle[:, work.X],
-        middle[:, work.Y],
-        frame_us,
-        program.shape[0] * program.shape[1],
-        _resolution_ns() / BATCH_FRAMES / 1000,
-    )
+            for number in order:
+                numbers, table = compiled[number]
+                begun_ns = now_ns()
+                kernels.poses(numbers, table, scratch, here, parts, out)
+                taken_ns[number, repeat, batch] = now_ns() - begun_ns
+    return (taken_ns - empty_ns) / frames / 1000
 
 
 def _call_ns(program: Program) -> float:
@@ -222,12 +264,22 @@ def histogram(costs: Costs) -> list[tuple[float, float, float]]:
     ]
 
 
-def to_csv(costs: Costs) -> str:
-    """Write places and costs as CSV: x_mm, y_mm, frame_us."""
+def to_csv(costs: Costs, kinds_us: Mapping[str, NDArray[np.float64]] | None = None) -> str:
+    """Write places and costs as CSV: x_mm, y_mm, frame_us, and a column for each kind of pattern.
+
+    Parameters
+    ----------
+    costs
+        What was measured.
+    kinds_us : mapping of str to float64[n]
+        What each kind has in the time of a frame there, by the kind's name.
+    """
+    kinds_us = kinds_us or {}
     written = io.StringIO(newline="")
     writer = csv.writer(written, lineterminator="\n")
-    writer.writerow(("x_mm", "y_mm", "frame_us"))
-    for row in zip(costs.x_mm.tolist(), costs.y_mm.tolist(), costs.frame_us.tolist(), strict=True):
+    writer.writerow(("x_mm", "y_mm", "frame_us", *(f"{kind}_us" for kind in kinds_us)))
+    columns = (costs.x_mm, costs.y_mm, costs.frame_us, *kinds_us.values())
+    for row in np.stack(columns, axis=-1).tolist():
         writer.writerow(f"{value:.4f}" for value in row)
     return written.getvalue()
 

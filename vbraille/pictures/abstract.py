@@ -121,7 +121,8 @@ class _Painter:
         match pattern:
             case StraightLine() | Circle() | Polygon() | PathShape():
                 yield from self._fill(pattern, where, strength)
-                yield from self._clipped(shape_marks(pattern, self._look, strength), where)
+                marks = shape_marks(pattern, self._canvas, self._look, strength)
+                yield from self._clipped(marks, where)
             case Dots():
                 yield from self._clipped(dots_marks(pattern, self._look, strength), where)
             case Label():

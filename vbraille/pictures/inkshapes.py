@@ -1,8 +1,8 @@
 """Shapes, dots and braille as ink: strokes as thick as they are felt, true to scale.
 
 A stroke is drawn where it is above half of its height: ε/2 narrower at each side than it is wide
-(eq. 8.7 of Lévesque 2009). Cuts of a texture along it are half as long as its ridges, for the same
-reason. What vibrates is dotted.
+(eq. 8.7 of Lévesque 2009). Strokes with a texture along them or with markers are drawn by
+`inkfelt`, where they are felt. What vibrates is dotted.
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.braille.dots import PLACES
 from vbraille.braille.geometry import STANDARD
 from vbraille.pictures.hatching import dotted
-from vbraille.pictures.ink import InkDiscs, InkLine
+from vbraille.pictures.ink import InkArea, InkDiscs, InkLine
+from vbraille.pictures.inkfelt import felt_contours, marker_dots_mm
 from vbraille.scene.dotting import dots_of
-from vbraille.scene.fitting import stroke_cycles
 from vbraille.scene.patterns import Circle, PathShape, Polygon
 from vbraille.scene.shapes import StraightLine
 
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
     from vbraille.pictures.looks import InkLook
     from vbraille.render.scene.assets import Written
     from vbraille.scene.dots import Dots
-    from vbraille.scene.fitting import Cycle
     from vbraille.scene.labels import Label
-    from vbraille.scene.strokes import DotStyle, Stroke
+    from vbraille.scene.scene import Canvas
+    from vbraille.scene.strokes import DotStyle, Dotting, Stroke
 
 AnyShape = StraightLine | Circle | Polygon | PathShape
 _SHAKING_CUT = 0.7  # gray of what is down in a stroke and vibrates
@@ -60,38 +61,89 @@ def is_closed(shape: AnyShape) -> bool:
     return isinstance(shape, Circle | Polygon) or (isinstance(shape, PathShape) and shape.closed)
 
 
-def shape_marks(shape: AnyShape, look: InkLook, strength: float) -> Iterator[PlainMark]:
+def shape_marks(
+    shape: AnyShape, canvas: Canvas, look: InkLook, strength: float
+) -> Iterator[PlainMark]:
     """Draw the stroke or the dots of a shape, without its fill.
 
     Parameters
     ----------
     shape
         The shape.
+    canvas
+        The canvas that it is on.
     look
         The least sizes of what is drawn.
     strength
         Factor of its deflections, from 0 to 1.
     """
     if shape.dots is not None:
-        style, swing = shape.dots.dot, shape.dots.vertex_vibration
-        placed = dots_of(shape)
-        for vertex in (False, True):
-            centers = [(dot.x_mm, dot.y_mm) for dot in placed if dot.vertex == vertex]
-            shakes = style.vibration is not None or (vertex and swing is not None)
-            yield from _discs(np.array(centers), style, look, strength, shakes=shakes)
-    if shape.stroke is not None:
+        yield from _dotted_marks(shape, shape.dots, look, strength)
+    if shape.stroke is None:
+        return
+    if _is_textured(shape, shape.stroke, look):
+        yield from _felt_marks(shape, shape.stroke, canvas, look, strength)
+    else:
         shakes = shape.vibration is not None or shape.stroke.vibration is not None
-        for contour, cycle in zip(
-            outline(shape), stroke_cycles(shape) or (None,) * len(outline(shape)), strict=True
-        ):
-            yield from _stroke(
-                (contour,), shape.stroke, cycle, look, strength, is_closed(shape), shakes
-            )
-    if isinstance(shape, Polygon) and shape.markers is not None:
-        radius = max((shape.stroke.width_mm if shape.stroke else 2.0) / 2, look.dot_mm / 2)
-        yield InkDiscs(np.array(shape.vertices_mm), radius, look.ink(1.0))
-        if shape.markers.swing is not None and not look.raised:
-            yield InkDiscs(np.array(shape.vertices_mm), radius / 2, 1.0)
+        for contour in outline(shape):
+            yield from _stroke((contour,), shape.stroke, look, strength, is_closed(shape), shakes)
+
+
+def _is_textured(shape: AnyShape, stroke: Stroke, look: InkLook) -> bool:
+    """Whether a stroke has more to draw than a line; stripes along it are too fine for fingers."""
+    marked = isinstance(shape, Polygon) and shape.markers is not None
+    return stroke.along is not None or marked or (stroke.across is not None and not look.raised)
+
+
+def _dotted_marks(
+    shape: AnyShape, dotting: Dotting, look: InkLook, strength: float
+) -> Iterator[PlainMark]:
+    """Draw the dots of a dotted shape, as far apart as a look needs them."""
+    style, swing = dotting.dot, dotting.vertex_vibration
+    apart_mm = 2 * (_dot_radius_mm(style, look) - style.radius_mm) + look.gap_mm
+    placed = dots_of(
+        replace(shape, dots=replace(dotting, separation_mm=max(dotting.separation_mm, apart_mm)))
+    )
+    for vertex in (False, True):
+        centers = [(dot.x_mm, dot.y_mm) for dot in placed if dot.vertex == vertex]
+        shakes = style.vibration is not None or (vertex and swing is not None)
+        yield from _discs(np.array(centers), style, look, strength, shakes=shakes)
+
+
+def _felt_marks(
+    shape: AnyShape, stroke: Stroke, canvas: Canvas, look: InkLook, strength: float
+) -> Iterator[PlainMark]:
+    """Draw a stroke with a texture along it or with markers, as areas where it is felt."""
+    edge, ink = stroke.edge, look.ink(strength * stroke.amplitude)
+    closed, contours = is_closed(shape), outline(shape)
+    low = stroke.vibration is not None and stroke.vibration.of == "low"
+    shakes = not low and (shape.vibration is not None or stroke.vibration is not None)
+    markers = shape.markers if isinstance(shape, Polygon) else None
+    dots_mm = np.zeros((0, 2))
+    if isinstance(shape, Polygon) and markers is not None and markers.swing is not None:
+        dots_mm = marker_dots_mm(shape, look)
+    width = max(stroke.width_mm - edge, look.line_mm)
+    if look.raised and shakes:
+        for contour in contours:
+            yield from _stroke((contour,), stroke, look, strength, closed, shakes)
+        return
+    textures = [texture for texture in (stroke.along, stroke.across) if texture is not None]
+    if textures:
+        depth = 1.0 if look.raised else max(texture.amplitude for texture in textures)
+        blank = 1.0 - (1.0 - ink) * (1.0 - depth)
+        if low and not look.raised:
+            blank = _SHAKING_CUT
+        yield InkLine(contours, width, blank, closed)
+    areas = felt_contours(shape, canvas, look, dots_mm if look.raised else dots_mm[:0])
+    if areas:
+        yield InkArea(areas, ink)
+    dot = min(look.dot_mm, width if look.raised else 0.5 * width)
+    if shakes:
+        for contour in contours:
+            length = _length_mm(contour) if closed else None
+            yield InkLine((contour,), dot, 1.0, closed, dotted(dot, look, length))
+    if len(dots_mm):
+        yield InkDiscs(dots_mm, dot / 2, ink if look.raised else 1.0)
 
 
 def dots_marks(dots: Dots, look: InkLook, strength: float) -> Iterator[PlainMark]:
@@ -129,18 +181,17 @@ def label_marks(
 def _stroke(
     contours: Contours,
     stroke: Stroke,
-    cycle: Cycle | None,
     look: InkLook,
     strength: float,
     closed: bool,
     shakes: bool,
 ) -> Iterator[PlainMark]:
+    """Draw a stroke without a texture along it as a line, or as dots if it vibrates."""
     whole, edge = stroke.width_mm, stroke.edge
     width = max(whole - edge, look.line_mm)
     ink = look.ink(strength * stroke.amplitude)
     length = _length_mm(contours[0]) if closed else None
-    low = stroke.vibration is not None and stroke.vibration.of == "low"
-    if look.raised and shakes and not low:
+    if look.raised and shakes:
         dot = min(width, look.dot_mm)
         yield InkLine(contours, dot, ink, closed, dotted(dot, look, length))
         return
@@ -148,21 +199,7 @@ def _stroke(
     inner = whole - 3 * edge  # between the edges of an outline
     if stroke.outlined and edge >= look.line_mm and inner >= max(look.gap_mm, look.line_mm):
         yield InkLine(contours, inner, 1.0, closed)
-    along = stroke.along
-    if along is not None and cycle is not None:
-        cut = max(cycle.ridge / 2, look.gap_mm)
-        cycle_mm = cycle.length * math.ceil((cut + look.line_mm) / cycle.length - 1e-9)
-        cuts = max(inner, look.line_mm) if along.whole_edges and not look.raised else width
-        blank = 1.0 if look.raised else 1.0 - (1.0 - ink) * (1.0 - along.amplitude)
-        if low and not look.raised:
-            blank = _SHAKING_CUT
-        # A ridge of the grating begins where the path does, and its middle is cut.
-        into = cycle_mm - max(cycle.ridge / 2 - cut / 2, 0.0)
-        dashes = (cut, cycle_mm - cut)
-        yield InkLine(contours, 1.02 * cuts, blank, closed, dashes, into, round_ends=False)
-    if stroke.across is not None and not look.raised:
-        yield InkLine(contours, 0.1 * width, 1.0, closed)
-    if shakes and not low:
+    if shakes:
         dot = min(look.dot_mm, 0.5 * width)
         yield InkLine(
             contours, dot, ink if stroke.outlined else 1.0, closed, dotted(dot, look, length)
@@ -184,7 +221,12 @@ def _discs(
 ) -> Iterator[PlainMark]:
     if not len(centers_mm):
         return
-    radius = max(style.radius_mm - style.edge / 2, look.dot_mm / 2 if look.raised else 0.1)
+    radius = _dot_radius_mm(style, look)
     yield InkDiscs(centers_mm, radius, look.ink(strength * style.amplitude))
     if shakes and not look.raised:
         yield InkDiscs(centers_mm, radius / 2, 1.0)
+
+
+def _dot_radius_mm(style: DotStyle, look: InkLook) -> float:
+    """Radius at which a dot is half as high, or the least that is drawn."""
+    return max(style.radius_mm - style.edge / 2, look.dot_mm / 2 if look.raised else 0.1)

@@ -197,21 +197,21 @@ def small_png(scene: Scene, assets: Assets) -> bytes:
     area_mm2 = canvas.width_mm * canvas.height_mm
     per_mm = min(PIXELS_PER_MM, math.sqrt(_SMALL_PIXELS / area_mm2))
     while True:
-        content = png([grays(map_deflections(scene, assets, per_mm, noise_seed=None))], per_mm)
+        content = png(grays(map_deflections(scene, assets, per_mm, noise_seed=None)), per_mm)
         if len(content) <= _SMALL_BYTES:
             return content
         per_mm /= 1.5
 
 
 def png(
-    maps: Sequence[NDArray[np.uint8]], pixels_per_mm: float, told: Mapping[str, str] | None = None
+    pixels: NDArray[np.uint8], pixels_per_mm: float, told: Mapping[str, str] | None = None
 ) -> bytes:
-    """Make a PNG of gray maps; of several an animated one, which goes round for ever.
+    """Make a PNG of a gray map.
 
     Parameters
     ----------
-    maps : sequence of uint8[rows, columns]
-        The maps, at least one, all of one shape.
+    pixels : uint8[rows, columns]
+        The map.
     pixels_per_mm
         Resolution, which is kept in the file.
     told
@@ -221,13 +221,9 @@ def png(
     for key, text in {**(told or {}), "Software": "vbraille"}.items():
         if text.strip():
             inside.add_text(key, plain(text))
-    first, *others = map(Image.fromarray, maps)
     dpi = pixels_per_mm * _MM_PER_INCH
-    settings = {"dpi": (dpi, dpi), "pnginfo": inside, "optimize": True}
-    if others:
-        settings |= {"save_all": True, "append_images": others, "duration": _FRAME_MS, "loop": 0}
     content = io.BytesIO()
-    first.save(content, "png", **settings)
+    Image.fromarray(pixels).save(content, "png", dpi=(dpi, dpi), pnginfo=inside, optimize=True)
     return content.getvalue()
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.cli.terminal import say_line
 from vbraille.errors import InputError
 from vbraille.feeling.loading import load_scene
-from vbraille.files import write_file
+from vbraille.files import write_file, write_files
 from vbraille.pictures import scenes
 from vbraille.pictures.inkfiles import ink_bytes
 from vbraille.pictures.scenewords import scene_lines, scene_text
@@ -18,8 +18,12 @@ from vbraille.wording import count, nearest, spelled
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterator
 
-    from vbraille.pictures.ink import InkDrawing
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from vbraille.pictures.ink import InkDrawing, InkMark
     from vbraille.render.scene.assets import Assets
     from vbraille.scene.scene import Scene
 
@@ -28,6 +32,8 @@ _FRAMES, _MOST_FRAMES = 8, 500
 _FINE_PIXELS_PER_MM = 12.0  # of drawings without grays, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
+_SHOWN = "shown: a deflection map, rest white and full swing black"
+_SHOWN_CSV = "shown: a deflection map, a row for each pixel with x, y and its deflection"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -35,25 +41,47 @@ def run(arguments: argparse.Namespace) -> int:
     out = Path(arguments.out)
     kind = _kind(out)
     _check(arguments, kind)
-    if out.exists() and not arguments.force and not out.is_dir():
-        raise InputError(f"{out} is there already; give another name with --out, or --force")
+    numbered = arguments.vibration == "sequence" and kind != "gif"
+    if not arguments.force:
+        _check_free(out, numbered=numbered)
     loaded = load_scene(arguments.file, MODELS[arguments.model].style)
     scene, assets, title = loaded.scene, loaded.assets, loaded.title
     for note in loaded.notes:
         say_line(spelled(note), aside=True)
     draw = _map
     if arguments.vibration == "sequence":
-        draw = _sequence
+        draw = _animation
     elif arguments.abstract or arguments.raised:
         draw = _drawing
     try:
-        content, said = draw(scene, assets, arguments, kind, title)
+        if numbered:
+            said = _numbered(scene, assets, arguments, kind, title)
+        else:
+            content, said = draw(scene, assets, arguments, kind, title)
+            write_file(out, content, replace=arguments.force)
+            said = [f"drawn: {out}", *said]
     except ValueError as error:  # patterns stand too deep in each other
         raise InputError(f"{arguments.file}: {error}") from None
-    write_file(out, content, replace=arguments.force)
-    for line in (f"drawn: {out}", *said, *scene_lines(scene)):
+    for line in (*said, *scene_lines(scene)):
         say_line(line)
     return 0
+
+
+def _check_free(out: Path, *, numbered: bool) -> None:
+    """Refuse to write over anything, before anything is drawn."""
+    taken = _in_set(out) if numbered else [out] if out.exists() and not out.is_dir() else []
+    if taken:
+        raise InputError(f"{taken[0]} is there already; give another name with --out, or --force")
+
+
+def _in_set(out: Path) -> list[Path]:
+    """Files that are there with the names of a numbered set: F-001.png and so on for F.png."""
+    numbers = (_file(out, number) for number in range(1, _MOST_FRAMES + 1))
+    return [path for path in numbers if path.exists()]
+
+
+def _file(out: Path, number: int) -> Path:
+    return out.with_name(f"{out.stem}-{number:03}{out.suffix}")
 
 
 def _kind(out: Path) -> str:
@@ -85,12 +113,8 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
             "--sheet is for raised drawings; add --raised or leave it out",
         ),
         (
-            sequence and kind not in ("png", "gif"),
-            "a sequence is an animation; end --out in .png or .gif",
-        ),
-        (
-            sequence and (arguments.array or arguments.axes),
-            "--array and --axes are for one map; leave out either these or --vibration sequence",
+            kind == "gif" and (arguments.array or arguments.axes),
+            "an animation has maps alone; leave out --array and --axes, or end --out in .png",
         ),
         (
             not sequence and (arguments.frames is not None or arguments.parity is not None),
@@ -111,79 +135,159 @@ def _check(arguments: argparse.Namespace, kind: str) -> None:
 def _map(
     scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
 ) -> tuple[bytes, list[str]]:
+    _check_room(scene, arguments, kind)
+    over, array_said = _array(scene, assets, arguments, _ARRAY_TIME_S)
+    per_mm = _per_mm(arguments)
+    deflections = scenes.map_deflections(scene, assets, per_mm, noise_seed=arguments.seed)
+    said = [
+        _SHOWN if kind != "csv" else _SHOWN_CSV,
+        _pixels_said(scene, per_mm),
+        f"vibration: as noise, seed {arguments.seed}",
+        *array_said,
+    ]
+    return _content(scene, arguments, kind, title, deflections, over, said), said
+
+
+def _check_room(scene: Scene, arguments: argparse.Namespace, kind: str, maps: int = 1) -> None:
+    """Refuse maps of too many pixels before the first is made."""
+    most = scenes.MOST_CSV_ROWS if kind == "csv" else scenes.MOST_PIXELS
+    scenes.check_pixels(scene.canvas, _per_mm(arguments), maps, most)
+
+
+def _pixels_said(scene: Scene, per_mm: float) -> str:
+    columns, rows = scenes.check_pixels(scene.canvas, per_mm)
+    return f"pixels: {columns} × {rows}, {per_mm:g} a mm"
+
+
+def _array(
+    scene: Scene, assets: Assets, arguments: argparse.Namespace, time_s: float
+) -> tuple[tuple[InkMark, ...], list[str]]:
+    """Marks of the array as it is at a time, if it is wanted, and what is said of it."""
+    if arguments.array is None:
+        return (), []
+    from vbraille.pictures import overmap
+
+    display = MODELS[arguments.model].display
+    place = overmap.ArrayPlace(*arguments.array)
+    overmap.check_on_canvas(scene.canvas, display, place)
+    frame = overmap.array_deflections(scene, assets, display, place, time_s)
+    return overmap.array_marks(display, place, frame), [
+        f"array: {MODELS[arguments.model].title}, centre at ({place.x_mm:g}, {place.y_mm:g}) "
+        f"mm, turned by {place.angle_deg:g}°",
+        f"bars: shifted to the {display.rest_side} at rest and away from it at full swing, "
+        "farther than in truth",
+        f"bars that vibrate: as they are {1000 * time_s:.4g} ms after the beginning",
+    ]
+
+
+def _content(
+    scene: Scene,
+    arguments: argparse.Namespace,
+    kind: str,
+    title: str,
+    deflections: NDArray[np.float32],
+    over: tuple[InkMark, ...],
+    said: list[str],
+) -> bytes:
+    """Make the file of one map, with what is over it and around it."""
     per_mm = _per_mm(arguments)
     if kind == "csv":
-        scenes.check_pixels(scene.canvas, per_mm, most=scenes.MOST_CSV_ROWS)
-    over = ()
-    said = []
-    if arguments.array is not None:
-        from vbraille.pictures import overmap
-
-        display = MODELS[arguments.model].display
-        place = overmap.ArrayPlace(*arguments.array)
-        overmap.check_on_canvas(scene.canvas, display, place)
-        frame = overmap.array_deflections(scene, assets, display, place, _ARRAY_TIME_S)
-        over = overmap.array_marks(display, place, frame)
-        said = [
-            f"array: {MODELS[arguments.model].title}, centre at ({place.x_mm:g}, {place.y_mm:g}) "
-            f"mm, turned by {place.angle_deg:g}°",
-            f"bars: shifted to the {display.rest_side} at rest and away from it at full swing, "
-            "farther than in truth",
-            f"bars that vibrate: as they are {1000 * _ARRAY_TIME_S:g} ms after the beginning",
-        ]
-    deflections = scenes.map_deflections(scene, assets, per_mm, noise_seed=arguments.seed)
-    rows, columns = deflections.shape
-    said = [
-        "shown: a deflection map, rest white and full swing black",
-        f"pixels: {columns} × {rows}, {per_mm:g} a mm",
-        f"vibration: as noise, seed {arguments.seed}",
-        *said,
-    ]
-    if kind == "csv":
-        said[0] = "shown: a deflection map, a row for each pixel with x, y and its deflection"
-        return scenes.map_csv(deflections, per_mm), said
+        return scenes.map_csv(deflections, per_mm)
     if kind == "png" and not over and not arguments.axes:
         told = {"Title": title, "Description": _told(scene, said)}
-        return scenes.png([scenes.grays(deflections)], per_mm, told), said
+        return scenes.png(scenes.grays(deflections), per_mm, told)
     from vbraille.pictures.overmap import map_drawing
 
     drawing = map_drawing(scene, deflections, over, axes=arguments.axes)
-    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm), said
+    return ink_bytes(_named(drawing, scene, title, said), kind, per_mm)
 
 
-def _sequence(
-    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
-) -> tuple[bytes, list[str]]:
-    frames, parity = arguments.frames or _FRAMES, arguments.parity or 0
+def _period_s(scene: Scene, arguments: argparse.Namespace) -> float:
+    """Period that a sequence shows: that of the slowest swing or movement."""
     period_s = scenes.slowest_s(scene)
     if period_s is None:
         raise InputError(
             f"nothing in {arguments.file} vibrates or moves, so that all maps would be the same; "
             "leave out --vibration sequence"
         )
+    return period_s
+
+
+def _numbered(
+    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
+) -> list[str]:
+    """Write the maps of one period, a file each, and tell what there is to say."""
+    out, frames = Path(arguments.out), arguments.frames or _FRAMES
+    period_s, parity = _period_s(scene, arguments), arguments.parity or 0
+    _check_room(scene, arguments, kind, frames)
     per_mm = _per_mm(arguments)
-    scenes.check_pixels(scene.canvas, per_mm, frames)
-    times = [period_s * number / frames for number in range(frames)]
+    before = set(_in_set(out))
+    array_said: list[str] = []
+
+    def drawn() -> Iterator[tuple[Path, bytes]]:
+        for number in range(frames):
+            time_s = period_s * number / frames
+            over, array_said[:] = _array(scene, assets, arguments, time_s)
+            deflections = scenes.map_deflections(
+                scene, assets, per_mm, noise_seed=None, time_s=time_s, parity=parity
+            )
+            said = [
+                f"{_SHOWN}, number {number + 1} of {frames}",
+                f"time: {1000 * time_s:.4g} ms after the beginning",
+                f"actuators: those of parity {parity}",
+                *array_said,
+            ]
+            content = _content(scene, arguments, kind, title, deflections, over, said)
+            yield _file(out, number + 1), content
+
+    write_files(drawn(), replace=arguments.force)
+    others = sorted(before - {_file(out, number + 1) for number in range(frames)})
+    left = [f"left as it was: {path}, which is not of this sequence" for path in others]
+    return [
+        f"drawn: {frames} files, {_file(out, 1)} to {_file(out, frames)}",
+        _SHOWN_CSV if kind == "csv" else _SHOWN,
+        _pixels_said(scene, per_mm),
+        _between_said(period_s, frames),
+        f"actuators: those of parity {parity}",
+        *array_said[:2],
+        *left,
+    ]
+
+
+def _between_said(period_s: float, frames: int) -> str:
+    return (
+        f"time between maps: {1000 * period_s / frames:.4g} ms, of one slowest swing of "
+        f"{1000 * period_s:.4g} ms"
+    )
+
+
+def _animation(
+    scene: Scene, assets: Assets, arguments: argparse.Namespace, kind: str, title: str
+) -> tuple[bytes, list[str]]:
+    frames, parity = arguments.frames or _FRAMES, arguments.parity or 0
+    period_s = _period_s(scene, arguments)
+    _check_room(scene, arguments, kind, frames)
+    per_mm = _per_mm(arguments)
     maps = [
         scenes.grays(
             scenes.map_deflections(
-                scene, assets, per_mm, noise_seed=None, time_s=time_s, parity=parity
+                scene,
+                assets,
+                per_mm,
+                noise_seed=None,
+                time_s=period_s * number / frames,
+                parity=parity,
             )
         )
-        for time_s in times
+        for number in range(frames)
     ]
-    rows, columns = maps[0].shape
     said = [
         f"shown: {count(frames, 'deflection map')}, rest white and full swing black",
-        f"pixels: {columns} × {rows}, {per_mm:g} a mm",
-        f"time between maps: {1000 * period_s / frames:.4g} ms, of one slowest swing of "
-        f"{1000 * period_s:.4g} ms; each is shown for 100 ms",
+        _pixels_said(scene, per_mm),
+        f"{_between_said(period_s, frames)}; each is shown for 100 ms",
         f"actuators: those of parity {parity}",
     ]
-    text = _told(scene, said)
-    if kind == "gif":
-        return scenes.gif(maps, f"{title}. {text}"), said
-    return scenes.png(maps, per_mm, {"Title": title, "Description": text}), said
+    return scenes.gif(maps, f"{title}. {_told(scene, said)}"), said
 
 
 def _drawing(

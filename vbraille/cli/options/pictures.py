@@ -29,7 +29,7 @@ def scene_map(parser: ArgumentParser) -> None:
         "has a row for each pixel with x, y and the deflection there.",
     )
     parser.add_argument(
-        "--force", action="store_true", help="Replace the file if it is there already."
+        "--force", action="store_true", help="Replace a file that is there already."
     )
     parser.add_argument(
         "--resolution",
@@ -42,7 +42,8 @@ def scene_map(parser: ArgumentParser) -> None:
         choices=("noise", "sequence"),
         default="noise",
         help="Show what vibrates as noise of the same range, or as a sequence of maps at times of "
-        "a swing, which makes an animation, F.png or F.gif (default: noise).",
+        "one swing: an animation in F.gif, and numbered files otherwise, such as F-001.png to "
+        "F-008.png (default: noise).",
     )
     parser.add_argument(
         "--frames",
