@@ -9,7 +9,7 @@ from vbraille.display import Display
 from vbraille.render.scene.assets import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.dots import Dots
-from vbraille.scene.patterns import Circle, Fill, Group, Image, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group, Image, PathShape, Polygon
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import Across, Along, DotStyle, Stroke
@@ -168,3 +168,43 @@ def through_tens(count: int) -> tuple[np.ndarray, np.ndarray]:
     x_mm = np.arange(7.0, wide - 7.0, 0.1)
     within = np.stack([x_mm, np.linspace(7.0, high - 7.0, x_mm.size)], axis=1)
     return within, np.stack([wide * (blocks % across), high * (blocks // across)], axis=1)
+
+
+_TOOTH_MM = (12.0, 40.0, 16.0)  # steps along a tooth, from tooth to tooth, and their height
+
+
+def toothed(rows: int, steps: int) -> Scene:
+    """One filled path: a comb of so many teeth, each with jagged edges of so many steps.
+
+    Of 1 tooth with 3 steps it has 10 segments.
+    """
+    step, pitch, high = _TOOTH_MM
+    places = [(0.0, 0.0)]
+    for row in range(rows):
+        edge = [(20.0 + step * n, pitch * row + 12.0 + 2.0 * (n % 2)) for n in range(steps + 1)]
+        places += [*edge, *((x, y + high) for x, y in reversed(edge))]
+    places.append((0.0, pitch * rows))
+    path = PathShape(
+        contours_mm=(tuple(places),),
+        closed=True,
+        stroke=Stroke(width_mm=2.0),
+        fill=Fill(texture=LinearGrating(ridge_mm=2.0)),
+    )
+    canvas = Canvas(width_mm=40.0 + step * steps, height_mm=pitch * rows)
+    return Scene(canvas=canvas, elements=(path,))
+
+
+def along_teeth(rows: int, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Path of a finger along the edge of a tooth of a comb, and where else it can go the same way.
+
+    Returns
+    -------
+    float64[n, 2], float64[m, 2]
+        Places, from which the array reaches neither the tooth's ends nor others; and how far the
+        same places are from there, in reading order.
+    """
+    step, pitch, _ = _TOOTH_MM
+    x_mm = np.arange(31.0, 45.0, 0.1)
+    within = np.stack([x_mm, np.linspace(8.0, 28.0, x_mm.size)], axis=1)
+    column, row = np.meshgrid(np.arange(max(1, (steps - 2) // 2)), np.arange(rows))
+    return within, np.stack([2 * step * column.ravel(), pitch * row.ravel()], axis=1)

@@ -54,7 +54,15 @@ REACH, PIVOT_X, PIVOT_Y, ONWARD_X, ONWARD_Y, INWARD_X, INWARD_Y, ARC_RADIUS, ARC
 CORNER_NUMBERS = 10
 SEGMENT_NUMBERS = CORNER + 2 * CORNER_NUMBERS
 # Numbers of a marker, which follow those of its polygon's segment that begins there.
-MARK_X, MARK_Y, MARK_SINE, MARK_COSINE, MARK_PUSHED = range(SEGMENT_NUMBERS, SEGMENT_NUMBERS + 5)
+(
+    MARK_X,
+    MARK_Y,
+    MARK_SINE,
+    MARK_COSINE,
+    MARK_PUSHED,
+    MARK_BEFORE,  # by how much the numbers of the segment that ends there are before these
+    MARKED_NUMBERS,
+) = range(SEGMENT_NUMBERS, SEGMENT_NUMBERS + 7)
 
 
 @compiled
@@ -170,7 +178,10 @@ def _round(numbers, corner, x, y):
 
 @compiled
 def inside(numbers, rows, block, first, parts, count):
-    """Tell what is inside of closed lines by the even-odd rule, from all of their segments."""
+    """Tell what is inside of closed lines by the even-odd rule.
+
+    What is to the right of all places is told by walls: `vbraille.render.scene.enclosures`.
+    """
     for n in range(count):
         rows[INSIDE_ROW, n] = 0.0
     for number in range(parts):
@@ -201,18 +212,16 @@ def markers(numbers, rows, at, block, first, parts, count):
         rows[MARKED_ROW, n] = 0.0
         if not rows[ACROSS_ROW, n] < half:
             continue
-        nearest, least = 0, _FAR
+        own = int(rows[PART_ROW, n])
+        part, least = own, _FAR
         for number in range(parts):
-            part = block + int(numbers[first + number])
-            dx, dy = x - numbers[part], y - numbers[part + START_Y]
+            other = block + int(numbers[first + number])
+            dx, dy = x - numbers[other], y - numbers[other + START_Y]
             q = dx * dx + dy * dy
             if q < least:
-                nearest, least = number, q
-        own = int(rows[PART_ROW, n]) - block
-        before = numbers[first + (nearest - 1 if nearest > 0 else parts - 1)]
-        if own != numbers[first + nearest] and own != before:
+                part, least = other, q
+        if own != part and own != part - int(numbers[part + MARK_BEFORE]):
             continue
-        part = block + int(numbers[first + nearest])
         corner = part + CORNER
         dx, dy = x - numbers[part + MARK_X], y - numbers[part + MARK_Y]
         onward = dx * numbers[corner + ONWARD_X] + dy * numbers[corner + ONWARD_Y]

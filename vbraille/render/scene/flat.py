@@ -11,12 +11,16 @@ from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
 from vbraille.render.scene.blocks import WordBlock
 from vbraille.render.scene.nodes import LeafReach, NodeKind
+from vbraille.render.scene.reachkernels import NODE, REACH_COLUMNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.scene.blocks import TableEntry
     from vbraille.render.scene.nodes import Node
+
+
+_BOX = int(LeafReach.BOX)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +63,7 @@ def flatten(tree: Node, frequency_hz: float = 0.0) -> Flat:
     numbers = flattening.numbers
     return Flat(
         np.array(flattening.nodes, np.float64).reshape(-1, g.NODE_COLUMNS),
-        np.array(flattening.reach, np.float64).reshape(-1, g.REACH_COLUMNS),
+        np.array(flattening.reach, np.float64).reshape(-1, REACH_COLUMNS),
         numbers[0] if len(numbers) == 1 else np.concatenate([np.empty(0), *numbers]),
         np.array(flattening.changes, np.float64),
         tuple(flattening.entries),
@@ -103,22 +107,24 @@ class _Flattening:
         assert node.say is not None
         block = WordBlock()
         kept = node.say(block, node.parts)
-        places = [place + block.first_constant for place in kept]
         numbers, entries = block.finish(node.box)
         row[g.BLOCK], row[g.PARTED], row[g.ALWAYS] = self._size, node.parts, node.box is None
+        row[g.SOLID] = node.solid
         self.entries += [entry._replace(at=entry.at + self._size) for entry in entries]
         self._keep(numbers)
         if node.box is None or node.box.is_empty:
             return
         if not node.enclosed:
-            self.reach.append((number, 0.0, LeafReach.BOX, *node.box, 0.0))
+            self.reach.append((number, 0, _BOX, *node.box, 0.0))
             if node.inside is not None:
-                inside = node.inside
-                self.reach.append((number, 0.0, inside.kind, *inside.numbers, inside.reach_mm))
+                self.reach.append((number, 0, *node.inside))
             return
-        for index, enclosed in enumerate(node.enclosed):
-            part = places[index] if node.parts else 0
-            self.reach.append((number, part, enclosed.kind, *enclosed.numbers, enclosed.reach_mm))
+        first = block.first_constant
+        places = [place + first for place in kept] if node.parts else [0] * len(node.enclosed)
+        self.reach += [
+            (number, place, *enclosed)
+            for place, enclosed in zip(places, node.enclosed, strict=True)
+        ]
 
     def _keep(self, numbers: NDArray[np.float64]) -> None:
         self.numbers.append(numbers)
@@ -241,7 +247,7 @@ def _move(
     """Count places from elsewhere: each row by int64[4], or all of them by one."""
     nodes[:, g.BLOCK] += nodes_by[..., 2]
     nodes[:, g.CHANGES] += nodes_by[..., 3]
-    reach[:, g.NODE] += reach_by[..., 0]
+    reach[:, NODE] += reach_by[..., 0]
     changes += words.OPERATIONS * changes_by[..., 2]
 
 

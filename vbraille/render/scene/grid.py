@@ -15,6 +15,7 @@ import numpy as np
 from vbraille.render.machine import words
 from vbraille.render.scene import gridkernels as g
 from vbraille.render.scene.blocks import EVERYWHERE
+from vbraille.render.scene.reachkernels import entries
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -102,7 +103,7 @@ def assemble(
         )
     nodes, changes = flat.nodes.copy(), flat.changes + words.OPERATIONS * base
     nodes[:, g.BLOCK] += base
-    begins, listed = g.entries(
+    begins, listed = entries(
         flat.reach,
         grid.radius_mm,
         grid.left_mm,

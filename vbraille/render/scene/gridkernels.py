@@ -4,11 +4,10 @@ A tile's words are for every array whose centre is in it. Nodes stand in an orde
 come before what is made of them, so that words can be said in that order, too.
 """
 
-import math
-
 import numpy as np
 
 from vbraille.render.machine import words as w
+from vbraille.render.scene.reachkernels import AROUND, BOX, NODE, PART, REACH_KIND
 from vbraille.render.waves import compiled
 
 # Columns of nodes: see `vbraille.render.scene.flat`.
@@ -24,111 +23,28 @@ from vbraille.render.waves import compiled
     CHANGES,  # place of a change's words, and how many these are
     CHANGE_COUNT,
     PARTED,  # 1 if its words are told of parts
-) = range(11)
-NODE_COLUMNS = 11
-# Columns of what leaves, and their parts, lie in.
-(
-    NODE,
-    PART,  # its place in the leaf's block; 0 for the whole leaf
-    REACH_KIND,
-    A,
-    B,
-    C,
-    D,
-    REACH_MM,
-) = range(8)
-REACH_COLUMNS = 8
-
+    SOLID,  # 1 if it is 1, or hides what is beneath it, where it is solid
+) = range(12)
+NODE_COLUMNS = 12
 LEAF, ADD, MAXIMUM, MULTIPLY, BLEND, OVER, LAYER, CHANGE = range(8)
-BOX, CAPSULE, RING, DISC_INSIDE, BOX_INSIDE = range(5)
 ITSELF, PAIR, COVER = range(3)
 _NONE = -1
-_ROUNDING_MM = 1e-6
-
-
-@compiled
-def _is_near(reach, n, x, y, radius):
-    """Tell whether anything of a thing is nearer than that to a place.
-
-    Of what is inside of a shape: whether all that is nearer than that to a place is inside.
-    """
-    a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
-    radius += reach[n, REACH_MM]
-    kind = reach[n, REACH_KIND]
-    if kind == BOX:
-        dx, dy = max(a - x, x - c, 0.0), max(b - y, y - d, 0.0)
-        return dx * dx + dy * dy <= radius * radius
-    if kind == RING:
-        return abs(math.sqrt((x - a) ** 2 + (y - b) ** 2) - c) <= radius
-    if kind == DISC_INSIDE:
-        return math.sqrt((x - a) ** 2 + (y - b) ** 2) + radius + _ROUNDING_MM <= c
-    if kind == BOX_INSIDE:
-        radius += _ROUNDING_MM
-        return a <= x - radius and x + radius <= c and b <= y - radius and y + radius <= d
-    dx, dy = c - a, d - b
-    u, v = x - a, y - b
-    square = dx * dx + dy * dy
-    if square > 0.0:
-        share = min(max((u * dx + v * dy) / square, 0.0), 1.0)
-        u -= share * dx
-        v -= share * dy
-    return u * u + v * v <= radius * radius
-
-
-@compiled
-def _range(reach, n, radius, left, top, tiles_per_mm, columns, rows):
-    """Range of the tiles that a thing can be near to: columns, and rows."""
-    a, b, c, d = reach[n, A], reach[n, B], reach[n, C], reach[n, D]
-    radius += reach[n, REACH_MM]
-    if reach[n, REACH_KIND] == RING or reach[n, REACH_KIND] == DISC_INSIDE:
-        a, b, c, d = a - c, b - c, a + c, b + c
-    x0, x1 = (min(a, c) - radius - left) * tiles_per_mm, (max(a, c) + radius - left) * tiles_per_mm
-    y0, y1 = (min(b, d) - radius - top) * tiles_per_mm, (max(b, d) + radius - top) * tiles_per_mm
-    return (
-        int(max(math.floor(min(x0, columns)), 0.0)),
-        int(min(math.floor(max(x1, -1.0)), columns - 1.0)),
-        int(max(math.floor(min(y0, rows)), 0.0)),
-        int(min(math.floor(max(y1, -1.0)), rows - 1.0)),
-    )
-
-
-@compiled
-def entries(reach, radius, left, top, tile_mm, columns, rows):
-    """List what is near each tile: where its list begins, and numbers of rows of ``reach``.
-
-    ``radius`` is that of the array; the tiles are grown by it.
-    """
-    tiles_per_mm = 1.0 / tile_mm
-    grown = radius + tile_mm * math.sqrt(0.5)
-    begins = np.zeros(columns * rows + 1, np.int64)
-    free = np.zeros(columns * rows, np.int64)
-    filled = np.empty(0, np.int64)
-    for filling in range(2):
-        if filling:
-            for tile in range(columns * rows):
-                begins[tile + 1] = begins[tile] + free[tile]
-                free[tile] = begins[tile]
-            filled = np.empty(begins[-1], np.int64)
-        for n in range(reach.shape[0]):
-            first, last, upper, lower = _range(
-                reach, n, radius, left, top, tiles_per_mm, columns, rows
-            )
-            for row in range(upper, lower + 1):
-                y = top + (row + 0.5) * tile_mm
-                for column in range(first, last + 1):
-                    x = left + (column + 0.5) * tile_mm
-                    if not _is_near(reach, n, x, y, grown):
-                        continue
-                    tile = row * columns + column
-                    if filling:
-                        filled[free[tile]] = n
-                    free[tile] += 1
-    return begins, filled
 
 
 # Columns of what is known of the nodes of one tile: the row of the nodes in reach is `_STAMP`.
-_STAMP, _HAVE, _LOWEST, _MASK, _ALIVE, _FIRST, _LAST, _COVERS = range(8)
-ROOM_COLUMNS = 8
+(
+    _STAMP,
+    _HAVE,
+    _LOWEST,
+    _MASK,
+    _ALIVE,
+    _FIRST,
+    _LAST,
+    _INSIDE,  # bit 0: something of it is solid here; bit 1: something of it begins or ends
+    _SOLIDS,  # how many children are 1 in all of the tile
+    _SOLID_MASK,  # which of the first three are, and, bit 3, whether the last one is
+) = range(10)
+ROOM_COLUMNS = 10
 
 
 @compiled
@@ -143,13 +59,17 @@ def _gather(nodes, always, reach, listed, room, active, stamp):
             node = int(reach[n, NODE])
             if room[node, _STAMP] != stamp:
                 room[node, _FIRST] = k - always.size
-                room[node, _COVERS] = 0
-            if reach[n, REACH_KIND] >= DISC_INSIDE:
-                room[node, _COVERS] = 1
+                room[node, _INSIDE] = 0
+            kind = reach[n, REACH_KIND]
+            if kind >= AROUND:
+                room[node, _INSIDE] |= 1
+            elif kind != BOX:
+                room[node, _INSIDE] |= 2
             room[node, _LAST] = k - always.size + 1
         while room[node, _STAMP] != stamp:
             room[node, _STAMP] = stamp
             room[node, _HAVE] = room[node, _MASK] = room[node, _ALIVE] = 0
+            room[node, _SOLIDS] = room[node, _SOLID_MASK] = 0
             room[node, _LOWEST] = _NONE
             active[count] = node
             count += 1
@@ -171,11 +91,32 @@ def _is_present(nodes, node, room):
     if kind == BLEND:
         # Bit 0 and 1 are the two parts, 2 what chooses, 3 whether that is 1 everywhere.
         return (mask & 1 != 0 and mask & 8 == 0) or (mask & 6) == 6
-    if kind == LAYER:
-        return mask & 1 != 0
     if kind == CHANGE:
         return have > 0 or nodes[node, ALWAYS] != 0.0
     return have > 0
+
+
+@compiled
+def _is_solid(nodes, node, room):
+    """Tell whether a node that is present is 1 in all of a tile, or hides what is beneath it.
+
+    It is told only where it is exact: a sum of what is 1 and something else is cut to 1, but what
+    is laid over what is 1 may be less by a rounding.
+    """
+    kind, solids, which = nodes[node, KIND], room[node, _SOLIDS], room[node, _SOLID_MASK]
+    if kind == LEAF:
+        if nodes[node, ONE] != 0.0:
+            return True
+        return nodes[node, SOLID] * (1.0 - nodes[node, ALWAYS]) != 0.0 and room[node, _INSIDE] == 1
+    if kind in (ADD, MAXIMUM):
+        return solids > 0
+    if kind == MULTIPLY:
+        return solids == nodes[node, CHILDREN]
+    if kind == BLEND:
+        return which & 3 == 3
+    if kind == LAYER:
+        return which & 2 != 0
+    return kind == OVER and which & 8 != 0
 
 
 @compiled
@@ -209,15 +150,20 @@ def _choose(nodes, room, active, count):
         if nodes[node, PARENT] == 0.0:
             continue
         parent = node + int(nodes[node, PARENT])
-        kind_is_leaf = nodes[node, KIND] == LEAF and nodes[node, ALWAYS] == 0.0
+        solid = _is_solid(nodes, node, room)
         room[parent, _HAVE] += 1
+        room[parent, _SOLIDS] += solid
+        room[parent, _SOLID_MASK] &= 7
+        if solid:
+            if nodes[node, PUSHES] == ITSELF:
+                room[parent, _SOLID_MASK] |= 8
+            if nodes[node, ORDINAL] < 3.0:
+                room[parent, _SOLID_MASK] |= 1 << int(nodes[node, ORDINAL])
         if nodes[node, ORDINAL] < 3.0:
             room[parent, _MASK] |= 1 << int(nodes[node, ORDINAL])
         if nodes[node, ONE] != 0.0 and nodes[node, ORDINAL] == 2.0:
             room[parent, _MASK] |= 8
-        covers = nodes[parent, KIND] == OVER and (
-            nodes[node, PUSHES] == COVER or (kind_is_leaf and room[node, _COVERS] != 0)
-        )
+        covers = nodes[parent, KIND] == OVER and (nodes[node, PUSHES] == COVER or solid)
         if covers or room[parent, _LOWEST] == _NONE:
             room[parent, _LOWEST] = node
     for k in range(count - 1, -1, -1):
@@ -323,6 +269,16 @@ def _say_tile(nodes, changes, reach, listed, room, active, count, said, at):
                 elif mask & 2 == 0:
                     said[at] = w.BLEND_FIRST
                 at += 1
+        elif kind == LAYER and room[node, _MASK] & 1 == 0:
+            # At rest, but hiding: r, μ -> (1 - μ) r.
+            if not joining:
+                said[at] = w.ZERO
+                at += 1
+            else:
+                said[at] = w.INVERT
+                said[at + 1] = w.MULTIPLY
+                at += 2
+            continue
         if joining:
             said[at] = _join_word(above, pushes)
             at += 1

@@ -40,18 +40,17 @@ class LeafReach(IntEnum):
     BOX = 0  # left, top, right, bottom
     CAPSULE = 1  # start, end; all that is no farther from the line between them than the reach
     RING = 2  # centre, radius; all that is no farther from the circle than the reach
-    # What a leaf is opaque in, so that it hides what is beneath it.
-    DISC_INSIDE = 3  # centre, radius
-    BOX_INSIDE = 4  # left, top, right, bottom
+    # Parts of filled shapes: see `vbraille.render.scene.enclosures`.
+    EDGE = 3  # left, y of the start, right, y of the end of a segment
+    WALL = 4  # where two segments meet: the lesser left of theirs, y, the greater left, y
+    AROUND = 5  # left, top, right, bottom of all the segments
+    # What a leaf is solid in.
+    DISC_INSIDE = 6  # centre, radius
+    BAR_INSIDE = 7  # start, end of a line; all that is no farther from it, across, than the reach
 
 
-@dataclass(frozen=True, slots=True)
-class Enclosed:
-    """What a leaf or a part of it lies in."""
-
-    kind: LeafReach
-    numbers: tuple[float, float, float, float]
-    reach_mm: float = 0.0
+# What a leaf or a part of it lies in: a `LeafReach`, its four numbers, and the reach in mm.
+Enclosed = tuple[int, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +73,10 @@ class Node:
     parts
         Whether ``enclosed`` is about parts.
     inside
-        Where a leaf that pushes a mask is opaque, as far as it is simple to tell.
+        Where a leaf without such parts is solid, as far as it is simple to tell.
+    solid
+        Whether a leaf is 1 wherever it is solid, or hides all that is beneath it there. A filled
+        shape is so where all that an array reaches is inside of it, and far from its edges.
     pushes
         What it leaves on the stack below an OVER.
     changes : tuple of (operation, constants)
@@ -94,6 +96,7 @@ class Node:
     enclosed: tuple[Enclosed, ...] = ()
     parts: bool = False
     inside: Enclosed | None = None
+    solid: bool = False
     pushes: Pushes = Pushes.ITSELF
     changes: tuple[tuple[int, tuple[float, ...]], ...] = field(default=())
     everywhere: bool = False

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 
 from vbraille.render.machine import words
 from vbraille.render.machine.labelplaces import TABLE
-from vbraille.render.scene import shapecode, texturecode
+from vbraille.render.scene import enclosures, shapecode, shapetrees, texturecode
 from vbraille.render.scene.brailleplaces import box_of, pack_label
-from vbraille.render.scene.nodes import Enclosed, LeafReach, Node, NodeKind, Pushes, joined
-from vbraille.render.scene.shapecode import AnyShape, fill_of
-from vbraille.scene.bounds import bounds, drawn_radius_mm, is_everywhere
+from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
+from vbraille.render.scene.pathparts import AnyShape
+from vbraille.render.scene.shapecode import fill_of
+from vbraille.render.scene.wholes import say_whole
+from vbraille.scene.bounds import is_everywhere
 from vbraille.scene.dots import Dots
-from vbraille.scene.dotting import PlacedDot, dots_of
 from vbraille.scene.labels import Label
 from vbraille.scene.opaque import bitmap_box, opaque
-from vbraille.scene.patterns import Circle, Group, Image, Polygon, Tile
+from vbraille.scene.patterns import Group, Image, Tile
 from vbraille.scene.textures import (
     AxialGrating,
     LinearGrating,
@@ -27,7 +28,7 @@ from vbraille.scene.textures import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Sequence
 
     from vbraille.render.scene.assets import Assets
     from vbraille.render.scene.blocks import WordBlock
@@ -46,14 +47,6 @@ _KINDS = {
 }
 
 
-_CORNERS = 4  # of a rectangle
-_JOINS = {
-    NodeKind.ADD: words.ADD,
-    NodeKind.MAXIMUM: words.MAXIMUM,
-    NodeKind.MULTIPLY: words.MULTIPLY,
-}
-
-
 def deflection(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern's deflection."""
     if isinstance(pattern, Group):
@@ -61,6 +54,8 @@ def deflection(pattern: AnyPattern, assets: Assets) -> Node:
     if isinstance(pattern, Image) and pattern.texture is not None:
         parts = (_image(pattern, assets), deflection(pattern.texture, assets))
         return _changed(pattern, joined(NodeKind.MULTIPLY, parts))
+    if isinstance(pattern, AnyShape) and shapetrees.is_apart(pattern):
+        return _changed(pattern, shapetrees.apart(pattern, _fill_texture(pattern, assets)))
     return _leaf(pattern, assets)
 
 
@@ -68,11 +63,11 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern as a layer over others: its deflection and what it hides."""
     if is_everywhere(pattern):
         return replace(deflection(pattern, assets), pushes=Pushes.COVER)
-    if isinstance(pattern, AnyShape | Dots):
+    if isinstance(pattern, AnyShape | Dots) and not shapetrees.is_apart(pattern):
         own = _leaf(pattern, assets)
         if _is_plain(pattern) and shapecode.is_own_mask(pattern):
             return own
-        return _pair(pattern, own)
+        return shapetrees.pair(pattern, own)
     covered = mask(pattern, assets)
     own = deflection(pattern, assets)
     if covered is None:
@@ -88,19 +83,20 @@ def mask(pattern: AnyPattern, assets: Assets) -> Node | None:
     match pattern:
         case Image():
             bitmap = assets.bitmaps[pattern]
-            say = partial(_say_bitmap, opaque(bitmap))
-            return Node(NodeKind.LEAF, say=say, box=bitmap_box(bitmap))
+            hiding = opaque(bitmap)
+            say, inside = partial(_say_bitmap, hiding), enclosures.pixels(hiding)
+            box = bitmap_box(bitmap)
+            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
         case Label():
             written = assets.written[pattern]
             packed = pack_label(pattern, written)
-            say = partial(_say_label, words.LABEL_MASK, packed)
-            return Node(NodeKind.LEAF, say=say, box=box_of(pattern, written))
-        case Dots():
-            return _parted(pattern, partial(_say_dots_mask, pattern))
+            say, box = partial(_say_label, words.LABEL_MASK, packed), box_of(pattern, written)
+            inside = enclosures.cells(pattern, written)
+            return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
         case Group():
             return _group_mask(pattern, assets)
-        case _ if isinstance(pattern, AnyShape):
-            return _parted(pattern, partial(_say_shape_mask, pattern))
+        case _ if isinstance(pattern, AnyShape | Dots):
+            return shapetrees.mask(pattern)
     return None
 
 
@@ -174,7 +170,7 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     """Leaf with a pattern's own changes among its words."""
     changes = _changes(pattern)
     if isinstance(pattern, AnyShape | Dots):
-        own = _shape(pattern, assets)
+        own = shapetrees.leaf(pattern, _fill_texture(pattern, assets))
     elif isinstance(pattern, Image):
         own = _image(pattern, assets)
     elif isinstance(pattern, Label):
@@ -200,72 +196,9 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     return replace(own, say=say)
 
 
-def _shape(pattern: AnyShape | Dots, assets: Assets) -> Node:
-    if isinstance(pattern, Dots):
-        return _parted(pattern, partial(_say_dots, pattern))
-    fill = fill_of(pattern)
-    if fill is None:
-        return _parted(pattern, partial(_say_shape, pattern, None))
-    texture = deflection(fill.texture, assets)
-    say = partial(_say_shape, pattern, partial(say_whole, texture))
-    return _parted(pattern, say, max(texture.depth, 3))
-
-
-def _pair(pattern: AnyShape | Dots, own: Node) -> Node:
-    """Leaf that pushes a deflection, and then its mask from the same coordinates."""
-    assert own.say is not None
-    say_mask = _say_dots_mask if isinstance(pattern, Dots) else _say_shape_mask
-    say = partial(_say_pair, own.say, partial(say_mask, pattern))
-    return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1, inside=_inside(pattern))
-
-
-def _inside(pattern: AnyShape | Dots) -> Enclosed | None:
-    """Where a filled shape is opaque, if it is a circle or an upright rectangle."""
-    if isinstance(pattern, Dots) or fill_of(pattern) is None:
-        return None
-    if isinstance(pattern, Circle):
-        return Enclosed(LeafReach.DISC_INSIDE, (*pattern.center_mm, pattern.radius_mm, 0.0))
-    if not isinstance(pattern, Polygon) or len(pattern.vertices_mm) != _CORNERS:
-        return None
-    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = pattern.vertices_mm
-    lying, standing = (y0, x1, y2, x3) == (y1, x2, y3, x0), (x0, y1, x2, y3) == (x1, y2, x3, y0)
-    if not (lying or standing):
-        return None
-    box = (min(x0, x2), min(y0, y2), max(x0, x2), max(y0, y2))
-    return Enclosed(LeafReach.BOX_INSIDE, box)
-
-
-def _parted(
-    pattern: AnyShape | Dots, say: Callable[[WordBlock, bool], list[int]], depth: int = 1
-) -> Node:
-    """Leaf of a shape or of dots, with what they lie in."""
-    box = bounds(pattern)
-    marked = isinstance(pattern, Polygon) and pattern.markers is not None
-    filled = not isinstance(pattern, Dots) and fill_of(pattern) is not None
-    if box is None or marked or filled:
-        return Node(NodeKind.LEAF, say=say, box=box, depth=depth)
-    enclosed = tuple(_enclosed(pattern))
-    parts = not isinstance(pattern, Circle) or pattern.dots is not None
-    return Node(NodeKind.LEAF, say=say, box=box, enclosed=enclosed, parts=parts, depth=depth)
-
-
-def _enclosed(pattern: AnyShape | Dots) -> Iterable[Enclosed]:
-    """What each of the parts lies in, in their order."""
-    if isinstance(pattern, Dots):
-        radius = pattern.dot.radius_mm
-        return (Enclosed(LeafReach.CAPSULE, (x, y, x, y), radius) for x, y in pattern.centers_mm)
-    radius = drawn_radius_mm(pattern)
-    if pattern.dots is not None:
-        places = dots_of(pattern)
-        dots = ((dot.x_mm, dot.y_mm) for dot in places)
-        return (Enclosed(LeafReach.CAPSULE, (x, y, x, y), radius) for x, y in dots)
-    if isinstance(pattern, Circle):
-        ring = (*pattern.center_mm, pattern.radius_mm, 0.0)
-        return (Enclosed(LeafReach.RING, ring, radius),)
-    return (
-        Enclosed(LeafReach.CAPSULE, (*start, *end), radius)
-        for start, end in shapecode.edges_of(pattern)
-    )
+def _fill_texture(pattern: AnyShape | Dots, assets: Assets) -> Node | None:
+    fill = None if isinstance(pattern, Dots) else fill_of(pattern)
+    return None if fill is None else deflection(fill.texture, assets)
 
 
 def _image(pattern: Image, assets: Assets) -> Node:
@@ -275,33 +208,6 @@ def _image(pattern: Image, assets: Assets) -> Node:
 
 
 # What leaves say
-
-
-def say_whole(node: Node, block: WordBlock) -> None:
-    """Say all of a tree in one block, wherever its parts are."""
-    if node.kind is NodeKind.LEAF:
-        assert node.say is not None
-        node.say(block, False)
-        return
-    children = node.children
-    if node.kind is NodeKind.OVER:
-        lowest = max((n for n, c in enumerate(children) if c.pushes is Pushes.COVER), default=0)
-        children = children[lowest:]
-    for number, child in enumerate(children):
-        say_whole(child, block)
-        if node.kind in _JOINS and number:
-            block.say(_JOINS[node.kind])
-        elif node.kind is NodeKind.OVER:
-            pair = child.pushes is Pushes.PAIR
-            if number:
-                block.say(words.OVER if pair else words.OVER_ITSELF)
-            elif pair:
-                # The lowest layer hides nothing.
-                block.say(words.DROP)
-    if node.kind is NodeKind.BLEND:
-        block.say(words.BLEND)
-    for operation, constants in node.changes:
-        block.say(operation, *constants)
 
 
 def _say_texture(pattern: AnyPattern, block: WordBlock, _parts: bool) -> list[int]:
@@ -351,32 +257,3 @@ def _say_changed(say, changes, block: WordBlock, parts: bool) -> list[int]:
     for operation, constants in changes:
         block.say(operation, *constants)
     return kept
-
-
-def _say_pair(say, say_mask, block: WordBlock, parts: bool) -> list[int]:
-    kept = say(block, parts)
-    say_mask(block, parts, paired=True)
-    return kept
-
-
-def _say_shape(pattern: AnyShape, say_fill, block: WordBlock, parts: bool) -> list[int]:
-    return shapecode.say_shape(pattern, block, say_fill, parts)
-
-
-def _say_shape_mask(
-    pattern: AnyShape, block: WordBlock, parts: bool, paired: bool = False
-) -> list[int]:
-    return shapecode.say_shape_mask(pattern, block, parts, paired)
-
-
-def _say_dots(pattern: Dots, block: WordBlock, parts: bool) -> list[int]:
-    return shapecode.say_dots(pattern.dot, _placed(pattern), block, parts)
-
-
-def _say_dots_mask(pattern: Dots, block: WordBlock, parts: bool, paired: bool = False) -> list[int]:
-    style, dots = pattern.dot, _placed(pattern)
-    return shapecode.say_dots_mask(style, dots, block, parts, style.across, paired)
-
-
-def _placed(dots: Dots) -> list[PlacedDot]:
-    return [PlacedDot(x, y) for x, y in dots.centers_mm]

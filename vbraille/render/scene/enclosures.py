@@ -1,0 +1,152 @@
+"""What shapes and dots lie in, part by part, and where they are solid.
+
+An array is told of those segments of a filled shape that it may touch, and of those alone. Whether
+a place is inside is how often a line from it to the right crosses the shape's edges, even or odd,
+and so what lies to the right of all that the array reaches has to be told in another way. Of a run
+of segments there it only matters at which heights it begins and ends: the rest cancels. Each of
+these two heights is told by a *wall* far to the right, from there upwards. What cannot be told so,
+since it is beyond the top or the bottom of all that the array reaches, is the same for all places
+there; if it is odd, it is told by a wall without ends. That one alone is left where all that the
+array reaches is inside, and far from the edges.
+
+So a filled shape has as parts its segments, the wall without ends, and a wall for each corner.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from vbraille.render.scene import pathparts
+from vbraille.render.scene.brailleplaces import corners_mm, size_mm
+from vbraille.render.scene.nodes import LeafReach
+from vbraille.scene.bitmap import WHOLE
+from vbraille.scene.bounds import around, drawn_radius_mm
+from vbraille.scene.dots import Dots
+from vbraille.scene.dotting import dots_of
+from vbraille.scene.patterns import Circle
+
+if TYPE_CHECKING:
+    from vbraille.render.scene.assets import Written
+    from vbraille.render.scene.nodes import Enclosed
+    from vbraille.render.scene.pathparts import AnyShape
+    from vbraille.scene.bitmap import Bitmap
+    from vbraille.scene.labels import Label
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import Fill
+
+# As plain numbers, which are many times faster to put into an array.
+_CAPSULE, _RING, _EDGE, _WALL, _AROUND, _DISC_INSIDE, _BAR_INSIDE = map(
+    int,
+    (
+        LeafReach.CAPSULE,
+        LeafReach.RING,
+        LeafReach.EDGE,
+        LeafReach.WALL,
+        LeafReach.AROUND,
+        LeafReach.DISC_INSIDE,
+        LeafReach.BAR_INSIDE,
+    ),
+)
+_ROUNDING_MM = 1e-6
+_SQUARES = 64
+
+
+def enclosed_dots(pattern: AnyShape | Dots) -> tuple[Enclosed, ...]:
+    """What each of the dots of a pattern, or of a dotted shape, lies in."""
+    if isinstance(pattern, Dots):
+        radius, places = pattern.dot.radius_mm, pattern.centers_mm
+    else:
+        radius, places = drawn_radius_mm(pattern), [dot[:2] for dot in dots_of(pattern)]
+    return tuple((_CAPSULE, x, y, x, y, radius) for x, y in places)
+
+
+def enclosed_stroke(shape: AnyShape) -> tuple[Enclosed, ...]:
+    """What a circle's stroke, or each segment of another shape, lies in."""
+    radius = drawn_radius_mm(shape)
+    if isinstance(shape, Circle):
+        return ((_RING, *shape.center_mm, shape.radius_mm, 0.0, radius),)
+    radius = max(radius, pathparts.marker_reach_mm(shape))
+    return tuple(
+        (_CAPSULE, *start, *end, radius)
+        for points in pathparts.edges_of(shape)
+        for start, end in points
+    )
+
+
+def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
+    """What each part of a filled shape lies in, in the order in which they are said."""
+    reach = drawn_radius_mm(shape)
+    if not fill.blended:
+        reach += fill.gap_mm + fill.fade_mm
+    reach = max(reach, pathparts.marker_reach_mm(shape)) + _ROUNDING_MM
+    edges: list[Enclosed] = []
+    walls: list[Enclosed] = []
+    places: list[Point] = []
+    for contour in pathparts.edges_of(shape):
+        (x0, _), (x1, _) = contour[-1]
+        before = x0 if x0 < x1 else x1
+        for start, end in contour:
+            (x0, y0), (x1, y1) = start, end
+            left, right = (x0, x1) if x0 < x1 else (x1, x0)
+            edges.append((_EDGE, left, y0, right, y1, reach))
+            less, more = (before, left) if before < left else (left, before)
+            walls.append((_WALL, less, y0, more, y0, reach))
+            before = left
+            places.append(start)
+    return (*edges, (_AROUND, *around(places), reach), *walls)
+
+
+def disc(circle: Circle) -> Enclosed:
+    """Inside of a circle."""
+    return (_DISC_INSIDE, *circle.center_mm, circle.radius_mm, 0.0, 0.0)
+
+
+def cells(label: Label, written: Written) -> Enclosed | None:
+    """Rectangle of a label's cells; None without cells."""
+    if size_mm(written)[1] == 0.0:
+        return None
+    radius = written.style.geometry.dot_width_mm / 2
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = corners_mm(label, written, radius)
+    half = size_mm(written)[1] / 2 + radius
+    return (_BAR_INSIDE, (x0 + x3) / 2, (y0 + y3) / 2, (x1 + x2) / 2, (y1 + y2) / 2, half)
+
+
+def pixels(mask: Bitmap) -> Enclosed | None:
+    """Find a large rectangle in which the opacity mask of an image is 1; None if there is none.
+
+    It is sought among squares of pixels, as few as `_SQUARES` to each side, and is the largest of
+    those that consist of such squares.
+    """
+    rows, columns = mask.intensities.shape
+    step = max(1, math.ceil(max(rows, columns) / _SQUARES))
+    whole = mask.intensities[: rows - rows % step, : columns - columns % step] == WHOLE
+    squares = whole.reshape(rows // step, step, columns // step, step).all(axis=(1, 3))
+    top, left, bottom, right = _largest_rectangle(squares.tolist())
+    # Between the middles of the outermost pixels the bilinear mask is 1 throughout.
+    width, height = mask.width_mm / columns, mask.height_mm / rows
+    x, y = mask.place_mm
+    start, end = x + (left * step + 0.5) * width, x + (right * step - 0.5) * width
+    upper, lower = y + (top * step + 0.5) * height, y + (bottom * step - 0.5) * height
+    if end <= start or lower <= upper:
+        return None
+    middle = (upper + lower) / 2
+    return (_BAR_INSIDE, start, middle, end, middle, (lower - upper) / 2)
+
+
+def _largest_rectangle(squares: list[list[bool]]) -> tuple[int, int, int, int]:
+    """Top, left, bottom and right of the largest rectangle of squares that are all true."""
+    best, found = 0, (0, 0, 0, 0)
+    heights = [0] * (len(squares[0]) if squares else 0)
+    for row, line in enumerate(squares):
+        heights = [height + 1 if one else 0 for height, one in zip(heights, line, strict=True)]
+        rising: list[tuple[int, int]] = []  # where columns of growing height begin
+        for column, height in enumerate([*heights, 0]):
+            begin = column
+            while rising and rising[-1][1] >= height:
+                begin, high = rising.pop()
+                if high * (column - begin) > best:
+                    best = high * (column - begin)
+                    found = (row + 1 - high, begin, row + 1, column)
+            rising.append((begin, height))
+    return found

@@ -1,0 +1,191 @@
+"""Parts of shapes' paths as numbers: segments, corners, markers and walls.
+
+`shapekernels` has their order, and `vbraille.render.scene.enclosures` says what walls are.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from vbraille.render.machine import shapekernels as places
+from vbraille.scene.fitting import stroke_cycles
+from vbraille.scene.joints import (
+    edge_lengths_mm,
+    joints,
+    marker_half_angle_rad,
+    places_along_mm,
+    rounding_radius_mm,
+)
+from vbraille.scene.patterns import Circle, PathShape, Polygon
+from vbraille.scene.shapes import StraightLine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from vbraille.scene.fitting import Cycle
+    from vbraille.scene.joints import Joint
+    from vbraille.scene.measures import Point
+
+AnyShape = StraightLine | Circle | Polygon | PathShape
+_OPEN = -1e30  # stands for minus infinity
+_ROUNDING_MM = 1e-6
+_NO_CORNER = (_OPEN, *(0.0,) * (places.CORNER_NUMBERS - 1))
+# A wall is farther to the right than any place, and the way up has no end there.
+_FAR_MM = 1e9
+_WALL = (0.0, -1.0, _FAR_MM, -_FAR_MM)
+
+
+def differ(cycles: Sequence[Cycle]) -> bool:
+    """Whether textures along the contours of a path have cycles of their own."""
+    return any(cycle != cycles[0] for cycle in cycles[1:])
+
+
+def edges_of(shape: AnyShape) -> list[list[tuple[Point, Point]]]:
+    """Start and end of each segment of each contour of a shape, in the order of its parts."""
+    contours, closed = _contours(shape)
+    return [_pairs(points, closed) for points in contours]
+
+
+def walls(shape: AnyShape, along: bool) -> Iterator[tuple[float, ...]]:
+    """Numbers of the walls of a filled shape: one without ends, then one for each corner."""
+    # Those of a segment that only a stroke with a texture looks at, as far as its corners.
+    rest = (0.0,) * (places.CORNER - places.END_Y - 1) if along else ()
+    ends = (*_NO_CORNER, *_NO_CORNER) if along else ()
+    yield (_FAR_MM, _FAR_MM, *_WALL, *rest, *ends)
+    for points in _contours(shape)[0]:
+        for _, y in points:
+            yield (_FAR_MM, y, *_WALL, *rest)
+
+
+def _contours(shape: AnyShape) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+    """Contours of a shape, and whether they are closed; a circle has none."""
+    if isinstance(shape, StraightLine):
+        return ((shape.start_mm, shape.end_mm),), False
+    if isinstance(shape, Polygon):
+        return (shape.vertices_mm,), True
+    return (shape.contours_mm, shape.closed) if isinstance(shape, PathShape) else ((), True)
+
+
+def segments(shape: AnyShape, along: bool) -> Iterator[tuple[float, ...]]:
+    """Numbers of the segments of a shape; fewer if only the distance from it counts."""
+    contours, closed = _contours(shape)
+    if not along:
+        for points in contours:
+            yield from (_segment(*pair) for pair in _pairs(points, closed))
+        return
+    cycles = stroke_cycles(shape)
+    for number, points in enumerate(contours):
+        cycle = cycles[number] if differ(cycles) else None
+        yield from _segments_along(shape, points, closed, cycle)
+
+
+def _segments_along(
+    shape: AnyShape, points: Sequence[Point], closed: bool, cycle: Cycle | None
+) -> Iterator[tuple[float, ...]]:
+    pairs = _pairs(points, closed)
+    straight = [_segment(*pair) for pair in pairs]
+    count = len(straight)
+    texture = (0.0, 0.0, 0.0)
+    if cycle is not None:
+        assert shape.stroke is not None
+        assert shape.stroke.along is not None
+        texture = (cycle.ridge, cycle.length, shape.stroke.along.velocity_mm_s)
+    corners = None
+    marks: list[tuple[float, ...]] = [()] * count
+    middles: Sequence[float] = ()
+    corner_numbers: Sequence[tuple[float, ...]] = ()
+    if isinstance(shape, Polygon):
+        if shape.join == "rounded":
+            corners = joints(points, rounding_radius_mm(shape))
+            middles = places_along_mm(shape)
+        if shape.markers is not None and shape.stroke is not None:
+            inner = joints(points, shape.stroke.width_mm / 2)
+            size = places.MARKED_NUMBERS
+            before = [size * (1 - count), *(size,) * (count - 1)]
+            marks = [_mark(shape, *at) for at in zip(inner, before, strict=True)]
+            # Directions at a corner are alike for every radius.
+            corner_numbers = [_corner(corner, 0.0, turns=False) for corner in inner]
+    begin = 0.0
+    for i, segment in enumerate(straight):
+        length = segment[places.LENGTH]
+        first, last = closed or i > 0, closed or i < count - 1
+        before, after = straight[i - 1], straight[(i + 1) % count]
+        half = _half(before, segment) if first else (0.0, 0.0)
+        end_half = _half(segment, after) if last else (0.0, 0.0)
+        bias = 0.0 if last else _OPEN
+        if corners is not None:
+            here, there = corners[i], corners[(i + 1) % count]
+            start = _corner(here, middles[i])
+            end = _corner(there, middles[i + 1])
+            own = middles[i] + here.arc_mm / 2 - here.reach_mm
+        elif marks[i]:
+            start, end, own = corner_numbers[i], corner_numbers[(i + 1) % count], begin
+        else:
+            start, end, own = _NO_CORNER, _NO_CORNER, begin
+        yield (*segment, *half, *end_half, bias, own, *texture, *start, *end, *marks[i])
+        begin += length
+
+
+def _pairs(points: Sequence[Point], closed: bool) -> list[tuple[Point, Point]]:
+    ends = [*points[1:], points[0]] if closed else points[1:]
+    return list(zip(points, ends, strict=False))
+
+
+def _segment(start: Point, end: Point) -> tuple[float, ...]:
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(dx, dy)
+    return (*start, dx / length, dy / length, length, end[1])
+
+
+def _half(before: Sequence[float], after: Sequence[float]) -> tuple[float, float]:
+    return (
+        before[places.RIGHT] + after[places.RIGHT],
+        before[places.DOWN] + after[places.DOWN],
+    )
+
+
+def _corner(corner: Joint, middle_mm: float, *, turns: bool = True) -> tuple[float, ...]:
+    half = (math.pi - corner.angle_rad) / 2
+    return (
+        corner.reach_mm if turns else _OPEN,
+        *corner.pivot_mm,
+        *corner.onward,
+        *corner.inward,
+        corner.radius_mm,
+        half,
+        middle_mm,
+    )
+
+
+def _mark(polygon: Polygon, corner: Joint, before: int) -> tuple[float, ...]:
+    """Numbers of a marker; the segment before its corner is so much before that after it."""
+    assert polygon.markers is not None
+    half = marker_half_angle_rad(polygon.markers, corner.angle_rad)
+    pushed = polygon.markers.blend_mm * math.sin(half + corner.angle_rad / 2)
+    return (*corner.pivot_mm, math.sin(half), math.cos(half), pushed, before)
+
+
+def marker_reach_mm(shape: AnyShape) -> float:
+    """Distance from a polygon's corners beyond which there is nothing of their markers.
+
+    Along an edge, from a corner whose edges meet at θ, a marker of the half angle h goes on as far
+    as its bound meets the stroke's outer edge, and then as far as that is pushed. A corner has no
+    marker beyond the middle of its edges either, as only the nearest one is asked. The greatest of
+    all corners' distances is returned; 0 without markers.
+    """
+    if not isinstance(shape, Polygon) or shape.markers is None or shape.stroke is None:
+        return 0.0
+    half_mm = shape.stroke.width_mm / 2
+    corners = joints(shape.vertices_mm, half_mm)
+    lengths = edge_lengths_mm(shape.vertices_mm, closed=True)
+    reach = 0.0
+    for n, corner in enumerate(corners):
+        half = marker_half_angle_rad(shape.markers, corner.angle_rad)
+        away = math.hypot(corner.reach_mm, corner.radius_mm)
+        sine = max(math.sin(half + corner.angle_rad / 2), 1e-9)
+        own = (math.sin(half) * away + half_mm) / sine + shape.markers.blend_mm
+        # On the other side of a sharp corner's bisector it is no farther than its edges meet.
+        own = max(own, half_mm / max(math.tan(corner.angle_rad / 2), 1e-9))
+        reach = max(reach, min(own, max(lengths[n - 1], lengths[n]) / 2) + half_mm)
+    return reach + _ROUNDING_MM
