@@ -82,7 +82,7 @@ def test_at_a_terminal_keys_move_the_hand_and_say_what_is_there(scene):
         assert re.search(SUMMARY, terminal.printed)
 
 
-@heavy  # a host more, and a file that is looked at twice a second
+@heavy  # a host more, and a file that is looked at all the time
 def test_a_file_that_changes_is_read_again_by_itself(scene):
     with program.Terminal("feel", scene, "--cues", "none") as terminal:
         terminal.until("h says the keys")

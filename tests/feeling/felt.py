@@ -35,13 +35,15 @@ stroke = { width_mm = 3 }
 class Felt:
     """Somebody who feels a file; where the finger is, what was said, and the keys."""
 
-    def __init__(self, path, *, display=DISPLAY, steering=None, entering=False, room=1 << 22):
+    def __init__(
+        self, path, *, display=DISPLAY, steering=None, entering=False, room=1 << 22, rate_hz=1000.0
+    ):
         self.at = (10.0, 10.0)
         self.bench = Bench(lambda _: (*self.at, 0.0), display)
         self.said = []
         style = MODELS["stress2-8x8"].style
         self.loaded = load_scene(path, style)
-        composer = Composer(display)
+        composer = Composer(display, rate_hz=rate_hz)
         self.feeler = Feeler(
             self.loaded,
             self.bench.engine,

@@ -128,6 +128,17 @@ def test_a_picture_that_has_grown_too_large_is_said(scene):
     assert "has become too large" in felt.press("r")[0]
 
 
+def test_what_moves_too_fast_for_the_rate_is_said_with_its_line(scene):
+    slow = replace(DISPLAY, rate_hz=80.0)
+    felt = Felt(scene, rate_hz=80.0, display=slow)
+    scene.write_text(SCENE + "vibration = { frequency_hz = 50 }\n")
+    said = felt.press("r")[0]
+    assert said.startswith(f"not reloaded: {scene} line 15: ")
+    assert said.endswith('element "wall" moves at 50 Hz; it can be at most half of the rate, 40 Hz')
+    felt.press("C")  # the whole picture is then a group
+    assert felt.press("r")[0] == said
+
+
 def test_on_one_axis_keys_choose_the_height(scene):
     felt = Felt(scene, display=replace(DISPLAY, height_mm=0.0, turns=False))
     felt.bench.run(0.01)

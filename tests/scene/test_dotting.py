@@ -6,10 +6,11 @@ from itertools import combinations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from tests.tiers import examples
 from vbraille.scene.crossing import meeting_edges
-from vbraille.scene.dotting import dots_of
+from vbraille.scene.dotting import dots_of, most_dots_of
 from vbraille.scene.patterns import Circle, PathShape, Polygon
 from vbraille.scene.shapes import StraightLine
 from vbraille.scene.strokes import DotStyle, Dotting, Stroke
@@ -53,6 +54,14 @@ shapes = st.one_of(
     st.builds(Circle, center_mm=points, radius_mm=st.floats(0.1, 20), dots=dottings),
     st.builds(StraightLine, start_mm=points, end_mm=st.just((50, 0)), dots=dottings),
 )
+
+
+@examples(120)
+@given(shapes)
+def test_there_are_no_more_dots_than_are_counted_before_they_are_placed(shape):
+    count = len(dots_of(shape))
+    assert count <= most_dots_of(shape)
+    assert most_dots_of(replace(shape, dots=None, stroke=Stroke())) == 0
 
 
 @examples(120)

@@ -64,6 +64,26 @@ def test_texts_may_have_several_lines_and_french_spaces(tmp_path):
 EVEN = '{kind = "uniform"}'
 REFUSED = {
     "no canvas": ("", "a.scene has no canvas; write [canvas] with width_mm and height_mm"),
+    "an image in the net": (
+        element("image", 'file = "http://a.org/b.png"', "width_mm = 5"),
+        "line 6: [[elements]] number 1 file is 'http://a.org/b.png'; give the name of a file",
+    ),
+    "an image without a name": (
+        element("image-dots", 'file = ""', "width_mm = 5"),
+        "line 6: [[elements]] number 1 file is empty; give the name of a file",
+    ),
+    "spokes that fade over no length": (
+        element("axial-grating", "center_mm = [1, 1]", "ridge_deg = 9", "fade_mm = [0, 5e-324]"),
+        "line 8: [[elements]] number 1 fade is from a length to the same; set the second larger",
+    ),
+    "dots that fill the memory": (
+        element(
+            "path",
+            "contours_mm = [" + "[[-9000, 0], [9000, 0]]," * 20 + "]",
+            "dots = {separation_mm = 0, dot = {radius_mm = 0.05}}",
+        ),
+        "line 4: [[elements]] number 1 makes it more than 200000 dots along shapes; set them",
+    ),
     "a misspelt kind": (
         element("cirle"),
         "line 5: [[elements]] number 1 kind is 'cirle'; the near",
@@ -216,6 +236,12 @@ def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path):
     assert refusal(tmp_path) == f"{tmp_path} is a directory; give a scene in it"
     assert refusal(tmp_path / "no.scene").startswith("there is no file ")
     assert "cannot be read" in refusal("a\0b")
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    path = tmp_path / "a.scene"
+    os.mkfifo(path)
+    assert refusal(path) == f"{path} is no ordinary file; give one that is"
 
 
 def test_a_file_of_a_gigabyte_is_refused_at_once(tmp_path):

@@ -8,6 +8,7 @@ from vbraille.errors import InputError
 from vbraille.render import work
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import SceneCompiler
+from vbraille.render.scene.frequencies import highest_hz
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Scene
 
@@ -33,6 +34,7 @@ class Composer:
 
     def __init__(self, display: Display, *, rate_hz: float = 1000.0) -> None:
         self._compiler = SceneCompiler(display, rate_hz=rate_hz)
+        self._rate_hz = rate_hz
 
     def compose(
         self, loaded: LoadedScene, *, contrast: float = 1.0, own_y_mm: float | None = None
@@ -62,10 +64,19 @@ class Composer:
         try:
             program = self._compiler.compile(scene, loaded.assets)
         except ValueError as error:
+            self._refuse_too_fast(loaded)
             raise InputError(f"{loaded.opened.path}: {error}") from None
         height_mm = scene.canvas.height_mm / 2 if own_y_mm is None else own_y_mm
         program.numbers[work.OWN_Y] = height_mm
         return program
+
+    def _refuse_too_fast(self, loaded: LoadedScene) -> None:
+        """Say which element moves too fast for the rate, and where it is written."""
+        for number, element in enumerate(loaded.scene.elements):
+            try:
+                highest_hz(element, number + 1, self._rate_hz)
+            except ValueError as error:
+                raise InputError(f"{loaded.opened.place(number)}: {error}") from None
 
 
 def compose(loaded: LoadedScene, display: Display, *, rate_hz: float = 1000.0) -> Program:

@@ -1,20 +1,22 @@
-"""Whether a file has changed, asked now and then."""
+"""Whether a file has changed, asked again and again."""
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_EVERY_S: Final = 0.5
+_Stamp = tuple[int, int, int]
+_QUIET_NS: Final = 10_000_000
 
 
 class FileWatch:
-    """Sees whether a file has changed; it looks twice a second at most.
+    """Sees whether a file has changed, by one look at its directory entry each time.
 
-    A change is told once the file has been the same for a look, so that one which is just being
-    written is read when it is whole.
+    A change is told once the file has been quiet for 10 ms, or is the same at two looks, and is
+    not empty, so that one which is just being written is read when it is whole.
 
     Parameters
     ----------
@@ -26,21 +28,20 @@ class FileWatch:
         self._path = path
         self._known = self._stamp()
         self._seen = self._known
-        self._next_s = 0.0
 
-    def changed(self, now_s: float) -> bool:
+    def changed(self) -> bool:
         """Tell whether the file is another than at the last change that was told."""
-        if now_s < self._next_s:
-            return False
-        self._next_s = now_s + _EVERY_S
         stamp = self._stamp()
         same, self._seen = stamp == self._seen, stamp
-        if stamp is None or stamp == self._known or not same:
+        if stamp is None or stamp == self._known:
+            return False
+        written_ns, size, _ = stamp
+        if size == 0 or not (same or time.time_ns() - written_ns > _QUIET_NS):
             return False
         self._known = stamp
         return True
 
-    def _stamp(self) -> tuple[int, int, int] | None:
+    def _stamp(self) -> _Stamp | None:
         """What tells one state of the file from another; None if there is no file."""
         try:
             found = self._path.stat()

@@ -14,6 +14,7 @@ from vbraille.render.scene.brailleplaces import box_of
 from vbraille.scene.bounds import Box
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.labels import Label
+from vbraille.scene.patterns import Image
 from vbraille.scene.reading import open_scene
 from vbraille.scene.walking import each
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.scene.opened import OpenedScene
-    from vbraille.scene.patterns import Image
     from vbraille.scene.scene import Scene
 
 _EDGE_MM = 0.05  # by so much a canvas may be larger than a carriage goes
@@ -87,9 +87,12 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
     """
     opened = open_scene(path)
     scene = opened.resolved
-    places = [opened.place(number) for number in range(len(scene.elements))]
+    kinds = {type(pattern) for pattern in each(*scene.elements)}
+    if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.
+        return LoadedScene(opened, Assets(), opened.warnings)
+    places = opened.places
     bitmaps = load_bitmaps(scene, opened.folder, places)
-    if not any(isinstance(pattern, Label) for pattern in each(*scene.elements)):
+    if Label not in kinds:
         return LoadedScene(opened, Assets(bitmaps), opened.warnings)
     written = write_labels(scene, style, places)
     notes = (*opened.warnings, *label_warnings(scene, written, places))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from vbraille.errors import check_range
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -12,6 +14,8 @@ if TYPE_CHECKING:
     from vbraille.scene.measures import Point
 
 WHOLE = 65_535  # the intensity 1
+# Images are 0.1 mm to 10 m, and farther with what their blur reaches.
+_LEAST_MM, _MOST_MM = 0.01, 100_000.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +36,11 @@ class Bitmap:
         Size of the rectangle.
     outside
         Intensity beyond it, from 0 to 1, in steps as fine as those of the others.
+
+    Raises
+    ------
+    ValueError
+        If a place or a size is no number, or far out of range.
     """
 
     intensities: NDArray[np.uint16]
@@ -39,3 +48,11 @@ class Bitmap:
     width_mm: float
     height_mm: float
     outside: float = 0.0
+
+    def __post_init__(self) -> None:
+        sides = {"left": self.place_mm[0], "top": self.place_mm[1]}
+        for what, value in sides.items():
+            check_range(f"{what} of a bitmap", value, -_MOST_MM, _MOST_MM, " mm")
+        sizes = {"width": self.width_mm, "height": self.height_mm}
+        for what, value in sizes.items():
+            check_range(f"{what} of a bitmap", value, _LEAST_MM, _MOST_MM, " mm")

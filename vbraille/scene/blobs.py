@@ -62,7 +62,7 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
     ------
     InputError
         If the file cannot be read, nothing in it is above the threshold, there are more than
-        20,000 dots, or dots overlap, which they may not (6.3.1).
+        20,000 dots, dots overlap, which they may not (6.3.1), or one is farther away than 10 m.
     """
     size = (0.0, 0.0)
 
@@ -82,7 +82,10 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
             f"{pattern.threshold:g}; make that smaller"
         )
     _refuse_overlap(pattern, dots)
-    return _drawn(pattern, dots)
+    try:
+        return _drawn(pattern, dots)
+    except ValueError as error:  # where the image reaches farther than any place may be
+        raise InputError(f"{named(pattern)} has dots too far away: {error}") from None
 
 
 def _blobs(pattern: ImageDots, gray: NDArray[np.uint16], size: Point) -> list[_Dot]:

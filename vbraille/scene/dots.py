@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vbraille.scene.measures import Point, check_length, check_point, check_share
+from vbraille.scene.measures import Point, check_file, check_length, check_point, check_share
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.strokes import DotStyle
 
@@ -64,7 +64,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     Raises
     ------
     ValueError
-        If a number is out of range.
+        If the file is none of this machine, or a number is out of range.
     """
 
     file: str
@@ -78,6 +78,7 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_file(self.file)
         check_point("place", self.place_mm)
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)

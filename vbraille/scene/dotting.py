@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import AnyPattern
 
+_DOTTED = StraightLine | Circle | Polygon | PathShape
 _CORNER = math.radians(40.0)
 _TOLERANCE = 1.0 - 1e-9  # two dots whose distance is m but for rounding may stay
 
@@ -55,6 +57,22 @@ def dots_of(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[PlacedD
         return _apart(_on_contour((shape.start_mm, shape.end_mm), False, least_mm), least_mm)
     contours = (_on_contour(c, shape.closed, least_mm) for c in shape.contours_mm)
     return _apart((dot for dots in contours for dot in dots), least_mm)
+
+
+def most_dots_of(shape: AnyPattern) -> int:
+    """Compute how many dots stand along a shape at most, without placing them."""
+    if not isinstance(shape, _DOTTED) or shape.dots is None:
+        return 0
+    least_mm = 2 * shape.dots.dot.radius_mm + shape.dots.separation_mm
+    if isinstance(shape, Circle):
+        return math.ceil(math.tau * shape.radius_mm / least_mm)
+    if isinstance(shape, PathShape):
+        contours: tuple[tuple[Point, ...], ...] = shape.contours_mm
+    else:
+        line = isinstance(shape, StraightLine)
+        contours = ((shape.start_mm, shape.end_mm) if line else shape.vertices_mm,)
+    length_mm = sum(sum(edge_lengths_mm(contour, closed=True)) for contour in contours)
+    return math.ceil(length_mm / least_mm) + sum(map(len, contours))
 
 
 def _on_circle(circle: Circle, least_mm: float) -> tuple[PlacedDot, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -143,6 +144,8 @@ class _Gathering:
         If it is a drawing, ``classes`` are those of the file that includes it.
         """
         self._read.add(real)
+        if _may_wait(name):
+            raise InputError(f"{name} is no ordinary file; give one that is")
         form = form_of(name)
         if form != "toml":
             return _foreign(name, form, classes or {})
@@ -200,6 +203,12 @@ class _Gathering:
             found.form.operation,
         )
         into.warnings.extend(found.warnings)
+
+
+def _may_wait(path: Path) -> bool:
+    """Whether reading might wait forever: a pipe or a device is there."""
+    there = str(path)  # whose functions, unlike a path's, take no permission for no
+    return os.path.exists(there) and not (os.path.isfile(there) or os.path.isdir(there))  # noqa: PTH110, PTH112, PTH113
 
 
 def form_of(path: Path) -> str:

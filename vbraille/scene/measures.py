@@ -72,3 +72,17 @@ def travel_deg(wave_angle_deg: float | None, ridge_angle_deg: float | None) -> f
     if ridge_angle_deg is not None:
         return math.fmod(ridge_angle_deg + 90.0, 360.0)
     return 0.0 if wave_angle_deg is None else wave_angle_deg
+
+
+def check_file(name: str) -> None:
+    """Check the name of a file that is read with a scene.
+
+    Raises
+    ------
+    ValueError
+        If it is empty, or a place in the net, since nothing is fetched.
+    """
+    if not name.strip():
+        raise ValueError("file is empty; give the name of a file")
+    if "://" in name:
+        raise ValueError(f"file is {name!r}; give the name of a file, since nothing is fetched")

@@ -14,6 +14,7 @@ from vbraille.scene.dots import Dots, ImageDots
 from vbraille.scene.labels import Label
 from vbraille.scene.measures import (
     Point,
+    check_file,
     check_length,
     check_point,
     check_share,
@@ -88,7 +89,7 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
     Raises
     ------
     ValueError
-        If a number is out of range.
+        If the file is none of this machine, or a number is out of range.
     """
 
     file: str
@@ -103,6 +104,7 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_file(self.file)
         check_point("place", self.place_mm)
         check_length("width", self.width_mm, 0.1)
         check_length("height", self.height_mm, 0.1)

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.dots import ImageDots
+from vbraille.scene.dotting import most_dots_of
 from vbraille.scene.moving import LISTS, SEVERAL, moved
 from vbraille.scene.opened import Origins
 from vbraille.scene.patterns import Group, Use
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 # Uses of uses of uses can stand for more than any memory holds.
 MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000
+MOST_DOTS = 200_000  # along shapes, which nobody has written down
 MOST_DEPTH = 32
 
 
@@ -50,8 +52,8 @@ def resolve(scene: Scene, folder: Path | None = None, origins: Origins | None = 
     ------
     InputError
         If a name is not known or given twice, uses lead back to themselves, patterns or uses nest
-        more than 32 deep, there are more than 200,000 patterns or 4,000,000 points, something is
-        moved too far, or an image of dots cannot be read.
+        more than 32 deep, there are more than 200,000 patterns, 4,000,000 points or 200,000 dots
+        along shapes, something is moved too far, or an image of dots cannot be read.
     """
     return _Resolving(scene, folder or Path(), origins or Origins()).scene()
 
@@ -63,6 +65,7 @@ class _Body:
     pattern: AnyPattern
     patterns: int
     points: int
+    dots: int
     depth: int
 
 
@@ -74,7 +77,7 @@ class _Resolving:
         self._named: dict[str, tuple[Steps, AnyPattern]] = {}
         self._bodies: dict[str, _Body] = {}
         self._open: list[str] = []  # names whose uses are being replaced, outermost first
-        self._patterns = self._points = 0
+        self._patterns = self._points = self._dots = 0
 
     def scene(self) -> Scene:
         """Resolve the whole scene."""
@@ -82,7 +85,7 @@ class _Resolving:
         for name, pattern in textures.items():
             self._name(("textures", name), name, pattern)
         for steps, pattern in self._all():
-            self._count(steps, 1, points_of(pattern))
+            self._count(steps, 1, points_of(pattern), most_dots_of(pattern))
             if pattern.id:
                 self._name(steps, pattern.id, pattern)
         for name in textures:  # also those that nothing uses are to be right
@@ -115,10 +118,17 @@ class _Resolving:
             self._fail(steps, f"is called {name}, as is {first}; give it another name")
         self._named[name] = steps, pattern
 
-    def _count(self, steps: Steps, patterns: int, points: int) -> None:
+    def _count(self, steps: Steps, patterns: int, points: int, dots: int) -> None:
         """Refuse what no memory holds, before it is made."""
         self._patterns += patterns
         self._points += points
+        self._dots += dots
+        if self._dots > MOST_DOTS:
+            self._fail(
+                steps,
+                f"makes it more than {MOST_DOTS} dots along shapes; set them farther apart, or "
+                "use fewer",
+            )
         if self._patterns > MOST_PATTERNS:
             self._fail(steps, f"makes it more than {MOST_PATTERNS} patterns; use fewer")
         if self._points > MOST_POINTS:
@@ -139,7 +149,7 @@ class _Resolving:
     def _used(self, use: Use, steps: Steps) -> AnyPattern:
         """What a use stands for, with its changes."""
         body = self._body(use.name, steps)
-        self._count(steps, body.patterns, body.points)
+        self._count(steps, body.patterns, body.points, body.dots)
         try:
             pattern = moved(body.pattern, use.move_mm)
         except ValueError as error:
@@ -215,12 +225,13 @@ def _called(pattern: AnyPattern, name: str, title: str, description: str) -> Any
 
 
 def _measured(pattern: AnyPattern) -> _Body:
-    patterns = points = depth = 0
+    patterns = points = dots = depth = 0
     for one in each(pattern):
         patterns += 1
         points += points_of(one)
+        dots += most_dots_of(one)
     level = [pattern]
     while level:
         depth += 1
         level = [part for one in level for _, part in placed_children(one)]
-    return _Body(pattern, patterns, points, depth)
+    return _Body(pattern, patterns, points, dots, depth)

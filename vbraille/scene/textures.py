@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from vbraille.errors import check_range
 from vbraille.scene.measures import (
+    LEAST_APART_MM,
     LEAST_FREQUENCY_HZ,
     MOST_FREQUENCY_HZ,
     MOST_MM,
@@ -266,8 +267,11 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         check_range("velocity", self.velocity_deg_s, -3600.0, 3600.0, "°/s")
         if self.ridge_deg + self.gap_deg > 360.0:
             raise ValueError("ridge and gap are more than a turn together; make them smaller")
-        if not 0.0 <= self.fade_mm[0] < self.fade_mm[1] <= 100.0:
+        inner_mm, outer_mm = self.fade_mm
+        if not 0.0 <= inner_mm < outer_mm <= 100.0:
             raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
+        if outer_mm - inner_mm < LEAST_APART_MM:
+            raise ValueError("fade is from a length to the same; set the second larger")
         if self.distortion is not None and self.velocity_deg_s:
             raise ValueError("velocity cannot be given beside a distortion; leave one out")
 

@@ -124,6 +124,18 @@ AT_HEARTS = {
         center_mm=(30, 30), radius_mm=0.05, stroke=wide(20, along=Along(ridge_mm=2))
     ),
     "filled circle": Circle(center_mm=(30, 30), radius_mm=9, fill=Fill(texture=Uniform())),
+    "circle whose fill hardly fades in": Circle(
+        center_mm=(30, 30), radius_mm=9, fill=Fill(texture=Uniform(), fade_mm=5e-324)
+    ),
+    "weak circle whose dots and fill are more than 1 together": Circle(
+        center_mm=(30, 35),
+        radius_mm=5.3,
+        amplitude=0.2,
+        dots=Dotting(
+            dot=DotStyle(radius_mm=2.5, edge_mm=2.4, across=Across(amplitude=1, cycles=3))
+        ),
+        fill=Fill(texture=Uniform(), blended=True),
+    ),
     "radial grating": RadialGrating(center_mm=(30, 30), ridge_mm=3),
     "axial grating": AxialGrating(center_mm=(30, 30), ridge_deg=30),
     "axial grating that fades nowhere": AxialGrating(

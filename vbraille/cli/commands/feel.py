@@ -219,7 +219,7 @@ class _Feeling:
                 feeler.forget_aim()
             now_s = time.monotonic()
             feeler.attend(now_s)
-            if self._watch.changed(now_s):
+            if self._watch.changed():
                 feeler.reload()
             if self._alone and self._is_done():
                 feeler.quit()

@@ -55,6 +55,8 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
 
+_LEAST_FADE_MM = 1e-9  # of a fill; below that it does not fade in
+
 
 def deflections(
     scene: Scene,
@@ -174,9 +176,10 @@ def shape(
         return up
     inner = np.where(is_inside(shape, at), deflection(fill.texture, assets, at), 0.0)
     if fill.blended:
-        return up + inner * (1 - drawn_profile(shape, at))
+        # A texture across dots or a stroke may be above their profile: the sum is then above 1.
+        return np.minimum(up + inner * (1 - drawn_profile(shape, at)), 1.0)
     from_edge = coordinates(shape, at).across_mm - drawn_radius_mm(shape) - fill.gap_mm
-    if fill.fade_mm == 0:
+    if fill.fade_mm < _LEAST_FADE_MM:
         return up + np.where(from_edge > 0, inner, 0.0)
     return up + inner * np.clip(from_edge / fill.fade_mm, 0.0, 1.0)
 
