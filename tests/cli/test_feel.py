@@ -1,10 +1,13 @@
 """``vbraille feel``: a picture under the hand of a real host process, at a terminal and without."""
 
+import os
 import re
+import signal
 
 import pytest
 
 from tests.cli import program
+from tests.cli.test_read_serial import host_of
 from tests.cli.watcher import ADDRESS, Watcher
 from tests.tiers import heavy
 
@@ -131,6 +134,27 @@ def test_a_page_is_the_hand_and_has_the_picture_behind_the_array(scene):
                 page.until(lambda _, state: state["place"] == "here: Sun")
         finally:
             process.kill()
+
+
+@heavy  # a host is started twice
+def test_while_the_host_is_gone_pages_are_told_what_is_said(scene):
+    arguments = ("feel", scene, "--monitor", "--cues", "none")
+    with (
+        program.Terminal(*arguments) as terminal,
+        Watcher(terminal.until(ADDRESS + r"\s")) as page,
+    ):
+        page.hold(30.0)
+        os.kill(host_of(terminal), signal.SIGKILL)
+        terminal.until("fault: .*space begins again")
+        page.until(lambda _, state: "space begins again, q stops" in state["said"][-1])
+        terminal.type("x")
+        page.until(lambda _, state: "nothing drives the device" in state["said"][-1])
+        page.ask(ask="press", command="PAUSE")
+        terminal.type(" ")
+        page.until(lambda _, state: state["device"] == "feeling")
+        page.hold(40.0)
+        terminal.type("q")
+        assert terminal.end() == 0
 
 
 def test_what_cannot_be_felt_is_one_sentence(call, scene, tmp_path):

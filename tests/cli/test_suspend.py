@@ -12,7 +12,9 @@ import pytest
 
 from tests import drivers
 from tests.cli import program
+from tests.cli.test_feel import SCENE
 from tests.sessions.sittings import MINI
+from tests.tiers import heavy
 
 SHELL = ("bash", "--norc", "--noprofile", "-i")
 PROMPT = "prompt> "
@@ -120,6 +122,39 @@ def test_without_keys_the_array_rests_too(shell, tmp_path, text):
     shell.type("fg\n")
     shell.until("reading\r\n")
     shell.until(r"summary: lines 2,")
+
+
+@heavy  # three programs more, each with a host or a device
+@pytest.mark.parametrize(
+    ("command", "begun", "again", "key", "said"),
+    [
+        ("feel house.scene --cues none", "h says the keys", "feeling", "t", "picture: A house"),
+        ("tune", "now: 1", "reading", " ", "now: 2"),
+        ("device calibrate sim: --model vbd", "actuator 1 ", "actuator 1 ", "n", "actuator 2 "),
+    ],
+)
+def test_whoever_else_is_at_a_device_has_the_keys_back(
+    shell, tmp_path, command, begun, again, key, said
+):
+    """After Ctrl-Z, and after a stop that nobody can hear of."""
+    (tmp_path / "house.scene").write_text(SCENE)
+    (tmp_path / "mine.toml").touch()
+    shell.type(f"cd {tmp_path}; export VBRAILLE_SETTINGS=mine.toml\n")
+    shell.until(PROMPT)
+    shell.type(f"{shlex.join(program.PROGRAM)} {command}\n")
+    shell.until(begun)
+    shell.type("\x1a")
+    assert "stopped: the array rests; fg goes on\r\n" in shell.until(STOPPED)
+    shell.type("fg\n")
+    shell.until(rf"{again}.*\r\n")
+    os.kill(job(shell), signal.SIGSTOP)
+    shell.until(STOPPED)
+    shell.type("fg\n")
+    shell.until(command)
+    shell.type(key)
+    shell.until(rf"{said}.*\r\n")
+    shell.type("q")
+    shell.until(PROMPT)
 
 
 def test_a_session_pauses(shell, tmp_path):

@@ -114,6 +114,5 @@ class FeltLiveView(LiveView):
         self._viewed = FeltView(device, feeler, self._said, facts)
         self.tell()
 
-    def attend(self) -> None:
-        """Pass over what pages ask for but to be the hand: nothing can be turned."""
-        self._monitor.take()
+    def obey(self, asked: PagePress | Turn) -> None:
+        """Pass over what a page asks for: it can be the hand, but nothing can be turned."""

@@ -56,7 +56,7 @@ def test_what_svg_scenes_ignore_is_drawn_here(load):
 @pytest.mark.parametrize(
     "inside",
     [
-        '<image width="20" height="10" href="file:///work/a.png"/>',
+        '<image width="20" height="10" href="file:///pictures/a.png"/>',
         '<image width="20" height="10" xlink:href="data:image/png;base64,iVBORw0KGgo="/>',
         '<text y="9" font-size="9">wide</text>',
         '<use href="http://localhost/a.svg#b"/>',

@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
+from vbraille.cli.stoppable import STOPPED, StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices import opened_device
@@ -14,7 +15,6 @@ from vbraille.devices.calibration import Calibration
 from vbraille.devices.calibrations import load, name_of, path_of, save
 from vbraille.devices.saying import placing_sentence, told
 from vbraille.engine.clock import RealClock
-from vbraille.engine.suspending import Suspension
 from vbraille.engine.swinging import Swinging
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import settings_path
@@ -137,16 +137,15 @@ class _Guided:
         found = self._round.found
         if found.tried:
             say_line(f"going on: tried {len(found.tried)} of {found.rows * found.columns}")
-        with Suspension() as suspension:
-            self._keyboard.take()
+        with StoppableKeyboard(self._keyboard) as keys:
             try:
                 self._device.correct(self._round.shown)
                 self._ask()
                 while not self._left:
                     self._tick()
-                    if suspension.asked:
-                        self._suspend(suspension)
-                    for key in self._keyboard.pressed(0.0):
+                    if keys.asked:
+                        self._suspend(keys)
+                    for key in keys.pressed():
                         if not self._left:
                             self._press(key)
             finally:
@@ -163,15 +162,13 @@ class _Guided:
             self._placing = self._device.placing
             say_line(placing_sentence(self._placing, self._device.display))
 
-    def _suspend(self, suspension: Suspension) -> None:
+    def _suspend(self, keys: StoppableKeyboard) -> None:
         """Stop, with the array at rest, until the shell says to go on."""
         self._swinging.stop()
         while not self._swinging.resting:
             self._tick()
-        say_line("stopped: the array rests; fg goes on")
-        self._keyboard.release()
-        suspension.stop()
-        self._keyboard.take()
+        say_line(STOPPED)
+        keys.stop()
         self._ask()
 
     def _press(self, key: str) -> None:

@@ -10,24 +10,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
+from vbraille.cli.atdevice import AtDevice, say_faults
 from vbraille.cli.options.live import check_live_options
+from vbraille.cli.stoppable import StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices.base import Placing
 from vbraille.devices.events import Button
 from vbraille.devices.registry import check_actuators
-from vbraille.devices.saying import placing_sentence
 from vbraille.display import check_rate
-from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.feeling.commands import BOUND
 from vbraille.feeling.composing import Composer
 from vbraille.feeling.feeler import Feeler
 from vbraille.feeling.filewatch import FileWatch
 from vbraille.feeling.loading import check_fits, load_scene
-from vbraille.reading.commands.table import press, press_button
-from vbraille.reading.context import Context
+from vbraille.reading.commands.table import press_button
 from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.hearing import Hearing
 from vbraille.reading.keyboard import Keyboard
@@ -52,7 +49,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.feeling.loading import LoadedScene
 
-_POLL_S = 0.02
 _MODEL = "stress2-8x8"
 _LINE_MM = 10.0  # between the lines that a hand goes along which reads
 # A picture may grow while somebody works on it.
@@ -108,8 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
             program = composer.compose(loaded, own_y_mm=arguments.at)
             room = max(_SPARE * program.nbytes, _LEAST_ROOM)
             device.start(model, room)
-            suspension = listening.enter_context(Suspension())
-            keyboard.take()
+            keys = listening.enter_context(StoppableKeyboard(keyboard))
             feeler = Feeler(
                 loaded,
                 device.engine,
@@ -137,13 +132,11 @@ def run(arguments: argparse.Namespace) -> int:
                 pitch_mm = canvas.height_mm / lines
                 device.steering.give(ReadPage(lines, pitch_mm, canvas.width_mm))
             alone = ends and not keyboard.attached
-            _Feeling(device, feeler, keyboard, suspension, live, alone=alone).run()
+            _Feeling(device, feeler, keys, live, alone=alone).run()
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
-    faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
-    if faults:
-        say_line(f"device: {faults}")
+    say_faults(device)
     tally = device.tally
     seconds = (tally.ticks + tally.late) / rate_hz
     say_line(f"summary: seconds {seconds:.1f}, ticks {tally.ticks}, late ticks {tally.late}")
@@ -172,128 +165,39 @@ def _live(arguments: argparse.Namespace) -> FeltLiveView | None:
     return FeltLiveView(arguments)
 
 
-class _Feeling:
-    """A picture that is felt, with the device and the keyboard."""
+class _Feeling(AtDevice):
+    """A picture that is felt until somebody has enough."""
+
+    does, doing = "feel", "feeling"
 
     def __init__(
         self,
         device: OpenDevice,
         feeler: Feeler,
-        keyboard: Keyboard,
-        suspension: Suspension,
+        keys: StoppableKeyboard,
         live: FeltLiveView | None,
         *,
         alone: bool,
     ) -> None:
-        self._device = device
+        super().__init__(device, feeler, keys, live)
         self._feeler = feeler
-        self._keyboard = keyboard
-        self._suspension = suspension
-        self._live = live
         self._alone = alone
         self._watch = FileWatch(Path(feeler.loaded.opened.path))
 
-    def run(self) -> None:
-        """Feel until somebody has enough."""
+    def _see(self, events: Iterable[Event]) -> None:
         device, feeler = self._device, self._feeler
-        if self._keyboard.attached:
-            feeler.say(f"{feeler.key('HELP', 'h')} says the keys")
-        while not feeler.done:
-            for key in self._pressed():
-                self._set_context()
-                press(feeler, key)
-            if self._live is not None:
-                self._live.attend()
-            placing = device.placing
-            try:
-                events = device.poll(0.0)
-            except HostDiedError as fault:
-                self._start_again(fault)
-                continue
-            for event in events:
-                if isinstance(event, Button) and event.pressed:
-                    press_button(feeler, event.number)
-            if device.placing is not placing:
-                self._say_place()
-            if device.held:
-                feeler.forget_aim()
-            now_s = time.monotonic()
-            feeler.attend(now_s)
-            if self._watch.changed():
-                feeler.reload()
-            if self._alone and self._is_done():
-                feeler.quit()
-            self._tell(events)
-        self._tell()
+        for event in events:
+            if isinstance(event, Button) and event.pressed:
+                press_button(feeler, event.number)
+        if device.held:
+            feeler.forget_aim()
+        feeler.attend(time.monotonic())
+        if self._watch.changed():
+            feeler.reload()
+        if self._alone and self._is_done():
+            feeler.quit()
 
     def _is_done(self) -> bool:
         """Whether a simulated hand has gone all of its way."""
         pose, steering = self._device.pose, self._device.steering
         return pose is not None and steering is not None and steering.done_at(pose.time_ns)
-
-    def _tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
-        if self._live is not None:
-            self._live.tell(events, standing)
-
-    def _pressed(self) -> list[str]:
-        """Keys typed; before that, the process stops for a while if it is told to."""
-        if self._suspension.asked:
-            self._suspend()
-        elif self._suspension.continued:
-            self._suspension.continued = False
-            self._keyboard.take()  # the shell has had the terminal
-        return self._keyboard.pressed(_POLL_S)
-
-    def _suspend(self) -> None:
-        """Stop, with the array at rest, until the shell says to go on."""
-        device = self._device
-        paused, device.paused = device.paused, True
-        self._feeler.say("stopped: the array rests; fg goes on")
-        self._tell(standing="stopped: the array rests")
-        self._keyboard.release()
-        self._suspension.stop()
-        self._keyboard.take()
-        device.paused = paused
-        self._feeler.say("paused" if paused else "feeling")
-        self._tell(standing="")
-
-    def _set_context(self) -> None:
-        """Have keys mean that the carriage is at its corner as long as the device waits for it."""
-        feeler = self._feeler
-        if self._device.placing is Placing.STOP:
-            feeler.context = Context.PLACING
-        elif feeler.context is Context.PLACING:
-            feeler.context = Context.READING
-
-    def _say_place(self) -> None:
-        if self._device.placing is Placing.STOP and not self._keyboard.attached:
-            raise InputError(
-                "the device must be shown its place, such as its left stop; feel at a terminal"
-            )
-        self._feeler.say(placing_sentence(self._device.placing, self._device.display))
-
-    def _start_again(self, fault: HostDiedError) -> None:
-        """Say that the host is gone, and begin another when asked to.
-
-        Raises
-        ------
-        HostDiedError
-            If there is nobody to ask.
-        """
-        self._tell(standing=f"fault: {fault}")
-        if not self._keyboard.attached:
-            raise fault
-        feeler = self._feeler
-        feeler.say(f"fault: {fault}; space begins again, q stops")
-        while True:
-            keys = self._pressed()
-            if "q" in keys:
-                feeler.quit()
-                return
-            if " " in keys:
-                break
-            if keys:
-                feeler.say("fault: nothing drives the device; space begins again, q stops")
-        self._device.start_again()
-        feeler.say("feeling")
-        self._tell(standing="")

@@ -8,22 +8,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
+from vbraille.cli.atdevice import AtDevice, say_faults
 from vbraille.cli.build import build_lengths, build_page, build_show, lay_out, note_unseen_dots
 from vbraille.cli.options.live import check_live_options
 from vbraille.cli.resuming import open_to_resume
 from vbraille.cli.settled import bind_settings, chosen_profile, settle
+from vbraille.cli.stoppable import StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
-from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators, check_height, check_travel
-from vbraille.devices.saying import placing_sentence
 from vbraille.display import USUAL_RATE_HZ, check_rate
-from vbraille.engine.host import HostDiedError
-from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.reading.beside import Beside
-from vbraille.reading.commands.table import press
-from vbraille.reading.context import Context
 from vbraille.reading.cues import Cues, choose_cues
 from vbraille.reading.echo import Echo
 from vbraille.reading.hearing import Hearing, language_of
@@ -47,8 +43,6 @@ if TYPE_CHECKING:
     from vbraille.engine.tally import Tally
     from vbraille.reading.alongside import Alongside
     from vbraille.render import Model
-
-_POLL_S = 0.02
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -116,8 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
             note_unseen_dots(page)
             device.start(page.model)
             # Till now Ctrl-Z may do what it does elsewhere.
-            suspension = listening.enter_context(Suspension())
-            keyboard.take()
+            keys = listening.enter_context(StoppableKeyboard(keyboard))
             seeker = opened.seeker(arguments)
             if seeker is not None:
                 listening.enter_context(seeker)
@@ -146,169 +139,65 @@ def run(arguments: argparse.Namespace) -> int:
             if live is not None:
                 live.show(device, hand)
             try:
-                _Reading(page, device, keyboard, suspension, hearing, live, also).run()
+                _Reading(page, device, keys, hearing, live, also).run()
             finally:
                 opened.leave(device.reader, model, page.model.style)
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
-    faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
-    if faults:
-        say_line(f"device: {faults}")
+    say_faults(device)
     page.say_unknown()
     say_line(_summary(device.reader.lines, device.tally, rate_hz))
     return 0
 
 
-class _Reading:
-    """One reading, with its device and its keyboard."""
+class _Reading(AtDevice):
+    """One reading, to the end of the text."""
+
+    does, doing = "read", "reading"
 
     def __init__(
         self,
         page: Page,
         device: OpenDevice,
-        keyboard: Keyboard,
-        suspension: Suspension,
+        keys: StoppableKeyboard,
         hearing: Hearing,
         live: LiveView | None,
         also: Alongside | None,
     ) -> None:
+        super().__init__(device, device.reader, keys, live)
         self._page = page
-        self._device = device
-        self._keyboard = keyboard
-        self._suspension = suspension
         self._hearing = hearing
-        self._live = live
         self._also = also
 
     def run(self) -> None:
-        """Read to the end."""
+        """Read to the end; see `AtDevice.run`."""
         try:
-            self._read()
+            self._say_notes()
+            super().run()
         finally:
-            self._tell()
             self._device.reader.leave()
 
-    def _read(self) -> None:
+    def _see(self, events: Iterable[Event]) -> None:  # noqa: ARG002 - the device obeys them
         device = self._device
+        self._hearing.see(device.line)
+        if device.reader.layout is self._page.layout:
+            self._page.see(device.reader.line_number)
         self._say_notes()
-        if self._keyboard.attached:
-            self._hearing.say(f"{device.reader.key('HELP', 'h')} says the keys")
-        while not device.done:
-            for key in self._pressed():
-                self._press(key)
-            self._obey()
-            self._show_also()  # what a key has brought is shown at once
-            placing = device.placing
-            try:
-                events = device.poll(0.0)
-            except HostDiedError as fault:
-                self._start_again(fault)
-                continue
-            if device.placing is not placing:
-                self._say_place()
-            self._show_also()
-            self._hearing.see(device.line)
-            if device.reader.layout is self._page.layout:
-                self._page.see(device.reader.line_number)
-            self._say_notes()
-            self._tell(events)
 
-    def _obey(self) -> None:
-        """Do what pages of the live view have asked for."""
-        if self._live is None:
-            return
-        for asked in self._live.take():
-            self._set_context()
-            self._live.obey(asked)
+    def _show(self) -> None:
+        """Have what is under the hand stand on the conventional display, and obey its keys."""
+        if self._also is not None:
+            self._also.attend(self._device.reader)
 
-    def _tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
-        """Tell the live view what has changed; see `LiveView.tell`."""
-        if self._live is not None:
-            self._live.tell(events, standing)
+    def _rest(self) -> None:
+        if self._also is not None:
+            self._also.rest()
 
     def _say_notes(self) -> None:
         """Say what is to be said of the text and of its table, which may have changed."""
         for note in self._device.reader.layout.book.notes():
             say_line(spelled(note), aside=True)
-
-    def _show_also(self) -> None:
-        """Have what is under the hand stand on the conventional display, and obey its keys."""
-        if self._also is not None:
-            self._also.attend(self._device.reader)
-
-    def _say_place(self) -> None:
-        if self._device.placing is Placing.STOP and not self._keyboard.attached:
-            raise InputError(
-                "the device must be shown its place, such as its left stop; read at a terminal"
-            )
-        display = self._device.reader.engine.display
-        self._hearing.say(placing_sentence(self._device.placing, display))
-
-    def _pressed(self) -> list[str]:
-        """Keys typed; before that, the process stops for a while if it is told to."""
-        if self._suspension.asked:
-            self._suspend()
-        elif self._suspension.continued:
-            self._suspension.continued = False
-            self._keyboard.take()  # the shell has had the terminal
-        return self._keyboard.pressed(_POLL_S)
-
-    def _suspend(self) -> None:
-        """Stop, with the array at rest, until the shell says to go on."""
-        device = self._device
-        paused, device.paused = device.paused, True
-        self._hearing.say("stopped: the array rests; fg goes on")
-        self._tell(standing="stopped: the array rests")
-        self._keyboard.release()
-        if self._also is not None:
-            self._also.rest()
-        self._suspension.stop()
-        self._keyboard.take()
-        device.paused = paused
-        self._hearing.say("paused" if paused else "reading")
-        self._tell(standing="")
-
-    def _press(self, key: str) -> None:
-        self._set_context()
-        press(self._device.reader, key)
-
-    def _set_context(self) -> None:
-        """Have keys mean that the carriage is at the stop as long as the device waits for that."""
-        placing = self._device.placing is Placing.STOP
-        reader = self._device.reader
-        if placing:
-            reader.context = Context.PLACING
-        elif reader.context is Context.PLACING:
-            reader.context = Context.READING
-
-    def _start_again(self, fault: HostDiedError) -> None:
-        """Say that the host is gone, and begin another when asked to.
-
-        Raises
-        ------
-        HostDiedError
-            If there is nobody to ask.
-        """
-        self._tell(standing=f"fault: {fault}")
-        if not self._keyboard.attached:
-            raise fault
-        self._hearing.say(f"fault: {fault}; space begins again, q stops")
-        while True:
-            keys = self._pressed()
-            if self._live is not None:
-                self._live.take()  # which nobody can do now
-                self._live.tell()
-            if "q" in keys:
-                self._device.reader.quit()
-                return
-            if " " in keys:
-                break
-            if keys:
-                self._hearing.say("fault: nothing drives the device; space begins again, q stops")
-        self._device.start_again()
-        self._hearing.say("reading")
-        self._tell(standing="")
 
 
 def _live(arguments: argparse.Namespace) -> LiveView | None:

@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from vbraille.cli.settled import chosen_profile, settle
+from vbraille.cli.stoppable import POLL_S, STOPPED, StoppableKeyboard
 from vbraille.cli.stopping import EAR
 from vbraille.cli.terminal import say_line
 from vbraille.devices.base import Placing
 from vbraille.devices.registry import check_actuators
 from vbraille.devices.saying import placing_sentence
 from vbraille.display import USUAL_RATE_HZ, check_rate
-from vbraille.engine.suspending import Suspension
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.layout.pages import Layout
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from vbraille.render import Model
     from vbraille.settings.chosen import Settings
 
-_POLL_S = 0.02
 _KEYS = {
     "space": "feel the other one",
     "1 or 2": "choose this one",
@@ -80,10 +79,9 @@ def run(arguments: argparse.Namespace) -> int:
             course = _Guided(arguments, settings, profile, model)
             text = _text(arguments, model)
             device.start(replace(model, style=course.course.shown(1)))
-            suspension = listening.enter_context(Suspension())
-            keyboard.take()
+            keys = listening.enter_context(StoppableKeyboard(keyboard))
             device.show(text)
-            course.run(device, keyboard, suspension)
+            course.run(device, keys)
         finally:
             EAR.close()  # so that the array goes to rest
             device.close()
@@ -131,7 +129,7 @@ class _Guided:
         path = self._settings.path
         return path.with_name(f"{path.stem}-tune-{self._profile}-{self._display}.json")
 
-    def run(self, device: OpenDevice, keyboard: Keyboard, suspension: Suspension) -> None:
+    def run(self, device: OpenDevice, keys: StoppableKeyboard) -> None:
         """Lead through the choices that are left, then save."""
         say_line(f"display: {self._model.title}")
         say_line(f"profile: {self._profile}")
@@ -141,12 +139,9 @@ class _Guided:
         self._ask(device)
         placing = Placing.DONE
         while not (self._left or self.course.done):
-            if suspension.asked:
-                _suspend(device, keyboard, suspension)
-            elif suspension.continued:
-                suspension.continued = False
-                keyboard.take()
-            for key in keyboard.pressed(_POLL_S):
+            if keys.asked:
+                _suspend(device, keys)
+            for key in keys.pressed(POLL_S):
                 if device.placing is Placing.STOP:
                     device.set_zero()
                 elif not (self._left or self.course.done):
@@ -218,12 +213,10 @@ class _Guided:
         self._path.unlink(missing_ok=True)
 
 
-def _suspend(device: OpenDevice, keyboard: Keyboard, suspension: Suspension) -> None:
+def _suspend(device: OpenDevice, keys: StoppableKeyboard) -> None:
     """Stop, with the array at rest, until the shell says to go on."""
     device.paused = True
-    say_line("stopped: the array rests; fg goes on")
-    keyboard.release()
-    suspension.stop()
-    keyboard.take()
+    say_line(STOPPED)
+    keys.stop()
     device.paused = False
     say_line("reading")

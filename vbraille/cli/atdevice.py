@@ -1,0 +1,206 @@
+"""Somebody at a device: the loop of ``vbraille read`` and ``vbraille feel``."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+from vbraille.cli.stoppable import POLL_S, STOPPED
+from vbraille.cli.terminal import say_line
+from vbraille.devices.base import Placing
+from vbraille.devices.saying import placing_sentence
+from vbraille.engine.host import HostDiedError
+from vbraille.errors import InputError
+from vbraille.reading.commands.table import press
+from vbraille.reading.context import Context
+from vbraille.reading.keyed import Keyed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from vbraille.cli.live import LiveView
+    from vbraille.cli.stoppable import StoppableKeyboard
+    from vbraille.devices.events import Event
+    from vbraille.reading.opened import OpenDevice
+
+
+class Occupied(Keyed, Protocol):
+    """Somebody who is told what to do by keys, until there is no more to do.
+
+    Attributes
+    ----------
+    done : bool
+        Whether there is no more to do.
+    """
+
+    done: bool
+
+    def quit(self) -> None:
+        """Do no more."""
+        ...
+
+
+def say_faults(device: OpenDevice) -> None:
+    """Say what went wrong with a device that is closed, and how often; nothing if nothing did."""
+    faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
+    if faults:
+        say_line(f"device: {faults}")
+
+
+class AtDevice(ABC):
+    """Somebody at a device, who tells it by keys what to do until there is no more to do.
+
+    The process can be stopped meanwhile, and a host that dies can be begun again.
+
+    Parameters
+    ----------
+    device
+        Device, which has something under the hand.
+    who
+        Reader or feeler, who is told what to do.
+    keys
+        Keyboard, whose keys are taken.
+    live
+        Live view; None if there is none.
+
+    Attributes
+    ----------
+    does, doing : str
+        Words for what somebody does here, such as "read" and "reading".
+    """
+
+    does: ClassVar[str]
+    doing: ClassVar[str]
+
+    def __init__(
+        self,
+        device: OpenDevice,
+        who: Occupied,
+        keys: StoppableKeyboard,
+        live: LiveView | None,
+    ) -> None:
+        self._device = device
+        self._who = who
+        self._keys = keys
+        self._live = live
+
+    def run(self) -> None:
+        """Go on until there is no more to do.
+
+        Raises
+        ------
+        HostDiedError
+            If the host is gone, and nobody is there who could begin another.
+        VbrailleError
+            If something else goes wrong with the device.
+        """
+        try:
+            if self._keys.attached:
+                self._who.say(f"{self._who.key('HELP', 'h')} says the keys")
+            while not self._who.done:
+                self._step()
+        finally:
+            self._tell()
+
+    def _step(self) -> None:
+        """Do what keys and pages ask for, then see what the device has to tell."""
+        for key in self._pressed():
+            self._set_context()
+            press(self._who, key)
+        self._obey()
+        self._show()  # what a key has brought is shown at once
+        placing = self._device.placing
+        try:
+            events = self._device.poll(0.0)
+        except HostDiedError as fault:
+            self._start_again(fault)
+            return
+        if self._device.placing is not placing:
+            self._say_place()
+        self._show()
+        self._see(events)
+        self._tell(events)
+
+    @abstractmethod
+    def _see(self, events: Iterable[Event]) -> None:
+        """Do what is to be done when the device was polled, with the events it has told."""
+
+    def _show(self) -> None:
+        """Show what is under the hand on whatever else shows it."""
+
+    def _rest(self) -> None:
+        """Bring to rest whatever else shows what is under the hand."""
+
+    def _obey(self) -> None:
+        """Do what pages of the live view have asked for."""
+        if self._live is None:
+            return
+        for asked in self._live.take():
+            self._set_context()
+            self._live.obey(asked)
+
+    def _tell(self, events: Iterable[Event] = (), standing: str | None = None) -> None:
+        """Tell the live view what has changed; see `LiveView.tell`."""
+        if self._live is not None:
+            self._live.tell(events, standing)
+
+    def _pressed(self) -> list[str]:
+        """Keys typed; before that, the process stops for a while if it is told to."""
+        if self._keys.asked:
+            self._suspend()
+        return self._keys.pressed(POLL_S)
+
+    def _suspend(self) -> None:
+        """Stop, with the array at rest, until the shell says to go on."""
+        device = self._device
+        paused, device.paused = device.paused, True
+        self._who.say(STOPPED)
+        self._tell(standing="stopped: the array rests")
+        self._rest()
+        self._keys.stop()
+        device.paused = paused
+        self._who.say("paused" if paused else self.doing)
+        self._tell(standing="")
+
+    def _set_context(self) -> None:
+        """Have keys mean that the carriage is at its place while the device waits for that."""
+        if self._device.placing is Placing.STOP:
+            self._who.context = Context.PLACING
+        elif self._who.context is Context.PLACING:
+            self._who.context = Context.READING
+
+    def _say_place(self) -> None:
+        if self._device.placing is Placing.STOP and not self._keys.attached:
+            raise InputError(
+                "the device must be shown its place, such as its left stop; "
+                f"{self.does} at a terminal"
+            )
+        self._who.say(placing_sentence(self._device.placing, self._device.engine.display))
+
+    def _start_again(self, fault: HostDiedError) -> None:
+        """Say that the host is gone, and begin another when asked to.
+
+        Raises
+        ------
+        HostDiedError
+            If there is nobody to ask.
+        """
+        self._tell(standing=f"fault: {fault}")
+        if not self._keys.attached:
+            raise fault
+        self._who.say(f"fault: {fault}; space begins again, q stops")
+        while True:
+            keys = self._pressed()
+            if self._live is not None:
+                self._live.take()  # which nobody can do now
+            self._tell()
+            if "q" in keys:
+                self._who.quit()
+                return
+            if " " in keys:
+                break
+            if keys:
+                self._who.say("fault: nothing drives the device; space begins again, q stops")
+        self._device.start_again()
+        self._who.say(self.doing)
+        self._tell(standing="")
