@@ -102,8 +102,8 @@ def profile(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         metavar="FILE.csv",
-        help="Write each place with its cost, and what kinds of patterns have in that, to a CSV file "
-        "(default: none).",
+        help="Write each place with its cost, and what kinds of patterns have in that, to a CSV "
+        "file (default: none).",
     )
     parser.add_argument(
         "--map",
