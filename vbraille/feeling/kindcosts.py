@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.feeling.costs import REPEATS, batches_of, time_frames
+from vbraille.feeling.costs import batches_of, time_frames
 from vbraille.render.scene.stripping import WordKind, emptied, kinds_in, stripped
 
 if TYPE_CHECKING:
@@ -24,7 +24,8 @@ KINDS: Final = (*(kind.value for kind in WordKind), COMPOSITION, BLANK)
 
 # The place where frames cost most is timed by itself, so many times as often as the others: what is
 # most of many was most by chance, too.
-_CLOSER: Final = 8
+_CLOSER: Final = 16
+_REPEATS: Final = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +60,7 @@ class KindCosts:
 
 
 def costs_of_kinds(
-    program: Program, path: PosedPath, most: int, repeats: int = REPEATS
+    program: Program, path: PosedPath, most: int, repeats: int = _REPEATS
 ) -> tuple[KindCosts, KindCosts]:
     """Time frames with and without the words of each kind of pattern.
 
