@@ -5,17 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import os
-import re
-import select
-import subprocess
-import time
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.benchmarks.timing import vbraille
 from vbraille.sessions.record import journal
 from vbraille.sessions.record.check import check
 from vbraille.sessions.record.eventlines import to_json
@@ -24,6 +19,7 @@ from vbraille.sessions.record.traces import read_last_tie
 
 if TYPE_CHECKING:
     from pathlib import Path
+from tests.benchmarks.killed_runs import Ended, acknowledged, parse, run_program
 
 KILLS = """
 format = 1
@@ -81,12 +77,9 @@ MOST_LINES = 24
 MOST_PAUSE_S = 0.012  # some more than a trial takes
 # Shares of the kills, and of those a cut of the journal's last line if it may be lost.
 STARTING, BEGINNING, CUT = 0.3, 0.2, 0.5
-_PATIENCE_S = 60.0
-_CELLS = {"l": "⠁", "c": "⠉", "r": "⠈", "n": "⠀"}
 # What a crash of the machine may take: nobody was told that it is in.
 _NOT_DURABLE = ("presented", "cue", "contact", "read")
 _DONE = ("answer", "undo", "note", "repeat")
-
 Event = dict
 
 
@@ -105,16 +98,6 @@ class Tally:
     others: list[str] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """What a run of the program said until it ended; exit code None: it was killed."""
-
-    lines: list[str]
-    code: int | None
-    stderr: str
-    first_line_s: float = 0.0
-
-
 def kill_often(kills: int, seed: int, folder: Path, toml: str = KILLS) -> Tally:
     """Kill so many runs of sessions at random moments, and bring every session to its end."""
     random = np.random.default_rng(seed)
@@ -130,7 +113,7 @@ def kill_often(kills: int, seed: int, folder: Path, toml: str = KILLS) -> Tally:
         command += ["--seed", str(random.integers(1000)), "--answers", str(answers)]
         command += ["--hand", "sweep:150", "--out"]
         whole = folder / f"{number}-whole"
-        ended = _run([*command, str(whole)])
+        ended = run_program([*command, str(whole)])
         assert ended.code == 0, ended.stderr
         run = [*command, str(folder / number)]
         _Killed(run, whole, ended.first_line_s, random, tally).go(kills)
@@ -184,17 +167,17 @@ class _Killed:
             aside, untorn = self._aside_bytes(), not self._tail()
             before = len(self._events()) if self._folder.exists() else 0
             if tally.kills == kills:
-                ended = _run(command)
+                ended = run_program(command)
             else:
                 # All is drawn in any case, so that what is drawn later never depends on time.
                 kind, share, cut, at = self._random.random(4)
                 lines = int(self._random.integers(1, MOST_LINES + 1))
                 if kind < STARTING:
-                    ended = _run(command, 0, share * 1.3 * self._first_line_s)
+                    ended = run_program(command, 0, share * 1.3 * self._first_line_s)
                 elif kind < STARTING + BEGINNING:
-                    ended = _run(command, 1 + lines % 3, share * MOST_PAUSE_S)
+                    ended = run_program(command, 1 + lines % 3, share * MOST_PAUSE_S)
                 else:
-                    ended = _run(command, lines, share * MOST_PAUSE_S)
+                    ended = run_program(command, lines, share * MOST_PAUSE_S)
                 if ended.code is None:
                     tally.kills += 1
                     tally.starting += not ended.lines
@@ -220,7 +203,7 @@ class _Killed:
         for finding in check(load(self._folder)):
             if not finding.good:
                 self._add(self._others, f"session check: {finding.text}")
-        missing = Counter(_acknowledged(self._said)) - Counter(_answers(self._events()))
+        missing = Counter(acknowledged(self._said)) - Counter(_answers(self._events()))
         for trial, answer in missing:
             self._add(self._lost, f"answer to trial {trial}, {answer}, is not in the journal")
 
@@ -228,7 +211,7 @@ class _Killed:
         """What must hold at the end, beside the session that nobody disturbed."""
         tally, events = self._tally, self._events()
         whole = [to_json(event) for event in load(self._whole).told.events]
-        tally.acknowledged += len(_acknowledged(self._said))
+        tally.acknowledged += len(acknowledged(self._said))
         if (self._folder / PLAN).read_bytes() != (self._whole / PLAN).read_bytes():
             self._add(self._others, "the plan is another one")
         if _done(events) != _done(whole) or _answers(events) != _answers(whole):
@@ -246,7 +229,7 @@ class _Killed:
         answered: set[int] = set()
         cues: Counter[int] = Counter()
         for line in self._said:
-            kind, trial = _parse(line)
+            kind, trial = parse(line)
             if kind == "answer":
                 answered.add(trial)
             elif kind == "cue":
@@ -264,7 +247,7 @@ class _Killed:
                 )
 
     def _compare_table(self, events: list[Event], whole: list[Event]) -> None:
-        exported = _run(["session", "export", str(self._folder)])
+        exported = run_program(["session", "export", str(self._folder)])
         rows = list(csv.DictReader(io.StringIO("\n".join(exported.lines))))
         attempts = _last(events, "presented", "attempt")
         self._tally.most_attempts = max(self._tally.most_attempts, *attempts.values())
@@ -288,7 +271,7 @@ class _Killed:
                 self._add(
                     self._others, f"a run event names {run['torn_bytes']} torn bytes that are none"
                 )
-        checked = _run(["session", "check", str(self._folder)])
+        checked = run_program(["session", "check", str(self._folder)])
         named = any(line.startswith(f"{journal.TORN}: ") for line in checked.lines)
         if checked.code or named != bool(self._tails) or "is ended" not in checked.lines[-2]:
             self._add(
@@ -337,58 +320,6 @@ class _Killed:
         sentence = f"session {self._folder.name}: {what}"
         if sentence not in sentences:
             sentences.append(sentence)
-
-
-def _run(command: list[str], lines: int | None = None, pause_s: float = 0.0) -> Ended:
-    """Run the program; kill it a while after it has said so many lines, if a number is given."""
-    said: list[bytes] = []
-    begun_s = time.monotonic()
-    with subprocess.Popen(
-        vbraille(*command),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        bufsize=0,  # a line at a time, and nothing of the rest is kept from communicate
-    ) as process:
-        assert process.stdout is not None
-        if lines != 0:
-            said.append(_read(process.stdout))
-        first_line_s = time.monotonic() - begun_s
-        if lines is None:
-            rest, stderr = process.communicate(timeout=_PATIENCE_S)
-        else:
-            while len(said) < lines and said[-1]:
-                said.append(_read(process.stdout))
-            time.sleep(pause_s)
-            process.kill()
-            rest, stderr = process.communicate(timeout=_PATIENCE_S)
-    text = (b"".join(said) + rest).decode()
-    # A line without an end was not read by anybody.
-    whole = text.split("\n")[:-1]
-    return Ended(
-        whole,
-        process.returncode if process.returncode >= 0 else None,
-        stderr.decode(),
-        first_line_s,
-    )
-
-
-def _read(stdout: IO[bytes]) -> bytes:
-    """Read a line, or what there is of it at the end."""
-    assert select.select([stdout], [], [], _PATIENCE_S)[0]
-    return stdout.readline()
-
-
-def _parse(line: str) -> tuple[str, int]:
-    """Kind of a line and its trial, 0 if it has none."""
-    found = re.match(r"(\w+): trial (\d+)", line)
-    return ("", 0) if found is None else (found[1], int(found[2]))
-
-
-def _acknowledged(lines: list[str]) -> list[tuple[int, str]]:
-    """Trials and answers that the program said are in."""
-    found = (re.fullmatch(r"answer: trial (\d+)(?: of \d+)?, (.+)", line) for line in lines)
-    return [(int(f[1]), "".join(_CELLS[name] for name in f[2].split())) for f in found if f]
 
 
 def _of(events: list[Event], name: str) -> list[Event]:

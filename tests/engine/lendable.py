@@ -21,14 +21,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from tests.engine.test_loop import info
+from tests.engine.test_loop import info, picture
 from vbraille.devices.serial.conversation import Conversation
 from vbraille.devices.serial.openserial import greet
 from vbraille.devices.serial.ports import Address
 from vbraille.devices.serial.serialdevice import SerialDevice
 from vbraille.devices.serial.seriallines import DescriptorLine
-from vbraille.devices.wire.codec import Decoder, encode
-from vbraille.devices.wire.messages import VERSION, Encoder, State
+from vbraille.devices.wire.codec import Decoder, Levels, encode
+from vbraille.devices.wire.messages import VERSION, Encoder, Frame, State
 from vbraille.engine.loop import Loop
 from vbraille.engine.ring import Ring
 from vbraille.simulation.described import describe
@@ -38,6 +38,14 @@ from vbraille.simulation.firmware import Controller
 ONE_AT_A_TIME_HZ = 60.0
 FADE_S = 0.01
 NS_PER_S = 1_000_000_000
+TOP = 1023
+PICTURES = [picture((line + 1, 63, 21) * 8, mapping="sheared") for line in range(4)]
+_LEVELS = Levels(60, TOP)
+
+
+def levels_of(messages):
+    """Levels of each FRAME, 0 to `TOP`."""
+    return [_LEVELS.unpack(message.packed) for message in messages if isinstance(message, Frame)]
 
 
 def sockets():

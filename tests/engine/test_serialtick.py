@@ -1,7 +1,6 @@
-"""The compiled tick beside the one in Python, and all that it leaves to Python."""
+"""The compiled tick by itself, and all that it leaves to Python."""
 
 import os
-import random
 import select
 import signal
 import socket
@@ -12,139 +11,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tests.engine.lendable import Rig, Twin, assert_same_tick, known, sockets, terminal
-from tests.engine.test_loop import picture
-from tests.tiers import by_tier
+from tests.engine.lendable import PICTURES, levels_of, sockets, terminal
 from vbraille.devices.events import Knob, Notice, Silent, Unplugged
-from vbraille.devices.serial.conversation import IDLE_MS
-from vbraille.devices.wire.codec import Decoder, Levels, encode
-from vbraille.devices.wire.messages import SILENCE_MS, STALL_MS, Error, Frame, Watchdog
+from vbraille.devices.wire.codec import Decoder, encode
+from vbraille.devices.wire.messages import SILENCE_MS, Error, Frame
 from vbraille.engine.record import Flag
 from vbraille.errors import DeviceError
-from vbraille.sessions.record.replay import Replay
 
 NS_PER_MS = 1_000_000
-TOP = 1023
-PICTURES = [picture((line + 1, 63, 21) * 8, mapping="sheared") for line in range(4)]
-LEVELS = Levels(60, TOP)
 
 
-@pytest.fixture
-def rig():
-    rig = Rig()
-    rig.loop.show(PICTURES[0], 0)
-    rig.settle()
-    yield rig
-    rig.close()
-
-
-def levels_of(messages):
-    """Levels of each FRAME."""
-    return [LEVELS.unpack(message.packed) for message in messages if isinstance(message, Frame)]
-
-
-class Wrong:
-    """What goes wrong on the way to the host and from it, at random; and what a reader does."""
-
-    def __init__(self, rig, twin, seed):
-        self._rig, self._twin = rig, twin
-        self._chance = random.Random(seed)
-        self.late = b""  # comes with the next tick
-        self.deaf = 0  # ticks in which the controller hears nothing
-
-    def next(self):
-        """The bytes that come before the next tick."""
-        chance, message, late = self._chance, self._rig.say(), self.late
-        self.late = b""
-        if chance.random() < 0.6:
-            return late + message
-        kind = chance.choice(
-            (
-                *(self.garbled, self.split, self.doubled, self.dropped, self.delayed),
-                *(self.other, self.button, self.knob, self.deafness, self.warp, self.reader),
-            )
-        )
-        return late + kind(message)
-
-    def garbled(self, message):
-        if not message:
-            return b""
-        at = self._chance.randrange(len(message))
-        return message[:at] + bytes((message[at] ^ 0x10,)) + message[at + 1 :]
-
-    def split(self, message):
-        cut = self._chance.randrange(len(message) + 1)
-        self.late = message[cut:]
-        return message[:cut]
-
-    def doubled(self, message):
-        return message * 2
-
-    def dropped(self, _message):
-        return b""
-
-    def delayed(self, message):
-        self.late = message
-        return b""
-
-    def other(self, message):
-        trips = self._rig.controller.trips
-        said = Error(200, "warm"), Watchdog(trips, 0), Watchdog(trips + 1, 0)
-        return encode(self._chance.choice(said)) + message
-
-    def button(self, message):
-        self._rig.controller.buttons ^= 1 << self._chance.randrange(8)
-        return message
-
-    def knob(self, message):
-        """Have a knob turned, or jitter."""
-        knobs = self._rig.controller.knobs
-        if knobs:
-            which = self._chance.randrange(len(knobs))
-            step = self._chance.choice((1, 2, 3, 40)) / 255
-            knobs[which] = knobs[which] + step if knobs[which] + step <= 1 else 0.0
-        return message
-
-    def deafness(self, message):
-        self.deaf = self._chance.choice((1, 5, 70))
-        return message
-
-    def warp(self, message):
-        """Have something been so long ago that the conversation must mind it."""
-        which = self._chance.randrange(3)
-        for device in (self._rig.device, self._twin.device):
-            talk = device.conversation
-            if which == 0:
-                talk.states.heard_ns -= SILENCE_MS * NS_PER_MS
-                if talk.time.host_ns is not None:  # when the last STATE came, too
-                    talk.time.host_ns -= SILENCE_MS * NS_PER_MS
-            elif which == 1:
-                talk.frames.felt_ns -= IDLE_MS * NS_PER_MS
-            elif talk.delivery.sent_ns is not None:
-                talk.delivery.sent_ns -= STALL_MS * NS_PER_MS
-        return self._chance.choice((message, b""))
-
-    def reader(self, message):
-        rig, twin = self._rig, self._twin
-        rig.clock.at_ns = twin.clock.at_ns  # what is wanted, is wanted at one time
-        line = self._chance.randrange(len(PICTURES))
-        pause = self._chance.random() < 0.3
-        for loop in (rig.loop, twin.loop):
-            loop.show(PICTURES[line], line)
-            loop.paused = pause
-        rig.clock.at_ns = None
-        return message
-
-
-DEVICES = (
-    {"height_mm": 200.0, "turns": True},
-    {"version": 1},
-    {"version": 2},
-)
-
-
-def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s():
-    rig = Rig(height_mm=200.0, turns=True)
+def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s(rigs):
+    rig = rigs(height_mm=200.0, turns=True)
     rig.loop.show(PICTURES[0], 0)
     rig.settle()
     compiled = 0  # a machine that stalls leaves some ticks to Python
@@ -161,11 +39,10 @@ def test_y_and_the_angle_of_a_compiled_tick_are_the_carriage_s():
     rig.step()
     assert not rig.compiled
     assert knobs_of(rig) == [Knob(1, 128 / 255)]
-    rig.close()
 
 
-def test_a_pose_that_came_before_what_python_is_left_with_keeps_y_and_the_angle():
-    rig = Rig(None, 50.0, 50.0, height_mm=200.0, turns=True)
+def test_a_pose_that_came_before_what_python_is_left_with_keeps_y_and_the_angle(rigs):
+    rig = rigs(None, 50.0, 50.0, height_mm=200.0, turns=True)
     rig.loop.show(PICTURES[0], 0)
     rig.y_mm, rig.theta_rad = 30.0, 0.1
     rig.settle()
@@ -187,121 +64,14 @@ def test_a_pose_that_came_before_what_python_is_left_with_keeps_y_and_the_angle(
     assert record["y_mm"] == pytest.approx(31.0)
     assert record["theta_rad"] == pytest.approx(0.11, abs=1e-4)
     assert not rig.compiled
-    rig.close()
 
 
 def knobs_of(rig):
     return [event for event in rig.device.take_events() if isinstance(event, Knob)]
 
 
-@pytest.mark.parametrize("seed", range(by_tier(3, 8, 80)))
-def test_over_traffic_with_faults_it_comes_to_what_python_alone_comes_to(seed):
-    print(f"seed {seed}")
-    rig = Rig(**DEVICES[seed % len(DEVICES)])
-    twin = Twin(rig)
-    wrong = Wrong(rig, twin, seed)
-    for loop in (rig.loop, twin.loop):
-        loop.show(PICTURES[0], 0)
-    compiled = left = 0
-    for tick in range(600):
-        rig.way_mm = 60.0 + 40.0 * np.sin(tick / 100)
-        rig.y_mm, rig.theta_rad = 50.0 + 40.0 * np.sin(tick / 70), 0.3 * np.sin(tick / 90)
-        chunk = wrong.next()
-        rig.put(chunk)
-        record = rig.tick()
-        compiled += rig.compiled
-        left += not rig.compiled
-        assert_same_tick(record, twin.tick(int(record["time_ns"]), list(rig.asked), chunk))
-        heard = rig.receive()
-        assert heard == twin.sent
-        assert known(rig.device) == known(twin.device)
-        rig.asked.clear()
-        events = rig.device.take_events()
-        twin.times.extend(rig.asked)
-        assert events == twin.device.take_events()
-        wrong.deaf = max(wrong.deaf - 1, 0)
-        if not wrong.deaf:
-            wrong.late += rig.controller.receive(heard, rig.us)
-    assert compiled > 100
-    assert left > 50
-    rig.close()
-
-
-def test_what_goes_out_is_what_is_recorded_and_what_a_replay_makes(rig):
-    """For a compiled tick and for one of Python's."""
-    rig.hear()
-    messages, sent = Decoder(), {}
-    pauses = 0
-    # A machine that stalls has frames held back: then it goes on till enough have been sent.
-    for tick in range(4000):
-        if tick % 400 == 0 and tick and len(sent) > 300 and pauses > 20:
-            break
-        rig.way_mm = 60.0 + 40.0 * np.sin(tick / 60)
-        if tick % 80 == 79:
-            rig.loop.show(PICTURES[tick // 80 % 4], tick // 80 % 4)
-        if tick % 400 in (200, 230):
-            rig.loop.paused = tick % 400 == 200
-        record = rig.step()
-        pauses += rig.compiled and bool(record["flags"] & Flag.PAUSED)
-        frames = levels_of(messages.feed(rig.sent))
-        if not record["flags"] & Flag.HELD:  # as a host is that was stopped
-            (sent[int(record["tick"])],) = frames
-    assert pauses > 20
-    records = np.concatenate(rig.records)
-    np.testing.assert_array_equal(records["tick"], np.arange(records.size))
-    display = rig.device.display
-    frames = Replay(dict(enumerate(PICTURES)).__getitem__, display).frames(records)
-    levels = np.rint(frames * TOP).reshape(records.size, -1)
-    assert levels.max() > 0.9 * TOP
-    assert len(sent) > 300
-    for tick, shown in sent.items():
-        np.testing.assert_array_equal(records["frame"][tick], frames[tick].astype(np.float32))
-        np.testing.assert_array_equal(shown, levels[tick])
-
-
-@pytest.mark.no_cover
-def test_beside_a_controller_of_its_own_pace_frames_are_those_of_the_records():
-    """Over a pseudo-terminal, where a STATE has each tick begin."""
-    rig = Rig(terminal(), rate_hz=1000.0)
-    rig.loop.show(PICTURES[0], 0)
-    rig.settle()
-    messages, ended = Decoder(), threading.Event()
-    messages.feed(rig.sent)
-    sent = []
-
-    def answer():
-        while not ended.is_set():
-            rig.way_mm = 60.0 + 40.0 * np.sin(rig.us / 60_000)
-            os.write(rig.theirs, rig.say())
-            if select.select([rig.theirs], [], [], 0.001)[0]:
-                chunk = rig.receive()
-                sent.extend(levels_of(messages.feed(chunk)))
-                os.write(rig.theirs, rig.controller.receive(chunk, rig.us))
-
-    controller = threading.Thread(target=answer)
-    controller.start()
-    began = rig.loop.tally.ticks
-    while rig.loop.tally.ticks < began + 400:
-        rig.asked.clear()
-        rig.loop.run()
-    ended.set()
-    controller.join()
-    sent.extend(levels_of(messages.feed(rig.receive())))
-    rig.drain()
-    records = np.concatenate(rig.records)
-    held = np.flatnonzero(records["flags"] & Flag.HELD)
-    count = records.size - max(held[-1] + 1, began)  # since the host was last stopped
-    frames = Replay(dict(enumerate(PICTURES)).__getitem__, rig.device.display).frames(records)
-    levels = np.rint(frames * TOP).reshape(records.size, -1)
-    assert rig.device.counts()["frames not sent"] == 0
-    assert count > 50
-    np.testing.assert_array_equal(np.array(sent)[-count:], levels[-count:])
-    assert np.ptp(records["x_mm"][-count:]) > 0
-    rig.close()
-
-
-def test_the_ticks_asked_for_are_done_and_no_more():
-    rig = Rig(rate_hz=1000.0)
+def test_the_ticks_asked_for_are_done_and_no_more(rigs):
+    rig = rigs(rate_hz=1000.0)
     rig.settle()
     for _ in range(20):
         before = rig.loop.tally.ticks
@@ -313,11 +83,10 @@ def test_the_ticks_asked_for_are_done_and_no_more():
     assert rig.compiled  # one in which the machine was not stopped
     assert rig.loop.tally.ticks == before + 20
     assert len(levels_of(Decoder().feed(rig.sent))) == 20
-    rig.close()
 
 
-def test_words_of_the_mailbox_are_looked_at_before_each_tick():
-    rig = Rig(rate_hz=1000.0)
+def test_words_of_the_mailbox_are_looked_at_before_each_tick(rigs):
+    rig = rigs(rate_hz=1000.0)
     rig.settle()
     # A word that is the number of records published changes with the second tick.
     word = rig.loop.ring.published
@@ -329,13 +98,12 @@ def test_words_of_the_mailbox_are_looked_at_before_each_tick():
     rig.tick(SimpleNamespace(orders=word, obeyed=word - 1))
     assert not rig.compiled
     assert rig.loop.tally.ticks == before + 3
-    rig.close()
 
 
 @pytest.mark.parametrize(("rate_hz", "device_hz"), [(2.0, 1000.0), (50.0, 50.0)])
-def test_a_signal_ends_the_wait(rate_hz, device_hz):
+def test_a_signal_ends_the_wait(rigs, rate_hz, device_hz):
     """For a deadline; and for a STATE, where the device tells as many as there are ticks."""
-    rig = Rig(None, rate_hz, device_hz)
+    rig = rigs(None, rate_hz, device_hz)
     rig.settle()
     if rate_hz == device_hz:
         rig.loop.restart_clock()
@@ -350,7 +118,6 @@ def test_a_signal_ends_the_wait(rate_hz, device_hz):
         signal.signal(signal.SIGALRM, before)
     assert heard
     assert len(rig.clock.slept) == 1  # the tick was left to Python
-    rig.close()
 
 
 def test_bytes_that_are_no_state_go_to_python_and_nothing_is_lost(rig):
@@ -399,13 +166,13 @@ def test_a_frame_that_finds_no_room_is_counted(rig):
     assert frame.sequence == sequence + 1
 
 
-def torn():
+def torn(rigs):
     """A rig whose compiled tick could send only a part of its frame.
 
     On a machine that stalls Python does that tick now and then; another rig is tried then.
     """
     for _ in range(10):
-        rig = Rig(terminal())
+        rig = rigs(terminal())
         rig.loop.show(PICTURES[0], 0)
         rig.settle()
         for _ in range(5000):
@@ -415,12 +182,11 @@ def torn():
                 break
         if rig.compiled:
             return rig
-        rig.close()
     raise AssertionError("no compiled tick fills the line")
 
 
-def test_the_rest_of_a_frame_of_which_a_part_went_out_goes_before_the_next():
-    rig = torn()
+def test_the_rest_of_a_frame_of_which_a_part_went_out_goes_before_the_next(rigs):
+    rig = torn(rigs)
     assert rig.port.bare_descriptor is None
     wire = Decoder()
     messages = wire.feed(rig.receive())
@@ -438,12 +204,11 @@ def test_the_rest_of_a_frame_of_which_a_part_went_out_goes_before_the_next():
     assert not any(wire.dropped.values())
     assert {type(message) for message in messages} == {Frame}
     np.testing.assert_array_equal(np.diff([message.sequence for message in messages]), 1)
-    rig.close()
 
 
 @pytest.mark.parametrize("ends", [sockets, terminal])
-def test_a_line_that_is_hung_up_is_gone(ends):
-    rig = Rig(ends())
+def test_a_line_that_is_hung_up_is_gone(rigs, ends):
+    rig = rigs(ends())
     rig.settle()
     rig.hang_up()
     before = rig.loop.tally.ticks
@@ -452,7 +217,6 @@ def test_a_line_that_is_hung_up_is_gone(ends):
     assert rig.loop.tally.ticks == before + 1
     assert Unplugged() in rig.device.take_events()
     assert rig.device.lend() is None
-    rig.close()
 
 
 def test_a_line_that_takes_nothing_more_is_gone(rig):

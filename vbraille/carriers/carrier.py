@@ -1,14 +1,15 @@
-"""Carriers: how far each goes, how finely it measures, and a display that stands on it."""
+"""Carriers: how far each goes, how finely it measures, and a display that stands on it.
+
+The Latero is its array and its carrier in one, so that its array is here, too.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from vbraille.carriers import latero, tactograph
-
-if TYPE_CHECKING:
-    from vbraille.display import Display
+from vbraille.display import Display
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,4 +70,16 @@ LATERO: Final = Carrier(
     latero.HEIGHT_MM,
     turns=True,
     counts_per_mm=1 / 0.0766,
+)
+# By the author's later code: 8 bits, of which it uses 0 … 150.
+LATERO_ARRAY: Final = Display(
+    name="Latero",
+    rows=8,
+    columns=8,
+    column_pitch_mm=1.2,
+    row_pitch_mm=1.6125,
+    levels=151,
+    rest_side="right",
+    rate_hz=1000.0,
+    contactor_mm=(0.5, 1.4),
 )

@@ -19,9 +19,10 @@ import numpy as np
 from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError, VbrailleError
 from vbraille.translate.emphasis import typeforms
-from vbraille.translate.scripts import all_letters, native_letters, script_of
+from vbraille.translate.scripts import all_letters, native_letters
+from vbraille.translate.substitutes import Substitutes
 from vbraille.translate.text import SPACE, to_codes, to_text
-from vbraille.translate.undefined import MARKERS, Undefined, likenesses, spellings
+from vbraille.translate.undefined import Undefined
 from vbraille.wording import nearest
 
 try:
@@ -33,8 +34,6 @@ except ImportError as error:
     ) from error
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from numpy.typing import NDArray
 
     from vbraille.translate.scripts import Script
@@ -45,15 +44,6 @@ if TYPE_CHECKING:
 _LONGEST_NAME = 1_000
 
 _MODE = louis.dotsIO | louis.ucBrl
-# Invisible characters that carry no text unless a table knows them (joiners, variation selectors,
-# directions); and the byte-order mark, which liblouis 3.24 turns into a wrong "zero".
-_IGNORABLE = (
-    {0x034F, 0x061C, 0xFEFF, *range(0x200B, 0x2010), *range(0x202A, 0x202F)}
-    | {*range(0x2060, 0x2070), *range(0xFE00, 0xFE10)}
-    | {*range(0x180B, 0x1810), *range(0xE0000, 0xE0200)}
-)
-
-_BYTE_ORDER_MARK = 0xFEFF
 _SIX_DOTS = bytes(range(64))
 _SMALL = "abcdefghijklmnopqrstuvwxyz"
 _DIGITS = "0123456789"
@@ -203,7 +193,6 @@ class BrailleTable:
 
     def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
         self.name = name
-        self.undefined: set[int] = set()
         self.how = undefined
         self._list = name.encode("utf-8", "surrogateescape")
         with _lock:
@@ -216,11 +205,8 @@ class BrailleTable:
                     f"there is no braille table {name!r}; {nearest(name, names, 3)} "
                     f"(vbraille tables lists all)"
                 )
-        # Characters that the table is known to have; what stands for those it does not have.
-        self._known = {SPACE}
-        self._instead: dict[int, tuple[int, ...]] = {}
-        self._foreign: dict[str, Script] = {}  # scripts of whole unknown passages, by name
-        self._noted = 0
+        self._substitutes = Substitutes(self._writes, undefined)
+        self.undefined = self._substitutes.undefined
         self._forms: dict[str, int] = {}  # bits of classes of emphasis, 0 for those it has not
         self._in_length, self._out_length = ctypes.c_int(), ctypes.c_int()
         self._grow(1024)
@@ -257,17 +243,14 @@ class BrailleTable:
         has_digits = self._call(to_codes(_DIGITS), _MODE | louis.noUndefined)[0].any()
         return self._high(_DIGITS if has_digits else _SMALL)
 
-    @cached_property
+    @property
     def marker(self) -> str:
         """Text that marks characters that the table does not know."""
-        return "".join(map(chr, self._first_written(MARKERS)))
+        return self._substitutes.marker
 
     def take_foreign(self) -> Script | None:
         """Next script that a passage was in and the table does not know, each once; then None."""
-        if self._noted == len(self._foreign):
-            return None
-        self._noted += 1
-        return list(self._foreign.values())[self._noted - 1]
+        return self._substitutes.take_foreign()
 
     def translate(self, text: Text, marks: tuple[Mark, ...] = ()) -> Cells:
         """Cells of a paragraph's text; no character is left out unless that was asked for.
@@ -276,9 +259,7 @@ class BrailleTable:
         table, so that it reads back like any other text. Emphasis among the marks is written as
         the table does it; the cells that say so stand for the character next to them.
         """
-        codes, places = text.codes, text.places
-        if not text.alphabet <= self._known:
-            codes, places = self._substitute(text)
+        codes, places = self._substitutes.put_into(text)
         forms = typeforms(marks, places, self._form) if marks else None
         masks, inputs = self._call(codes, _MODE, forms)
         if not masks.size:
@@ -351,66 +332,6 @@ class BrailleTable:
             inputs = np.maximum(np.maximum.accumulate(self._inputs[:cells]), 0)
         return masks, inputs
 
-    def _substitute(self, text: Text) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
-        """Replace characters that the table cannot write by others that it can."""
-        for code in text.alphabet - self._known - self._instead.keys():
-            self._probe(code)
-        own = text.codes.tolist()
-        if self._instead.keys().isdisjoint(own):
-            return text.codes, text.places
-        self._look_for_foreign(own)
-        written: list[int] = []
-        places: list[int] = []
-        mark = _codes(self.marker) if self.how is Undefined.MARK else None
-        marked = False
-        for code, place in zip(own, text.places.tolist(), strict=True):
-            instead = self._instead.get(code, (code,))
-            marked, before = instead == mark and code in self.undefined, marked
-            if marked and before:
-                continue  # one marker stands for all neighbours
-            written += instead
-            places += (place,) * len(instead)
-        return np.array(written, np.uint32), np.array(places, np.int64)
-
-    def _look_for_foreign(self, codes: list[int]) -> None:
-        """Remember the script of a passage if the table does not know most of its letters."""
-        if self.undefined.isdisjoint(codes):
-            return
-        letters = [letter for letter in map(chr, codes) if letter.isalpha()]
-        unknown = [letter for letter in letters if ord(letter) in self.undefined]
-        if 2 * len(unknown) > len(letters):
-            script = script_of(unknown)
-            if script is not None:
-                self._foreign.setdefault(script.name, script)
-
-    def _probe(self, code: int) -> None:
-        """Learn whether the table knows a character, and what to hand liblouis if it does not."""
-        instead = self._find_instead(code)
-        if instead == (code,):
-            self._known.add(code)
-        else:
-            self._instead[code] = instead
-
-    def _find_instead(self, code: int) -> tuple[int, ...]:
-        if code == _BYTE_ORDER_MARK:
-            return ()
-        if self._writes(code):
-            return (code,)
-        if code in _IGNORABLE:
-            return ()
-        character = chr(code)
-        if character.isspace():
-            return (SPACE,)
-        alike = self._first_written(likenesses(character))
-        if alike:
-            return alike
-        self.undefined.add(code)
-        return self._first_written(spellings(character, self.how))
-
-    def _first_written(self, texts: Iterable[str]) -> tuple[int, ...]:
-        """First of the texts that the table can write in full; empty if there is none."""
-        return next((c for c in map(_codes, texts) if all(map(self._writes, c))), ())
-
     def _writes(self, code: int) -> bool:
         """Whether the table has dots of its own for a character, and only dots that it may use."""
         if code in (0, SPACE):
@@ -424,10 +345,6 @@ class BrailleTable:
         """Whether any of these letters that the table knows is written with dot 7 or 8."""
         masks, _ = self._call(to_codes(letters), _MODE | louis.noUndefined)
         return bool(masks.size) and bool(masks.max() > 0x3F)
-
-
-def _codes(text: str) -> tuple[int, ...]:
-    return tuple(map(ord, text))
 
 
 def _is_file(name: str) -> bool:

@@ -11,7 +11,7 @@ import pytest
 
 from tests.devices.latero.peers import address_of, simulated, until
 from vbraille.devices.events import Back, Button, Placing, Silent
-from vbraille.devices.latero.datagrams import full_request
+from vbraille.devices.latero.datagrams import REST, full_request
 from vbraille.devices.latero.hearing import LateroStage
 from vbraille.devices.latero.laterodevice import DISPLAY
 from vbraille.devices.latero.openlatero import open_latero
@@ -28,6 +28,10 @@ FELT = np.full((8, 8), 0.5)
 def latero():
     with simulated() as latero:
         yield latero
+
+
+def test_its_levels_are_those_of_a_blade():
+    assert DISPLAY.levels == REST + 1
 
 
 def ticks(device, frame=FELT, seconds=0.1, found=None):

@@ -2,7 +2,6 @@
 
 import tracemalloc
 from dataclasses import dataclass, replace
-from dataclasses import fields as dataclass_fields
 from itertools import pairwise
 from typing import Annotated
 
@@ -10,6 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.devices.wire.samples import (
+    CODES,
+    EVERY_MESSAGE,
+    INFO,
+    INFO2,
+    SAMPLES,
+    STATE,
+    STATE2,
+    body_of,
+    messages_of,
+)
 from tests.tiers import examples
 from vbraille.devices.wire.codec import (
     DELIMITER,
@@ -23,134 +33,14 @@ from vbraille.devices.wire.codec import (
     enframe,
     line_bytes,
 )
-from vbraille.devices.wire.fields import (
-    Fixed,
-    Number,
-    OneOf,
-    Packed,
-    PerActuator,
-    ShortText,
-    WrongLengthError,
-    fields_of,
-)
-from vbraille.devices.wire.messages import (
-    FAULTY,
-    MESSAGES,
-    PLACED,
-    RESTING,
-    U16,
-    CountSign,
-    Encoder,
-    Error,
-    Frame,
-    Hello,
-    Info,
-    Info2,
-    Message,
-    Rest,
-    RestSide,
-    State,
-    State2,
-    TurnSign,
-    Watchdog,
-    YCountSign,
-)
-
-# INFO of version 2 has the type of INFO.
-CODES = {message: code for code, message in MESSAGES.items()} | {Info2: 0x81}
-EVERY_MESSAGE = pytest.mark.parametrize("kind", CODES, ids=lambda k: k.__name__)
-CODECS = {message: BodyCodec(code, message) for message, code in CODES.items()}
-PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
-
-STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
-INFO = Info(
-    version=1,
-    rows=2,
-    columns=3,
-    column_pitch_nm=1_200_000,
-    row_pitch_nm=1_800_000,
-    rest_side=RestSide.RIGHT,
-    top_level=150,
-    rate_hz=1000,
-    largest_slew_per_s=0,
-    travel_um=300_000,
-    encoder=Encoder.INDEX,
-    counts_per_m=200_000,
-    count_sign=CountSign.LEFTWARD,
-    count_bits=24,
-    left_stop_count=100,
-    name="STReSS²",
-    firmware="1.0",
-    inverted=bytes(6),
-    gain=bytes([255] * 6),
-    enabled=bytes([1] * 6),
-)
-INFO2 = Info2(
-    **{field.name: getattr(INFO, field.name) for field in dataclass_fields(INFO)} | {"version": 2},
-    buttons=2,
-    knobs=1,
-    contactor_width_nm=500_000,
-    contactor_height_nm=1_400_000,
-    height_um=200_000,
-    y_counts_per_m=100_000,
-    y_count_sign=YCountSign.AWAY,
-    far_stop_count=5,
-    counts_per_turn=4096,
-    turn_sign=TurnSign.CLOCKWISE,
-    straight_count=7,
-)
-STATE2 = State2(1, 2_000_000, 3, 4, PLACED, 0, -5, 6, 7, 0x010203FF)
-SAMPLES = [
-    Hello(),
-    Frame(1, b"\x00\xff\x80"),
-    Rest(),
-    INFO,
-    INFO2,
-    STATE,
-    STATE2,
-    Watchdog(0, 0),
-    Error(255, "It rattles."),
-]
-
-
-def values(field, actuators):
-    match field:
-        case Number():
-            numbers = st.integers(field.low, field.high)
-            return numbers if field.none is None else st.none() | numbers
-        case OneOf():
-            return st.sampled_from(field.of)
-        case ShortText():
-            texts = st.text(PRINTABLE, min_size=field.fewest, max_size=20)
-            return texts.filter(lambda text: text.strip() or not field.fewest)
-        case PerActuator():
-            size = {"min_size": actuators, "max_size": actuators}
-            return st.lists(st.integers(0, field.high), **size).map(bytes)
-        case Packed():
-            return st.binary(min_size=1, max_size=300)
-
-
-@st.composite
-def messages_of(draw, kind):
-    known = {}
-    if issubclass(kind, Info):
-        known = {"rows": draw(st.integers(1, 4)), "columns": draw(st.integers(1, 6))}
-    actuators = known.get("rows", 0) * known.get("columns", 0)
-    for name, field in fields_of(kind):
-        if name not in known:
-            known[name] = draw(values(field, actuators))
-    return kind(**known)
-
+from vbraille.devices.wire.fields import Number, ShortText, WrongLengthError
+from vbraille.devices.wire.messages import FAULTY, RESTING, U16, Error, Frame, Hello, Message, State
 
 any_message = st.sampled_from(list(CODES)).flatmap(messages_of)
 # Zeros, length bytes and types come often, so that garbage gets as far as it can.
 garbage = st.binary(max_size=60) | st.lists(
     st.sampled_from([0, 0, 1, 2, 3, 0x81, 0x82, 0x85, 0xFF]), max_size=60
 ).map(bytes)
-
-
-def body_of(message):
-    return CODECS[type(message)].encode(message)
 
 
 def fed(stream, levels=None):
@@ -292,7 +182,6 @@ def test_empty_frames_mean_nothing():
 
 # What is dropped is counted by kind
 
-
 BEHIND = len(body_of(INFO))  # where version 2 goes on
 
 
@@ -417,50 +306,3 @@ def test_fields_follow_one_another_in_the_order_of_the_class():
         second: Annotated[int, U16]
 
     assert BodyCodec(0x55, Pair).encode(Pair(first=1, second=2)) == b"\x55\x01\x00\x02\x00"
-
-
-# Bounds
-
-NUMBERS = [
-    pytest.param(message, name, field, id=f"{type(message).__name__}-{name}")
-    for message in SAMPLES
-    for name, field in fields_of(type(message))
-    if isinstance(field, Number)
-]
-
-
-@pytest.mark.parametrize(("message", "name", "field"), NUMBERS)
-def test_numbers_have_bounds(message, name, field):
-    for value in (field.low - 1, field.high + 1):
-        with pytest.raises(ValueError, match=f"{name} is {value}; it must be {field.low} to"):
-            replace(message, **{name: value})
-    # Within what its bytes can hold, or struct would refuse what the table allows.
-    for value in (field.low, field.high):
-        assert isinstance(field, Fixed)
-        assert field.unpack(field.pack(value), 0, {}) == (value, len(field.pack(0)))
-
-
-@pytest.mark.parametrize(
-    ("message", "change", "match"),
-    [
-        (INFO, {"encoder": 3}, r"encoder is 3; .* 2 \(INCREMENTAL\)"),
-        (INFO, {"count_sign": 0}, "count_sign is 0"),
-        (INFO, {"name": " "}, "name is ' '; .* not blank"),
-        (INFO, {"name": ""}, "name is ''"),
-        (INFO, {"firmware": "1\n"}, "firmware is .* printable"),
-        (INFO, {"firmware": "é" * 128}, "0 to 255 bytes"),
-        (INFO, {"gain": bytes(5)}, "gain are 5 bytes; there are 6 actuators"),
-        (INFO, {"enabled": b"\2" * 6}, "enabled are up to 2; they must be 0 to 1"),
-        (SAMPLES[1], {"packed": b""}, "packed are 0 bytes; they must be 1 to 2048"),
-        (SAMPLES[1], {"packed": bytes(2049)}, "packed are 2049 bytes"),
-    ],
-)
-def test_other_fields_have_bounds(message, change, match):
-    with pytest.raises(ValueError, match=match):
-        replace(message, **change)
-
-
-@pytest.mark.parametrize("value", [1.5, 1.0, float("nan")])
-def test_a_number_that_is_no_integer_is_not_sent(value):
-    with pytest.raises(ValueError, match=r"cannot be encoded|time_us is nan"):
-        encode(replace(STATE, time_us=value))

@@ -1,4 +1,4 @@
-"""Drawings in SVG as scenes, as drawing programs write them, and as nobody should."""
+"""Drawings in SVG as scenes: shapes, units, fills, and files of drawing programs."""
 
 import re
 from pathlib import Path
@@ -7,54 +7,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.tiers import examples, heavy
+from tests.scene.svg.plans import element_of, warned
+from tests.tiers import examples
 from vbraille.errors import InputError
 from vbraille.scene.labels import Label
-from vbraille.scene.patterns import (
-    Circle,
-    Fill,
-    Group,
-    LinearGrating,
-    Polygon,
-    Uniform,
-    UniformVibration,
-    Use,
-)
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon, Uniform, Use
 from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scenefile import SceneFile
 from vbraille.scene.shapes import StraightLine
 from vbraille.scene.stock import stock_textures
-from vbraille.scene.strokes import Along, Dotting, Stroke
+from vbraille.scene.strokes import Along, Stroke
 from vbraille.scene.svg.colors import color_of, hue_of
-from vbraille.scene.svg.looks import BY_HUE, ClassLook
+from vbraille.scene.svg.looks import BY_HUE
 from vbraille.scene.svg.reading import read_svg
 from vbraille.scene.walking import each
 from vbraille.toml.tomlfile import TomlFile
 
 FILES = Path(__file__).parent / "files"
-NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
-
-
-@pytest.fixture
-def read(tmp_path):
-    """Read a drawing of 100 by 50 mm whose units are millimetres."""
-
-    def reading(inside, head='width="100mm" height="50mm" viewBox="0 0 100 50"', looks=None):
-        path = tmp_path / "plan.svg"
-        path.write_text(f"<svg {NS} {head}>\n{inside}\n</svg>")
-        return read_svg(path, looks)
-
-    return reading
-
-
-def element_of(found):
-    (element,) = found.scene.elements
-    return element
-
-
-def warned(found):
-    return [warning.split(": ", 2)[2] for warning in found.warnings]
 
 
 def test_a_drawing_of_inkscape():
@@ -257,101 +227,6 @@ def test_what_is_shown_in_something_hidden(read):
     assert isinstance(element_of(found), Circle)
 
 
-IGNORED = {
-    "<script>alert(1)</script>": ["it is never run, and ignored"],
-    '<circle r="5" onclick="alert(1)"/>': ["its script is never run"],
-    '<image href="http://localhost/a.png"/>': [
-        'it is ignored; put the picture into a scene file, as kind = "image"'
-    ],
-    '<use xlink:href="http://localhost/a.svg#b"/>': [
-        "it uses 'http://localhost/a.svg#b'; nothing is fetched, so it is ignored"
-    ],
-    '<use href="other.svg"/>': ["it uses 'other.svg'; nothing is fetched, so it is ignored"],
-    '<use href="#none"/>': ["it uses '#none', which is not there; ignored"],
-    '<g id="a"><use href="#a"/></g>': ["it uses what it stands in; ignored"],
-    "<style>@import url(http://localhost/a.css); @media print {g{fill:red}}</style>": [
-        "the style sheet's @import is ignored; nothing is fetched",
-        "the style sheet's @media is ignored",
-    ],
-    "<style>g > circle {fill:red}</style>": [
-        "the style sheet's selector 'g > circle' is ignored"
-    ],
-    '<circle r="5" fill="url(http://localhost/a.svg#b)"/>': [
-        "its fill url(http://localhost/a.svg#b) is felt as a plain gray one"
-    ],
-    '<circle r="5" filter="url(#f)" mask="url(#m)" clip-path="url(#c)"/>': [
-        "its clip-path is ignored", "its filter is ignored", "its mask is ignored",
-    ],
-    '<path d="M0 0H9" style="marker-start:url(#m)" fill="none" stroke="red" stroke-width="9"/>': [
-        "its marker-start is ignored"
-    ],
-    '<circle r="5"><animate attributeName="r" to="9"/></circle><animate/>': ["it is ignored"],
-    "<foreignObject/>": ["it is ignored"],
-    '<circle r="5" transform="spin(4)"/>': [
-        "its transform is not understood, so it is left out"
-    ],
-    '<path d="M0 0 L x"/>': ["its text is not understood; it is left out"],
-    '<circle r="1e9"/>': ["it goes farther than 10 m from the drawing's corner; it is left out"],
-    '<rect width="-5" height="5"/>': ["it has no size, and is left out"],
-    '<path d="M9 9z" stroke="#000" stroke-width="9"/>': ["it has no size, and is left out"],
-    '<polygon points="5,5 9,9"/>': ["it has no size, and is left out"],
-    '<g transform="scale(1e200)"><rect width="1e200" height="1"/></g>': [
-        "it goes farther than 10 m from the drawing's corner; it is left out"
-    ],
-    '<polygon points="5,5 5,5"/>': ["it has no size, and is left out"],
-    '<path d="M0 0H9" fill="none" stroke="red"/>': [
-        "its line is drawn 2 mm wide, not to be missed"
-    ],
-    '<path d="M0 0L10 10V0L0 10z"/>': [
-        "it crosses itself, or may; it is filled by the even-odd rule"
-    ],
-    '<circle r="5" fill="currentcolour"/>': [
-        "its fill 'currentcolour' is not understood; it is felt as black"
-    ],
-    '<circle r="5" id="a"/><circle r="5" id="a"/>': [
-        "another element has the same id, so it is left without"
-    ],
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("text", IGNORED)
-def test_what_is_ignored_is_said(read, text):
-    found = read(text)
-    assert warned(found) == IGNORED[text]
-    assert all(warning.startswith("line 2: ") for warning in found.warnings)
-
-
-def test_the_same_of_many_elements_is_said_once_with_their_lines(read):
-    found = read('<g filter="url(#f)"/>\n' * 9)
-    assert found.warnings == (
-        "line 2: g: its filter is ignored; and 8 more, in lines 3, 4, 5, 6, 7 and others",
-    )
-
-
-@heavy  # it takes two seconds to find out
-def test_uses_that_multiply_are_refused_before_they_fill_the_memory(read):
-    levels = "".join(
-        f'<g id="a{n}">' + f'<use href="#a{n - 1}"/>' * 10 + "</g>" if n else '<g id="a0"/>'
-        for n in range(10)
-    )
-    with pytest.raises(InputError, match="more than 50000 elements; use fewer"):
-        read(f'<defs>{levels}</defs><use href="#a9"/>')
-
-
-def test_uses_that_nest_too_deep_are_refused(read):
-    levels = "".join(f'<g id="a{n}"><use href="#a{n + 1}"/></g>' for n in range(300))
-    with pytest.raises(InputError, match="deep; ungroup"):
-        read(f'<defs>{levels}</defs><use href="#a0"/>')
-
-
-@heavy  # as many places take some seconds
-def test_half_a_million_places_are_refused(read):
-    d = "M0 0" + "".join(f"a9 9 0 0 {n % 2} {9000 * (-1) ** n} 9" for n in range(60))
-    path = f'<path id="p" stroke="red" fill="none" d="{d}"/>'
-    with pytest.raises(InputError, match="more than 500000 places"):
-        read(f"<defs>{path}</defs>" + '<use href="#p"/>' * 30)
-
-
 NESTED = "M0 0H30V30H0z M10 10{}z"
 
 
@@ -374,70 +249,6 @@ def test_a_fill_that_is_not_closed_has_a_stroke_that_is_not(read):
     fill, stroke = read('<path d="M0 0H9V9" stroke="red" stroke-width="2"/>').scene.elements
     assert (fill.closed, fill.stroke, stroke.closed, stroke.fill) == (True, None, False, None)
     assert fill.contours_mm == stroke.contours_mm
-
-
-WATER = ClassLook(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        '<circle r="5" class="a water" fill="red"/>',
-        '<g class="water"><g><circle r="5"/></g></g>',
-        '<circle r="5" id="water"/>',
-    ],
-)
-def test_a_scene_says_what_a_class_becomes(read, text):
-    circle = element_of(read(text, looks={"water": WATER}))
-    assert (circle.fill, circle.stroke) == (WATER.fill, WATER.stroke)
-
-
-def test_a_scene_file_says_what_classes_of_the_drawings_it_includes_become(tmp_path):
-    (tmp_path / "plan.svg").write_text(
-        f'<svg {NS} width="9" height="9"><circle r="5" class="water"/></svg>'
-    )
-    (tmp_path / "my.scene").write_text(
-        'include = ["plan.svg"]\n'
-        "[canvas]\nwidth_mm = 30\nheight_mm = 20\n"
-        "[textures.waves]\n"
-        'kind = "linear-grating"\nridge_mm = 3\n'
-        '[classes.water.fill]\ntexture = {kind = "use", name = "waves"}\n'
-        "[classes.water.stroke]\nwidth_mm = 5\n"
-        "[classes.watr]\nhidden = true\n"
-    )
-    opened = open_scene(tmp_path / "my.scene")
-    (circle,) = opened.resolved.elements
-    assert circle.fill.texture == LinearGrating(ridge_mm=3)
-    assert circle.stroke.width_mm == 5
-    (warning,) = opened.warnings
-    assert warning == (
-        f"{tmp_path / 'plan.svg'}: nothing that is shown has the class, label or id watr, "
-        "which the scene speaks of"
-    )
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("stroke = {widht_mm = 3}", "line 4: [classes.water.stroke] has no key 'widht_mm'"),
-        ("stroke = {width_mm = 0}", "line 4: [classes.water.stroke] width is 0 mm"),
-        ("strok = {}", "line 4: [classes.water] has no key 'strok'"),
-    ],
-)
-def test_classes_that_are_not_right_are_said_with_their_line(tmp_path, line, said):
-    path = tmp_path / "my.scene"
-    path.write_text(f"[canvas]\nwidth_mm = 30\n[classes.water]\n{line}\n")
-    with pytest.raises(InputError) as refused:
-        open_scene(path)
-    assert said in str(refused.value)
-
-
-def test_a_class_may_be_dotted_or_hidden(read):
-    looks = {"way": ClassLook(dots=Dotting()), "frame": ClassLook(hidden=True)}
-    found = read('<g class="frame"><circle r="5"/></g><line x2="9" class="way"/>', looks=looks)
-    assert element_of(found) == StraightLine(start_mm=(0, 0), end_mm=(9, 0), dots=Dotting())
-    with pytest.raises(ValueError, match="dots cannot be given beside a stroke"):
-        ClassLook(dots=Dotting(), stroke=Stroke())
 
 
 @given(st.data())

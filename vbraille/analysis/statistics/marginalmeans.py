@@ -125,7 +125,7 @@ def compare(fit: TrialsFit, first: ArrayLike, second: ArrayLike) -> Contrasts:
 
     They are compared as 2 asin √share, by the slope along the coefficients: the errors of this do
     not depend on the share. Log odds find too much in two groups of twenty people near the ceiling
-    (6.2 % of studies in which there is nothing, where this finds 5.6).
+    (6.2 % of studies in which there is nothing, where this finds 5.4).
 
     Parameters
     ----------

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from vbraille.carriers import latero
-from vbraille.carriers.carrier import LATERO
+from vbraille.carriers.carrier import LATERO, LATERO_ARRAY
 from vbraille.devices.base import Device, Particulars
-from vbraille.devices.latero.datagrams import REST
 from vbraille.devices.latero.hearing import NAME, STALL_NS, LateroStage
-from vbraille.display import Display
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
@@ -24,24 +23,10 @@ if TYPE_CHECKING:
     from vbraille.devices.latero.conversation import LateroConversation
     from vbraille.devices.latero.datagrams import Answer
     from vbraille.devices.latero.guarding import Guarding
+    from vbraille.display import Display
     from vbraille.pose import Pose
 
-DISPLAY: Final = Display(
-    name=NAME,
-    rows=8,
-    columns=8,
-    column_pitch_mm=1.2,
-    row_pitch_mm=1.6125,
-    levels=REST + 1,
-    rest_side="right",
-    travel_mm=LATERO.travel_mm,
-    counts_per_mm=LATERO.counts_per_mm,
-    rate_hz=1000.0,
-    height_mm=LATERO.height_mm,
-    turns=True,
-    contactor_mm=(0.5, 1.4),
-    shown_near=True,
-)
+DISPLAY: Final = replace(LATERO.under(LATERO_ARRAY), name=NAME, shown_near=True)
 # A Latero answers in less; where it does not, the answer to the last frame is there.
 AHEAD_NS: Final = 300_000
 _ROOM_BYTES: Final = 256

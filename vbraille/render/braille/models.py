@@ -123,23 +123,11 @@ PANTOGRAPH = Model(
     carrier.PANTOGRAPH.under(_ARRAY_8X8),
     replace(STRESS2_8X8.style, geometry=geometry.PANTOGRAPH),
 )
-# Not in the source: its successor, by the author's later code; 8 bits, of which it uses 0 … 150.
+# Not in the source: its successor.
 LATERO = Model(
     "latero",
     "Latero",
-    carrier.LATERO.under(
-        Display(
-            name="simulated Latero",
-            rows=8,
-            columns=8,
-            column_pitch_mm=1.2,
-            row_pitch_mm=1.6125,
-            levels=151,
-            rest_side="right",
-            rate_hz=_RATE_HZ,
-            contactor_mm=(0.5, 1.4),
-        )
-    ),
+    carrier.LATERO.under(replace(carrier.LATERO_ARRAY, name="simulated Latero")),
     replace(STRESS2.style, mapping=MAPPINGS["eight-dots"], geometry=geometry.LATERO),
 )
 MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, PANTOGRAPH, LATERO, VBD)}

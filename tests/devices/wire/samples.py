@@ -1,0 +1,115 @@
+"""Messages of the protocol: one of each kind, and any that can be."""
+
+from dataclasses import fields as dataclass_fields
+
+import pytest
+from hypothesis import strategies as st
+
+from vbraille.devices.wire.codec import BodyCodec
+from vbraille.devices.wire.fields import Number, OneOf, Packed, PerActuator, ShortText, fields_of
+from vbraille.devices.wire.messages import (
+    MESSAGES,
+    PLACED,
+    CountSign,
+    Encoder,
+    Error,
+    Frame,
+    Hello,
+    Info,
+    Info2,
+    Rest,
+    RestSide,
+    State,
+    State2,
+    TurnSign,
+    Watchdog,
+    YCountSign,
+)
+
+# INFO of version 2 has the type of INFO.
+CODES = {message: code for code, message in MESSAGES.items()} | {Info2: 0x81}
+EVERY_MESSAGE = pytest.mark.parametrize("kind", CODES, ids=lambda k: k.__name__)
+CODECS = {message: BodyCodec(code, message) for message, code in CODES.items()}
+PRINTABLE = st.characters(exclude_categories=("C", "Z")) | st.just(" ")
+STATE = State(1, 2_000_000, 3, 4, PLACED, 0, -5)
+INFO = Info(
+    version=1,
+    rows=2,
+    columns=3,
+    column_pitch_nm=1_200_000,
+    row_pitch_nm=1_800_000,
+    rest_side=RestSide.RIGHT,
+    top_level=150,
+    rate_hz=1000,
+    largest_slew_per_s=0,
+    travel_um=300_000,
+    encoder=Encoder.INDEX,
+    counts_per_m=200_000,
+    count_sign=CountSign.LEFTWARD,
+    count_bits=24,
+    left_stop_count=100,
+    name="STReSS²",
+    firmware="1.0",
+    inverted=bytes(6),
+    gain=bytes([255] * 6),
+    enabled=bytes([1] * 6),
+)
+INFO2 = Info2(
+    **{field.name: getattr(INFO, field.name) for field in dataclass_fields(INFO)} | {"version": 2},
+    buttons=2,
+    knobs=1,
+    contactor_width_nm=500_000,
+    contactor_height_nm=1_400_000,
+    height_um=200_000,
+    y_counts_per_m=100_000,
+    y_count_sign=YCountSign.AWAY,
+    far_stop_count=5,
+    counts_per_turn=4096,
+    turn_sign=TurnSign.CLOCKWISE,
+    straight_count=7,
+)
+STATE2 = State2(1, 2_000_000, 3, 4, PLACED, 0, -5, 6, 7, 0x010203FF)
+SAMPLES = [
+    Hello(),
+    Frame(1, b"\x00\xff\x80"),
+    Rest(),
+    INFO,
+    INFO2,
+    STATE,
+    STATE2,
+    Watchdog(0, 0),
+    Error(255, "It rattles."),
+]
+
+
+def values(field, actuators):
+    match field:
+        case Number():
+            numbers = st.integers(field.low, field.high)
+            return numbers if field.none is None else st.none() | numbers
+        case OneOf():
+            return st.sampled_from(field.of)
+        case ShortText():
+            texts = st.text(PRINTABLE, min_size=field.fewest, max_size=20)
+            return texts.filter(lambda text: text.strip() or not field.fewest)
+        case PerActuator():
+            size = {"min_size": actuators, "max_size": actuators}
+            return st.lists(st.integers(0, field.high), **size).map(bytes)
+        case Packed():
+            return st.binary(min_size=1, max_size=300)
+
+
+@st.composite
+def messages_of(draw, kind):
+    known = {}
+    if issubclass(kind, Info):
+        known = {"rows": draw(st.integers(1, 4)), "columns": draw(st.integers(1, 6))}
+    actuators = known.get("rows", 0) * known.get("columns", 0)
+    for name, field in fields_of(kind):
+        if name not in known:
+            known[name] = draw(values(field, actuators))
+    return kind(**known)
+
+
+def body_of(message):
+    return CODECS[type(message)].encode(message)
