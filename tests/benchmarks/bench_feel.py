@@ -10,13 +10,21 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace as replace_fields
 
 from tests.benchmarks.timing import Result
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag
+from vbraille.feeling.commands import BOUND
+from vbraille.feeling.composing import Composer
+from vbraille.feeling.feeler import Feeler
+from vbraille.feeling.filewatch import FileWatch
+from vbraille.feeling.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.render.program import Program
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene
@@ -24,6 +32,7 @@ from vbraille.scene.patterns import Circle, Fill, Group
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
 from vbraille.scene.textures import LinearGrating, RadialGrating, UniformVibration
+from vbraille.scene.writing import write_scene
 from vbraille.simulation.specs import device_spec
 from vbraille.simulation.steering import ReadPage, Steering
 
@@ -36,8 +45,10 @@ BLOCK_S = 20.0
 SHAPES = 10_000
 CHANGES = 15
 LARGE_BYTES = 3_000_000
+LOOK_S = 0.02  # between two looks at the file, as in vbraille feel
 MODEL = MODELS["stress2-8x8"]
 CANVAS = Canvas(width_mm=200, height_mm=200)
+REACHED = Canvas(width_mm=200, height_mm=150)  # by the Tactograph's carriage
 _CHANGED = int(Flag.CHANGED)
 _GRATING = LinearGrating(ridge_mm=2, gap_mm=2)
 
@@ -203,6 +214,60 @@ def changes_of_one_shape() -> Iterator[Result]:
     )
 
 
+def changes_of_a_file(shapes: int, bar_ms: float) -> Iterator[Result]:
+    """From a change of one shape in a file, saved by an editor, to the fade's first frame."""
+    elements = list(circles(shapes))
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "a.scene")
+
+        def save() -> int:
+            path.write_text(write_scene(Scene(canvas=REACHED, elements=tuple(elements))))
+            return time.monotonic_ns()
+
+        save()
+        loaded = load_scene(path, MODEL.style)
+        composer = Composer(MODEL.display)
+        program = composer.compose(loaded)
+        host, steering = hosted(3 * program.nbytes)
+        waited_ms = []
+        with host:
+            feeler = Feeler(
+                loaded,
+                host,
+                where=lambda: None,
+                composer=composer,
+                style=MODEL.style,
+                say=lambda _: None,
+                bound=BOUND,
+                room=3 * program.nbytes,
+                steering=steering,
+            )
+            feeler.start(program)
+            watch = FileWatch(path)
+            steering.give(ReadPage(20, 10.0, 200.0))
+            _wait(host, 1.0)
+            for number in range(CHANGES):
+                changed = elements[number * shapes // CHANGES]
+                moved = changed.center_mm[0] + 0.1, changed.center_mm[1]
+                elements[number * shapes // CHANGES] = replace_fields(changed, center_mm=moved)
+                # Programs save at any moment between two looks.
+                time.sleep(LOOK_S * number / CHANGES)
+                begun_ns = save()
+                taken = []
+                while not watch.changed():
+                    time.sleep(LOOK_S)
+                    taken.append(host.poll())
+                feeler.reload()
+                taken.append(_wait(host, 0.3))
+                waited_ms.append(_faded_ms(np.concatenate(taken), begun_ns))
+    yield Result(
+        f"from a change of one of {shapes} circles in a file to the fade's first frame, median",
+        f"≤ {bar_ms:g} ms" if bar_ms < np.inf else "reported",
+        f"{np.median(waited_ms):.1f} ms (least {min(waited_ms):.1f}, most {max(waited_ms):.1f})",
+        float(np.median(waited_ms)) <= bar_ms,
+    )
+
+
 def _wait(host: Host, seconds: float) -> NDArray[np.void]:
     """Let some time go by; the records of its ticks."""
     taken, end_s = [host.poll()], time.monotonic() + seconds
@@ -223,6 +288,8 @@ def run(seconds: float = BLOCK_S) -> Iterator[Result]:
     yield from ticks_against_a_line(seconds)
     yield from changes_of_large_pictures()
     yield from changes_of_one_shape()
+    yield from changes_of_a_file(100, 50.0)
+    yield from changes_of_a_file(1000, np.inf)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import pytest
 from tests.scene.keyspage import BEGIN, END, PAGE, keys_text
 from vbraille.scene.including import MOST_BYTES, MOST_FILES
 from vbraille.scene.reading import open_scene
-from vbraille.scene.resolving import MOST_DEPTH, MOST_PATTERNS, MOST_POINTS
+from vbraille.scene.resolving import MOST_DEPTH, MOST_DOTS, MOST_PATTERNS, MOST_POINTS
 from vbraille.scene.stock import stock_textures
 
 ROOT = PAGE.parents[1]
@@ -73,7 +73,7 @@ def test_the_keys_are_those_of_the_values():
 
 def test_the_limits_are_those_of_the_program():
     (said,) = re.findall(
-        r"A scene file has at most (.*?) patterns within one\nanother\.", TEXT, re.S
+        r"A scene file has at most (.*?) patterns within one another\.", TEXT, re.S
     )
     numbers = [float(one.replace(",", "")) for one in re.findall(r"\d[\d,]*", said)]
     assert numbers == [
@@ -81,6 +81,7 @@ def test_the_limits_are_those_of_the_program():
         50_000,
         MOST_PATTERNS,
         MOST_POINTS,
+        MOST_DOTS,
         MOST_FILES,
         MOST_DEPTH,
     ]

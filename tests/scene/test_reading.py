@@ -193,7 +193,7 @@ REFUSED = {
         CANVAS
         + "".join(f'[[elements{".parts" * n}]]\nkind = "group"\n' for n in range(40))
         + f'[[elements{".parts" * 40}]]\nkind = "uniform"\n',
-        "nests more than 32 deep; make it flatter",
+        "number 1 … parts, number 1 nests more than 32 deep; make it flatter",
     ),
     "brackets that nest too deep": (
         CANVAS + "elements = [" + "{kind=1,parts=[" * 3000,

@@ -10,6 +10,7 @@ from vbraille.feeling.composing import at_height
 from vbraille.feeling.guiding import Guide
 from vbraille.feeling.index import SceneIndex
 from vbraille.feeling.loading import check_fits, load_scene, with_known
+from vbraille.feeling.opacities import Opacities
 from vbraille.reading.context import Context
 from vbraille.reading.cues import Cue
 from vbraille.reading.prompt import Prompt
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from vbraille.reading.bindings import Bound
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.simulation.steering import Steering
 
 # Ours: as a hand that explores goes, and one that is led somewhere.
@@ -327,10 +327,5 @@ class Feeler:
         self.engine.show(program, 1)
 
     def _index_of(self, loaded: LoadedScene) -> SceneIndex:
-        # Loaded here, since the first frame shall not wait for it.
-        from vbraille.render.scene.reference import opacity
-
-        def at(pattern: AnyPattern, x_mm: float, y_mm: float) -> float:
-            return float(opacity(pattern, loaded.assets, x_mm, y_mm)[0])
-
-        return SceneIndex(loaded.scene, at, loaded.boxes())
+        scene = loaded.scene
+        return SceneIndex(scene, Opacities(scene, loaded.assets).at, loaded.boxes())

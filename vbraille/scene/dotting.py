@@ -19,6 +19,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import defaultdict
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.scene.joints import edge_lengths_mm
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
 
 _DOTTED = StraightLine | Circle | Polygon | PathShape
+# Whoever feels dots asks for them at each move of the hand.
+_KEPT = 100  # shapes
 _CORNER = math.radians(40.0)
 _TOLERANCE = 1.0 - 1e-9  # two dots whose distance is m but for rounding may stay
 
@@ -44,6 +47,7 @@ class PlacedDot(NamedTuple):
     vertex: bool = False
 
 
+@lru_cache(maxsize=_KEPT)
 def dots_of(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[PlacedDot, ...]:
     """Compute where the dots of a dotted shape stand; none if it is not dotted."""
     if shape.dots is None:

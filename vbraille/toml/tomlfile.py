@@ -24,6 +24,7 @@ _Value = TypeVar("_Value")
 # TOML readers differ on larger numbers, and no number of a protocol is so large.
 _MOST_WHOLE = 2**63 - 1
 _LONGEST_QUOTE = 60
+_MOST_STEPS = 8  # of the way to a place that a sentence says whole
 # Spaces without a break, which French has before its marks and Python does not call printable.
 _SPACES = {0xA0: " ", 0x202F: " "}
 # Names that msgspec has for types, and what a file must have where such a type is wanted.
@@ -251,8 +252,11 @@ class TomlFile:
             label, rest = f"[[{path[0]}]] number {int(path[1]) + 1}", path[2:]
         else:
             label, rest = "", path
-        keys = "".join(f", number {s + 1}" if isinstance(s, int) else f" {s}" for s in rest)
-        return f"{label}{keys}".strip()
+        # Of tables that nest deep nobody follows the whole way; the line says where it ends.
+        begin, left_out, end = rest, "", ()
+        if len(rest) > _MOST_STEPS:
+            begin, left_out, end = rest[:2], " …", rest[-2:]
+        return f"{label}{_keys_said(begin)}{left_out}{_keys_said(end)}".strip()
 
     def _line(self, path: Path, problem: str) -> str:
         """File and line of a place, or of the key in it whose words begin the problem."""
@@ -273,6 +277,11 @@ class TomlFile:
         except (KeyError, IndexError, TypeError):
             return None
         return value
+
+
+def _keys_said(path: Path) -> str:
+    """Keys and numbers of items, in words."""
+    return "".join(f", number {s + 1}" if isinstance(s, int) else f" {s}" for s in path)
 
 
 def quote(value: object) -> str:
