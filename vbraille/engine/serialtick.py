@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import errno
 
+import numpy as np
 from numba import njit
 
 from vbraille import libc
@@ -40,6 +41,8 @@ DONE, ORDERS, UNSTEADY, NOWHERE, UNMADE, TORN, GONE = range(7)
     SIZE,  # bytes of that FRAME
 ) = range(15)
 TOLD = 15  # how many numbers there are in all
+# A truth of a type: `True` itself would have ticks compiled for it and for all others.
+_TAKING = np.bool_(True)
 _EAGAIN, _EINTR = -errno.EAGAIN, -errno.EINTR
 
 
@@ -203,7 +206,7 @@ def run(
             times_ns,
             poses,
             told[RESTED],
-            True,
+            _TAKING,
             ints,
             floats,
             frames,

@@ -42,7 +42,7 @@ from vbraille.engine.record import (
     Y,
 )
 from vbraille.render import work
-from vbraille.render.kernels import blend, frame, part_of, patience, seamless, too_far
+from vbraille.render.kernels import blend, copy, frame, part_of, patience, seamless, too_far
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
@@ -102,7 +102,7 @@ def forget_velocity(state, velocities):
 def _change(state, fade_ns, output, held):
     """Begin to fade from the frame last sent."""
     now = state[0]
-    held[:] = output
+    copy(output, held)
     now["flags"] |= _CHANGED
     now["fading_ns"] = fade_ns
     now["faded_ns"] = 0
@@ -213,7 +213,7 @@ def _show(flags, share, part, numbers, table, scratch, at, output, held, target)
     if flags & _RESTED:
         output[:] = 0.0
     if flags & _CHANGED:
-        held[:] = output
+        copy(output, held)
     if flags & _RESTING:
         target[:] = 0.0
     else:
@@ -221,7 +221,7 @@ def _show(flags, share, part, numbers, table, scratch, at, output, held, target)
     if share < 1.0:
         blend(held, target, share, output)
     else:
-        output[:] = target
+        copy(target, output)
 
 
 @_compiled
@@ -372,4 +372,4 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
         if flags & _HELD:  # the actuators rested, though the loop goes on from its frame
             frames[n] = 0.0
         else:
-            frames[n] = output
+            copy(output, frames[n])

@@ -1,8 +1,9 @@
 """The compiled inner loops of rendering.
 
-Kernels fill ``out`` and allocate nothing. `vbraille.render.braille.style` compiles what they need
-into two arrays, ``numbers`` and ``table`` (see `vbraille.render.work`), and
-`vbraille.render.braille.reference` has the same functions in plain numpy.
+Kernels fill ``out`` and allocate nothing, but for one frame in `poses`.
+`vbraille.render.braille.style` compiles what they need into two arrays, ``numbers`` and ``table``
+(see `vbraille.render.work`), and `vbraille.render.braille.reference` has the same functions in
+plain numpy.
 
 ``scratch`` is float64[2, n]: room for the swing under each column of a block of positions, and for
 the slot that each is over; for scenes, too, it has more rows. A slot is one dot column of one cell:
@@ -16,6 +17,8 @@ the polynomials of `vbraille.render.waves` instead of the library's sine.
 """
 
 import math
+
+import numpy as np
 
 from vbraille.render.machine.showkernels import show as _show_scene
 from vbraille.render.machine.showkernels import show_all as _show_scenes
@@ -348,6 +351,18 @@ def path(numbers, table, scratch, x_mm, out):
 
 
 @_compiled
+def copy(given, out):
+    """Fill ``out`` with a frame of the same shape.
+
+    ``out[:] = given`` would be compiled with all the words of its refusal, which takes seconds.
+    """
+    rows, columns = out.shape
+    for row in range(rows):
+        for column in range(columns):
+            out[row, column] = given[row, column]
+
+
+@_compiled
 def poses(numbers, table, scratch, at, parts, out):
     """Fill a frame for each pose over a picture, and the part that belongs under the array there.
 
@@ -362,6 +377,8 @@ def poses(numbers, table, scratch, at, parts, out):
             parts[n] = 0
         _show_scenes(numbers, table, scratch, at, out)
         return
+    # Made as ticks make them, so that `frame` is compiled once.
+    made = np.zeros(out.shape[1:])
     part = NO_PART
     turned = False
     for n in range(at.shape[0]):
@@ -371,7 +388,8 @@ def poses(numbers, table, scratch, at, parts, out):
         if turned:
             out[n] = 0.0
         else:
-            frame(numbers, table, scratch, part, at[n], out[n])
+            frame(numbers, table, scratch, part, at[n], made)
+            copy(made, out[n])
 
 
 @_compiled

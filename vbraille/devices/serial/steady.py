@@ -182,7 +182,7 @@ def take(received, size, now_ns, talk, work):
     device_ns = talk.device_ns
     acknowledged = False
     states = 0
-    begun = 0
+    begun = np.int64(0)  # a plain 0 would have what it is given to compiled twice
     while True:
         end = delimiter(received, begun, size)
         if end == size:
@@ -307,4 +307,7 @@ def sent(now_ns, talk, actuators):
     """
     talk.sequence = (talk.sequence + 1) & _FRAME_MASK
     talk.sent_ns = talk.owed_ns = talk.moved_ns = now_ns
-    actuators.last[:] = actuators.wanted
+    rows, columns = actuators.wanted.shape
+    for row in range(rows):
+        for column in range(columns):
+            actuators.last[row, column] = actuators.wanted[row, column]

@@ -7,6 +7,8 @@ put them together; their arguments count from the program's beginning.
 
 import math
 
+import numpy as np
+
 from vbraille.render.machine import shapekernels as shapes
 from vbraille.render.machine import strokekernels as strokes
 from vbraille.render.machine import texturekernels as textures
@@ -14,7 +16,8 @@ from vbraille.render.machine import words as w
 from vbraille.render.machine.braillekernel import label, label_opacity
 from vbraille.render.waves import compiled
 
-_NO_BLOCK = 0
+# A number of a type, for what a plain 0 is given to would be compiled for it and for all others.
+_NO_BLOCK = _NONE = np.int64(0)
 
 
 @compiled
@@ -27,8 +30,8 @@ def evaluate(numbers, table, rows, start, count, time, left, right, top_mm, bott
     """
     at = start
     block = _NO_BLOCK
-    back, join = 0, 0
-    first, parts = 0, 0
+    back, join = _NONE, _NONE
+    first, parts = _NONE, _NONE
     # The row above the uppermost.
     top = w.STACK
     while True:

@@ -307,7 +307,7 @@ def say(nodes, changes, always, reach, begins, listed, base):
     active = np.empty(nodes.shape[0] + 1, np.int64)
     starts = np.empty(begins.size - 1)
     said = np.empty(1024)
-    at = 0
+    at = np.int64(0)  # a plain 0 would have what it is given to compiled twice
     # What is said first is for all places that only what is everywhere touches.
     for tile in range(-1, starts.size):
         here = listed[:0] if tile < 0 else listed[begins[tile] : begins[tile + 1]]
@@ -319,7 +319,9 @@ def say(nodes, changes, always, reach, begins, listed, base):
         most = at + here.size + 4 * count + changes.size + 2
         if most > said.size:
             longer = np.empty(2 * most)
-            longer[:at] = said[:at]
+            # A slice given to a slice would be compiled with all words of its refusal.
+            for n in range(at):
+                longer[n] = said[n]
             said = longer
         if tile >= 0:
             starts[tile] = base + at

@@ -71,9 +71,17 @@ def _block(numbers, table, rows, x_mm, y_mm, i0, i1, j0, j1, sign, noise, time, 
             rows[w.X_ROW, n], rows[w.Y_ROW, n] = x_mm[j], y_mm[i]
             rows[w.SIGN_ROW, n] = noise[i, j] if noise.size else sign
             n += 1
-    x0, x1 = x_mm[j0:j1].min(), x_mm[j0:j1].max()
-    y0, y1 = y_mm[i0:i1].min(), y_mm[i0:i1].max()
+    x0, x1 = _span(x_mm, j0, j1)
+    y0, y1 = _span(y_mm, i0, i1)
     run(numbers, table, rows, start, n, time, x0, x1, y0, y1)
+
+
+@compiled
+def _span(places, first, end):
+    low = high = places[first]
+    for n in range(first + 1, end):
+        low, high = min(low, places[n]), max(high, places[n])
+    return low, high
 
 
 def runs(indices: np.ndarray) -> np.ndarray:
