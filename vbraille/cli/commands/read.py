@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
@@ -34,21 +35,23 @@ from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
+from vbraille.translate.documents.document import Document
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable
-    from pathlib import Path
 
     from vbraille.cli.build import Page
     from vbraille.cli.live import LiveView
     from vbraille.devices.events import Event
     from vbraille.engine.tally import Tally
     from vbraille.reading.alongside import Alongside
+    from vbraille.reading.beside import FiguresLike
     from vbraille.render import Model
 
 _POLL_S = 0.02
+_FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -114,7 +117,7 @@ def run(arguments: argparse.Namespace) -> int:
             model = build_page(arguments, build_lengths(arguments, model, display.travel_mm))
             page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
-            device.start(page.model)
+            device.start(page.model, None if isinstance(page.source, Document) else _FIGURE_ROOM)
             # Till now Ctrl-Z may do what it does elsewhere.
             suspension = listening.enter_context(Suspension())
             keyboard.take()
@@ -138,6 +141,7 @@ def run(arguments: argparse.Namespace) -> int:
                         settings.path, profile, replace(model, style=style)
                     ),
                     verbose=arguments.verbose,
+                    figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
                 ),
             )
             if opened.place is not None:
@@ -271,12 +275,13 @@ class _Reading:
 
     def _press(self, key: str) -> None:
         self._set_context()
-        press(self._device.reader, key)
+        reader = self._device.reader
+        press(reader.under.alone or reader, key)
 
     def _set_context(self) -> None:
         """Have keys mean that the carriage is at the stop as long as the device waits for that."""
         placing = self._device.placing is Placing.STOP
-        reader = self._device.reader
+        reader = self._device.reader.under.alone or self._device.reader
         if placing:
             reader.context = Context.PLACING
         elif reader.context is Context.PLACING:
@@ -333,6 +338,16 @@ def _also(
 
     display = listening.enter_context(ConventionalDisplay(arguments.also))
     return Alongside(display, hearing.say)
+
+
+def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> FiguresLike:
+    """Figures of the text; a text without any does not wait for what reads them."""
+    from vbraille.feeling.bookfigures import BookFigures
+
+    def note(sentence: str) -> None:
+        say_line(f"note: {sentence}", aside=True)
+
+    return BookFigures(page.source, folder, device, note, rate_hz=rate_hz, room=_FIGURE_ROOM)
 
 
 def _save(path: Path, profile: str, model: Model) -> str:
