@@ -8,6 +8,7 @@ import pytest
 
 from tests.reading.test_page import Plane
 from tests.render.scene.lanes import lane_places
+from tests.tiers import heavy
 from vbraille.engine.clock import ManualClock
 from vbraille.feeling.bookfigures import BookFigures
 from vbraille.layout.pages import Layout
@@ -108,6 +109,7 @@ class Bench:
     def press(self, key):
         before = len(self.said)
         press(self.under.alone or self.reader, key)
+        self.reader.leave_figure()
         return self.said[before:]
 
     def resolved(self):
@@ -273,7 +275,7 @@ def test_a_key_feels_it_alone_and_leads_back(tmp_path):
     assert wanted.max() > 0.5
     np.testing.assert_allclose(frame, wanted, rtol=0, atol=1e-6)
     assert bench.press("i")[0] == "here: lake"
-    bench.press("escape")
+    assert bench.press("escape") == ["line: 2"]
     bench.run(0.3)
     assert bench.under.alone is None
     assert bench.reader.line.text.strip() == CAPTION
@@ -294,3 +296,35 @@ def test_a_page_comes_back_with_its_figure(bench):
     wanted = twin(bench, 12.0, 15).reshape(frame.shape)
     np.testing.assert_allclose(frame, wanted, rtol=0, atol=1e-6)
     assert bench.reader.line.text.strip() == CAPTION
+
+
+@heavy
+def test_a_host_sends_its_frames(tmp_path):
+    """The same through a process of the program's own, under a simulated hand that reads on."""
+    (tmp_path / "water.scene").write_text(SCENE)
+    (tmp_path / "text.md").write_text(TEXT)
+    display = replace(STRESS2_8X8.display, height_mm=(ROWS + 0.5) * PITCH_MM, travel_mm=60.0)
+    source, notes, seen = open_source(tmp_path / "text.md"), [], []
+    with OpenDevice("sim", display, hand="sweep:300") as opened:
+        opened.find()
+        opened.start(model_of(display), 1 << 21)
+        figures = BookFigures(source, tmp_path, opened, notes.append, rate_hz=1000.0, room=1 << 21)
+        layout = Layout(Book(source, choose_table("en", 1, None)), 10)
+        opened.show(layout, beside=Beside(figures=lambda: figures))
+        while not opened.done:
+            opened.poll()
+            placed, tick = opened.reader.under.figured.placed, opened._newest
+            if placed and tick is not None and tick["share"] == 1.0:
+                seen.append((placed[0].top_mm, tick.copy()))
+        felt = 0
+        loaded = figures.find("water.scene").loaded
+        for top_mm, tick in seen:
+            x_mm, y_mm = float(tick["x_mm"]), float(tick["y_mm"]) - top_mm
+            if 4 < x_mm < 36 and 4 < y_mm < 26:
+                places = lane_places(display, x_mm, y_mm, 0.0)
+                wanted = deflections(loaded.scene, loaded.assets, *places, 0, 0.0)
+                wanted = wanted.reshape(display.shape)
+                np.testing.assert_allclose(tick["frame"], wanted, rtol=0, atol=1e-6)
+                felt += wanted.max() > 0.5
+    assert felt >= 5
+    assert notes == []

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _MOST_KEPT: Final = 8  # figures that stay read
+_LONGEST_NAME: Final = 60  # characters of a file's, at its end
 
 
 class BookFigure:
@@ -112,6 +113,7 @@ class BookFigures:
         self._source, self._folder, self._device, self._note = source, folder, device, note
         self._rate_hz, self._room = rate_hz, room
         self._found: dict[str, BookFigure | None] = {}
+        self._why: dict[str, str] = {}  # some figures cannot be felt
         self._noted: set[str] = set()
         self._warming: Thread | None = None
 
@@ -129,7 +131,8 @@ class BookFigures:
             return known
         try:
             loaded = self._load(address, style)
-        except InputError as error:
+        except (InputError, ValueError) as error:  # as of a name that no file can have
+            self._why[address] = str(error)
             self._say(address, str(error))
             found = None
         else:
@@ -184,7 +187,10 @@ class BookFigures:
         from vbraille.feeling.feeler import Feeler
 
         device = self._device
-        loaded = self._load(address, device.style)
+        figure = self.find(address)
+        if figure is None:
+            raise InputError(self._why[address])
+        loaded = figure.loaded
         check_fits(loaded.scene, device.display)
         composer = Composer(device.display, rate_hz=self._rate_hz)
         program = composer.compose(loaded)
@@ -226,11 +232,11 @@ class BookFigures:
             If it is not there, or cannot be used.
         """
         if not isinstance(self._source, EpubBook):
-            return load_scene(self._folder / unquote(address), style)
+            return load_scene(self._folder / unquote(address).lstrip("/"), style)
         member = address.removeprefix("#")
         # What it includes is looked for beside it, which is nowhere: a book's figure is one file.
         with TemporaryDirectory(prefix="vbraille-") as folder:
-            path = Path(folder) / Path(member).name
+            path = Path(folder) / Path(member).name[-_LONGEST_NAME:]
             path.write_bytes(self._source.member(member))
             return load_scene(path, style)
 

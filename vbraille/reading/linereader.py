@@ -101,14 +101,9 @@ class LineReader:
         self.echo = echo
         self.bound, self.cue, self.scroll = beside.bound, beside.cue, beside.scroll
         key = self.key("LNDN", "n") if stay else ""
+        figures = beside.figures
         self.under = UnderHand(
-            engine,
-            model,
-            steering,
-            say,
-            by_hand=advance,
-            key=key,
-            figures=beside.figures,
+            engine, model, steering, say, by_hand=advance, key=key, figures=figures
         )
         self.skip_blank = False
         self.lines = 0
@@ -185,8 +180,7 @@ class LineReader:
         now_s = float(ticks["time_ns"][-1]) / _NS_PER_S
         if self.under.alone is not None:
             self.under.alone.attend(now_s)
-            if self.under.alone.done:
-                self.under.come_back()
+            self.leave_figure()
             return
         for sentence in self._upright.watch(ticks[-1]):
             self.say(sentence)
@@ -237,6 +231,13 @@ class LineReader:
             return Cue.PAGE_END if self.window is surface.there[-1] else Cue.LINE_END
         number = 0 if self.line is None else self.layout.number_of(self.line)
         return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
+
+    def leave_figure(self) -> None:
+        """Go back to the text, if the reader has enough of the figure that is felt alone."""
+        if self.under.alone is not None and self.under.alone.done:
+            self.under.come_back()
+            self._echoed = False
+            self.announce()
 
     def go_on(self) -> None:
         """Put what follows under the hand; if there is nothing, reading is finished."""

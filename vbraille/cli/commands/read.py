@@ -277,6 +277,7 @@ class _Reading:
         self._set_context()
         reader = self._device.reader
         press(reader.under.alone or reader, key)
+        reader.leave_figure()
 
     def _set_context(self) -> None:
         """Have keys mean that the carriage is at the stop as long as the device waits for that."""

@@ -98,7 +98,7 @@ def page_with_figures(
     figures
         Figures with their places, one at least.
     start_mm
-        Where the lines begin along x, 0 or less.
+        Where the lines begin along x, 0 or less; what of them stands left of 0 is not felt.
 
     Returns
     -------
