@@ -105,8 +105,7 @@ class AtDevice(ABC):
     def _step(self) -> None:
         """Do what keys and pages ask for, then see what the device has to tell."""
         for key in self._pressed():
-            self._set_context()
-            press(self._who, key)
+            self._press(key)
         self._obey()
         self._show()  # what a key has brought is shown at once
         placing = self._device.placing
@@ -120,6 +119,15 @@ class AtDevice(ABC):
         self._show()
         self._see(events)
         self._tell(events)
+
+    @property
+    def _keyed(self) -> Keyed:
+        """Whoever keys are for at the moment."""
+        return self._who
+
+    def _press(self, key: str) -> None:
+        self._set_context()
+        press(self._keyed, key)
 
     @abstractmethod
     def _see(self, events: Iterable[Event]) -> None:
@@ -164,10 +172,11 @@ class AtDevice(ABC):
 
     def _set_context(self) -> None:
         """Have keys mean that the carriage is at its place while the device waits for that."""
+        keyed = self._keyed
         if self._device.placing is Placing.STOP:
-            self._who.context = Context.PLACING
-        elif self._who.context is Context.PLACING:
-            self._who.context = Context.READING
+            keyed.context = Context.PLACING
+        elif keyed.context is Context.PLACING:
+            keyed.context = Context.READING
 
     def _say_place(self) -> None:
         if self._device.placing is Placing.STOP and not self._keys.attached:

@@ -5,13 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from vbraille.reading.keyed import Keyed
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from vbraille.reading.bindings import Bound
     from vbraille.reading.cues import Cue
     from vbraille.reading.queries import Answer, Query
     from vbraille.render import BrailleStyle
+    from vbraille.render.program import Program
     from vbraille.translate.source import Source
 
 
@@ -133,6 +139,89 @@ class ScrollLike(Protocol):
         ...
 
 
+class FigureLike(Protocol):
+    """A tactile picture that stands in a text."""
+
+    @property
+    def title(self) -> str:
+        """Title of the picture."""
+        ...
+
+    @property
+    def width_mm(self) -> float:
+        """Width of its canvas, in mm."""
+        ...
+
+    @property
+    def height_mm(self) -> float:
+        """Height of its canvas, in mm."""
+        ...
+
+    def name_at(self, x_mm: float, y_mm: float) -> str:
+        """Name of the element at a place of its canvas, in mm; empty if none has one there."""
+        ...
+
+
+class FiguresLike(Protocol):
+    """The tactile pictures of a text, which are read when a line comes that stands for one."""
+
+    def find(self, address: str) -> FigureLike | None:
+        """Give the picture of an address; None if there is none, which is said once."""
+        ...
+
+    @property
+    def ready(self) -> bool:
+        """Whether a page can be made at once."""
+        ...
+
+    def feel(
+        self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]
+    ) -> FeltLike:
+        """Put a figure alone under the hand, in place of the text.
+
+        Raises
+        ------
+        InputError
+            If there is none, or it cannot be felt on the device.
+        """
+        ...
+
+    def page(
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        start_mm: float,
+        style: BrailleStyle,
+        placed: Sequence[tuple[FigureLike, float]],
+    ) -> Program | None:
+        """Make one picture of a page and its figures; None if it cannot be, which is said.
+
+        Parameters
+        ----------
+        lines : sequence of uint8[cells]
+            Dot masks of each line of the page.
+        start_mm
+            Place at which the lines begin.
+        style
+            How the braille is shown.
+        placed
+            Figures, each with the place of its upper edge on the page, in mm.
+        """
+        ...
+
+
+class FeltLike(Keyed, Protocol):
+    """A figure that is felt in place of the text, by keys of its own."""
+
+    @property
+    def done(self) -> bool:
+        """Whether the reader has enough of it."""
+        ...
+
+    def attend(self, now_s: float) -> None:
+        """Do what is done by time."""
+        ...
+
+
 def _no_cue(_: Cue) -> None:
     """Give no signal."""
 
@@ -157,6 +246,9 @@ class Beside:
         Function that saves how braille feels, and gives a sentence on that; None if nothing does.
     verbose
         Whether more is said, such as how far a search has come.
+    figures
+        Function that gives the figures of the text, called when there is one; None if they stay
+        unfelt.
     """
 
     bound: Bound | None = None
@@ -166,3 +258,4 @@ class Beside:
     cue: Callable[[Cue], None] = _no_cue
     save_style: Callable[[BrailleStyle], str] | None = None
     verbose: bool = False
+    figures: Callable[[], FiguresLike] | None = None

@@ -101,7 +101,10 @@ class LineReader:
         self.echo = echo
         self.bound, self.cue, self.scroll = beside.bound, beside.cue, beside.scroll
         key = self.key("LNDN", "n") if stay else ""
-        self.under = UnderHand(engine, model, steering, say, by_hand=advance, key=key)
+        figures = beside.figures
+        self.under = UnderHand(
+            engine, model, steering, say, by_hand=advance, key=key, figures=figures
+        )
         self.skip_blank = False
         self.lines = 0
         self.done = False
@@ -142,7 +145,7 @@ class LineReader:
     def cell(self) -> int | None:
         """Number of the line's cell under the middle of the array; None if there is none."""
         x_mm = self.engine.x_mm
-        if self.window is None or x_mm is None:
+        if self.window is None or x_mm is None or self.under.figure is not None:
             return None
         return self.window.cell_at(x_mm, self.style.geometry)
 
@@ -174,12 +177,17 @@ class LineReader:
         """Look where the hand was in ticks, which are all since the last call."""
         if not ticks.size:
             return
+        now_s = float(ticks["time_ns"][-1]) / _NS_PER_S
+        if self.under.alone is not None:
+            self.under.alone.attend(now_s)
+            self.leave_figure()
+            return
         for sentence in self._upright.watch(ticks[-1]):
             self.say(sentence)
         felt = self.under.felt(ticks)
         if felt.size:
             self._follow(felt)
-        self.attend(float(ticks["time_ns"][-1]) / _NS_PER_S, resting=not felt.size)
+        self.attend(now_s, resting=not felt.size)
 
     def _follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand was while it felt the line."""
@@ -201,6 +209,7 @@ class LineReader:
 
     def attend(self, now_s: float, *, resting: bool) -> None:
         """Do what is done by time: scroll, where the reader asked for that."""
+        self.under.complete()
         scroll, window = self.scroll, self.window
         if scroll is not None and self._scrolled != self.under.shown:
             self._scrolled = self.under.shown
@@ -219,9 +228,16 @@ class LineReader:
             return Cue.PAGE_END
         surface = self.under.surface
         if surface is not None and surface.paged:
-            return Cue.PAGE_END if self.window is surface.windows[-1] else Cue.LINE_END
+            return Cue.PAGE_END if self.window is surface.there[-1] else Cue.LINE_END
         number = 0 if self.line is None else self.layout.number_of(self.line)
         return Cue.PAGE_END if number % LINES_PER_PAGE == 0 else Cue.LINE_END
+
+    def leave_figure(self) -> None:
+        """Go back to the text, if the reader has enough of the figure that is felt alone."""
+        if self.under.alone is not None and self.under.alone.done:
+            self.under.come_back()
+            self._echoed = False
+            self.announce()
 
     def go_on(self) -> None:
         """Put what follows under the hand; if there is nothing, reading is finished."""
@@ -254,7 +270,7 @@ class LineReader:
             return False
         if not here.paged:
             return self.go_by(step)
-        page = turned(self.range, here, step, self.under.rows, skip_blank=self.skip_blank)
+        page = self._turned(here, step)
         if page is None:
             return False
         self.cue(Cue.PAGE_END)
@@ -262,6 +278,12 @@ class LineReader:
         row = self.under.row
         self._put(replace(page, row=row) if page.has(row) else page)
         return True
+
+    def _turned(self, here: Surface, step: int) -> Surface | None:
+        """The page after one, or before it; None if there are no lines."""
+        under = self.under
+        skip, rows = self.skip_blank, under.rows
+        return turned(self.range, here, step, rows, skip_blank=skip, keep=under.keep)
 
     def _page_sentence(self, page: Surface) -> str:
         """Which lines a page has, or where it begins while lines are not counted."""
@@ -289,7 +311,7 @@ class LineReader:
         if here is None:
             return
         if here.paged:
-            turned(self.range, here, 1, self.under.rows, skip_blank=self.skip_blank)
+            self._turned(here, 1)
         else:
             self.layout.line(self.line_number + 1)
 
@@ -350,7 +372,8 @@ class LineReader:
         rows = self.under.rows
         if rows:
             row = self.under.row
-            self._put(around(self.range, window, row, rows, skip_blank=self.skip_blank))
+            skip, keep = self.skip_blank, self.under.keep
+            self._put(around(self.range, window, row, rows, skip_blank=skip, keep=keep))
         else:
             self._put(Surface((window,)))
 
@@ -369,4 +392,7 @@ class LineReader:
         self._echoed = another and self.echo is not Echo.NONE
         if another:
             for sentence in self.echo.sentences(line, self.layout):
+                self.say(sentence)
+            key, below = self.key("FEEL", "G"), self.under.keep(line)
+            for sentence in self.under.figured.sentences(line, key, below):
                 self.say(sentence)

@@ -170,7 +170,7 @@ class OpenDevice(DeviceInUse):
         model
             Display and style.
         room
-            Bytes of the largest picture; None for lines of the style.
+            Bytes of the largest picture that is no braille; None if there is none.
 
         Raises
         ------
@@ -179,10 +179,10 @@ class OpenDevice(DeviceInUse):
         """
         self._model = model
         if isinstance(self._engine, Host):
-            if room is None:  # cells may come closer while somebody reads
-                lines = MOST_LINES if model.display.height_mm else 1
-                room = model.style.room(model.display, MOST_CELLS, lines)
-            self._engine.fit(model.display, room)
+            # Cells may come closer while somebody reads.
+            lines = MOST_LINES if model.display.height_mm else 1
+            braille = model.style.room(model.display, MOST_CELLS, lines)
+            self._engine.fit(model.display, max(room or 0, braille))
         self._engine.start()
 
     def start_again(self) -> None:
@@ -308,7 +308,7 @@ class OpenDevice(DeviceInUse):
         """Have buttons and knobs of the device do what keys do."""
         for event in () if self._reader is None else events:
             if isinstance(event, Button) and event.pressed and self.placing is not Placing.STOP:
-                press_button(self.reader, event.number)
+                press_button(self.reader.under.alone or self.reader, event.number)
             elif isinstance(event, Knob):
                 self._knobs.turn(self.reader, event.number, event.value, time.monotonic())
         if self._reader is not None:

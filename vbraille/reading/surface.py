@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from itertools import islice
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from vbraille.reading.window import Window
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator
+
+    from numpy.typing import NDArray
 
     from vbraille.display import Display
     from vbraille.layout.pages import Line
@@ -29,16 +32,20 @@ class Surface:
     Parameters
     ----------
     windows : tuple[Window or None, ...]
-        Parts of lines from the top; None where the text has not begun yet. The last is none.
+        Parts of lines from the top; None where the text has not begun yet, and where a figure
+        stands.
     row : int
         Number of the row that is meant, from 0; it is a part of a line.
     paged : bool
         Whether the surface has a second axis, and so rows.
+    kept : dict[int, int]
+        Number of rows that are kept free for a figure, by the row of the line above it.
     """
 
     windows: tuple[Window | None, ...]
     row: int = 0
     paged: bool = False
+    kept: dict[int, int] = field(default_factory=dict)
 
     @property
     def window(self) -> Window:
@@ -55,12 +62,19 @@ class Surface:
     @property
     def number(self) -> int:
         """Number by which records call the surface: of a page, the number that its top row has."""
-        top = self.there[0].line.number - (len(self.windows) - len(self.there))
+        before = next(n for n, window in enumerate(self.windows) if window is not None)
+        top = self.there[0].line.number - before
         return top if top > 0 else top - 1  # 0 means that nothing was shown yet
 
     def has(self, row: int) -> bool:
         """Whether there is a line in a row."""
         return 0 <= row < len(self.windows) and self.windows[row] is not None
+
+    def line_rows(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Rows of the lines that rows belong to: a figure belongs to the line above it."""
+        for row, kept in self.kept.items():
+            rows = np.where((rows > row) & (rows <= row + kept), row, rows)
+        return rows
 
     def panned(self, step: int) -> Surface | None:
         """The parts after these, or before them where the step is -1; None if there are none."""
@@ -90,8 +104,19 @@ def below_pitches(style: BrailleStyle) -> float:
     return style.straying.band / 2 + FOOT_PITCHES
 
 
+def _no_rows(_: Line) -> int:
+    """Keep no rows free below a line."""
+    return 0
+
+
 def around(
-    lines: LineRange, window: Window, row: int, rows: int, *, skip_blank: bool = False
+    lines: LineRange,
+    window: Window,
+    row: int,
+    rows: int,
+    *,
+    skip_blank: bool = False,
+    keep: Callable[[Line], int] = _no_rows,
 ) -> Surface:
     """Make a page with a part of a line in a row, and what is before and after it around it.
 
@@ -102,25 +127,39 @@ def around(
     window
         The part of a line.
     row, rows
-        Row that it is put into, and number of rows.
+        Row that it is put into, and number of rows; a line with a figure goes higher if the figure
+        needs that. A figure that would not be on the page as a whole is left out with its line.
     skip_blank
         Whether lines without dots are left out.
+    keep
+        Function that tells how many rows to keep free below a line for its figure.
     """
     # What stands in the other rows begins where this one does, unless it was moved under a finger.
     offset = window.offset if window.offset >= 0 and window.offset % window.width == 0 else 0
 
     def part(line: Line) -> Window:
-        return Window(line, window.width, offset, window.start_mm)
+        return (
+            window if line is window.line else Window(line, window.width, offset, window.start_mm)
+        )
 
-    number = window.line.number
-    above = list(islice(_walk(lines, number, -1, skip_blank=skip_blank), row))
-    below = islice(_walk(lines, number, 1, skip_blank=skip_blank), rows - row - 1)
-    before = (*[None] * (row - len(above)), *map(part, reversed(above)))
-    return Surface((*before, window, *map(part, below)), row, paged=True)
+    number, free = window.line.number, keep(window.line)
+    row = min(row, rows - 1 - free)
+    above = _fitting(_walk(lines, number, -1, skip_blank=skip_blank), row, keep)
+    left = rows - row - 1 - free
+    below = _fitting(_walk(lines, number, 1, skip_blank=skip_blank), left, keep)
+    found = [*above[::-1], (window.line, free), *below]
+    before = row - sum(1 + free for _, free in above)
+    return _stacked([(part(line), free) for line, free in found], before=before, row=row)
 
 
 def turned(
-    lines: LineRange, surface: Surface, step: int, rows: int, *, skip_blank: bool = False
+    lines: LineRange,
+    surface: Surface,
+    step: int,
+    rows: int,
+    *,
+    skip_blank: bool = False,
+    keep: Callable[[Line], int] = _no_rows,
 ) -> Surface | None:
     """Make the page after one, or before it where the step is -1; None if there are no lines.
 
@@ -134,16 +173,44 @@ def turned(
         Number of rows of a page.
     skip_blank
         Whether lines without dots are left out.
+    keep
+        Function that tells how many rows to keep free below a line for its figure.
     """
     at = surface.there[-1 if step > 0 else 0]
-    found = list(islice(_walk(lines, at.line.number, step, skip_blank=skip_blank), rows))
+    found = _fitting(_walk(lines, at.line.number, step, skip_blank=skip_blank), rows, keep)
     if not found:
         return None
     if step < 0:
         found.reverse()
-        more = _walk(lines, found[-1].number, 1, skip_blank=skip_blank)
-        found += islice(more, rows - len(found))  # the first page is a whole one
-    return Surface(tuple(Window(line, at.width) for line in found), paged=True)
+        top, end = found[0][0].number, found[-1][0].number
+        if lines.following(top, -1, skip_blank=skip_blank) is None:  # the first page is a whole one
+            left = rows - sum(1 + free for _, free in found)
+            found += _fitting(_walk(lines, end, 1, skip_blank=skip_blank), left, keep)
+    return _stacked([(Window(line, at.width), free) for line, free in found])
+
+
+def _fitting(
+    found: Iterator[Line], rows: int, keep: Callable[[Line], int]
+) -> list[tuple[Line, int]]:
+    """Take lines as long as there are rows for them, each with the rows kept free below it."""
+    taken: list[tuple[Line, int]] = []
+    while rows > 0 and (line := next(found, None)) is not None:
+        free = keep(line)
+        rows -= 1 + free
+        if rows >= 0:
+            taken.append((line, free))
+    return taken
+
+
+def _stacked(parts: Iterable[tuple[Window, int]], *, before: int = 0, row: int = 0) -> Surface:
+    """Put parts of lines below one another, each with rows below it that are kept free."""
+    windows: list[Window | None] = [None] * before
+    kept: dict[int, int] = {}
+    for window, free in parts:
+        if free:
+            kept[len(windows)] = free
+        windows += [window, *[None] * free]
+    return Surface(tuple(windows), row, paged=True, kept=kept)
 
 
 def _walk(lines: LineRange, number: int, step: int, *, skip_blank: bool) -> Iterator[Line]:

@@ -10,6 +10,7 @@ import numpy as np
 from vbraille.engine.advance import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout.texts import cells_per_line
+from vbraille.reading.figured import Figured
 from vbraille.reading.foot import Foot
 from vbraille.reading.speed import too_fast_note
 from vbraille.reading.surface import Surface, below_pitches, rows_on
@@ -23,8 +24,11 @@ if TYPE_CHECKING:
 
     from vbraille.engine.engine import Engine
     from vbraille.layout.pages import Line
+    from vbraille.reading.beside import FeltLike, FiguresLike
+    from vbraille.reading.figured import Here, PlacedFigure
     from vbraille.reading.window import Window
     from vbraille.render import BrailleStyle, Model
+    from vbraille.render.program import Program
     from vbraille.simulation.steering import Steering
 
 MOST_CELLS = 512  # that can be shown at once, however close they stand
@@ -51,6 +55,8 @@ class UnderHand:
         Whether the next line comes when the hand returns; otherwise a key brings it.
     key
         Key that brings the next line; empty if there is nobody at a keyboard.
+    figures
+        Function that gives the figures of the text; None if they stay unfelt.
 
     Attributes
     ----------
@@ -64,6 +70,10 @@ class UnderHand:
         Number of lines of a page; 0 where one line is shown.
     shown : int
         Number of times that something else was put under the hand.
+    figured : Figured
+        The figures of the text, and those of the page under the hand.
+    alone : FeltLike or None
+        Figure that is felt in place of the text; None if the text is under the hand.
     patient : bool
         Whether the hand may do as it likes, since somebody moves it in the live view.
     """
@@ -77,6 +87,7 @@ class UnderHand:
         *,
         by_hand: bool,
         key: str,
+        figures: Callable[[], FiguresLike] | None = None,
     ) -> None:
         self.surface: Surface | None = None
         self.style = model.style
@@ -86,6 +97,9 @@ class UnderHand:
         self._display = model.display
         self.width = self.width_in(model.style)
         self.rows = rows_on(model.display, model.style)
+        self.figured = Figured(figures, model.display)
+        self.alone: FeltLike | None = None
+        self._awaited = False  # whether the page's figures are still to be compiled
         self._row = 0  # of the line that the finger is on, or was on last
         self._y_mm: float | None = None  # where the finger is, and the part of what is shown there
         self._part = -1
@@ -120,6 +134,20 @@ class UnderHand:
             return self._part
         row = math.floor(self._y_mm / self.style.geometry.line_pitch_mm)
         return row if 0 <= row < self.rows else 0
+
+    @property
+    def figure(self) -> PlacedFigure | None:
+        """Figure of the page that the finger is on; None if it is on none."""
+        return self.figured.under(self._engine.x_mm, self._y_mm)
+
+    @property
+    def here(self) -> Here | None:
+        """What of a figure the finger is on; None if it is on no figure."""
+        return self.figured.here(self._engine.x_mm, self._y_mm)
+
+    def keep(self, line: Line) -> int:
+        """Tell how many rows of a page are kept free below a line, for its figure."""
+        return self.figured.rows_below(line, self.style.geometry.line_pitch_mm, self.rows)
 
     @property
     def cells(self) -> int:
@@ -160,8 +188,26 @@ class UnderHand:
         self.shown += 1
         self._foot = Foot(len(surface.windows))
         self._enter(surface.row, name)
+        # Braille comes at once, and figures join it when they are compiled.
+        self.figured.forget()
+        self._awaited = bool(surface.kept)
         self._render(surface)
         self.steer()
+
+    def come_back(self) -> None:
+        """Put the text under the hand again, after a figure was felt in its place."""
+        surface = self.surface
+        if surface is not None:
+            self.figured.forget()
+            self._awaited = bool(surface.kept)
+            self._render(surface)
+            self.steer()
+
+    def complete(self) -> None:
+        """Have the figures of a page that was put under the hand join its lines."""
+        if self._awaited and self.surface is not None and self.figured.ready:
+            self._awaited = False
+            self._render_figures(self.surface)
 
     def _enter(self, row: int, name: str) -> None:
         """Begin to follow the finger along the line of a row."""
@@ -191,10 +237,12 @@ class UnderHand:
         bool
             Whether it is another line than before.
         """
-        surface, row = self.surface, int(ticks["part"][-1])
+        surface = self.surface
         if surface is None or not surface.paged:
             return False
-        others = np.flatnonzero(ticks["part"] != row)
+        rows = surface.line_rows(ticks["part"])
+        row = int(rows[-1])
+        others = np.flatnonzero(rows != row)
         if others.size or row != self._near:
             self._near = row
             begun = others[-1] + 1 if others.size else 0
@@ -216,7 +264,9 @@ class UnderHand:
         self.width = self.width_in(style)
         self.rows = rows_on(self._display, style)
         self._too_fast_said = False
-        if self.surface is not None:
+        if self.surface is not None and not (
+            self.figured.placed and self._render_figures(self.surface)
+        ):
             self._render(self.surface)
 
     def steer(self) -> None:
@@ -228,6 +278,7 @@ class UnderHand:
             return
         pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.surface.windows)
         end_mm = max(map(self._end_of, self.surface.there))
+        end_mm = max(end_mm, self.figured.width_mm(self.surface))
         below_mm = self._display.height_mm - lines * pitch_mm
         foot_mm = min(below_mm, (below_pitches(self.style) + 0.5) * pitch_mm) * self._by_hand
         self._steering.give(ReadPage(lines, pitch_mm, end_mm, foot_mm))
@@ -240,6 +291,10 @@ class UnderHand:
         """Take of some ticks those in which the line was to be felt."""
         if self.surface is None:
             return ticks[:0]
+        if self.figured.placed and ticks.size:
+            ticks = ticks.copy()
+            lines = len(self.surface.windows)
+            ticks["part"] = self.figured.rows_of(ticks["y_mm"], self.style, lines)
         if ticks.size and not math.isnan(ticks["y_mm"][-1]):
             self._y_mm, self._part = float(ticks["y_mm"][-1]), int(ticks["part"][-1])
         ticks = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
@@ -272,7 +327,7 @@ class UnderHand:
             watched = self._waiting.watch(ticks, reached=self._end.reached, patient=self.patient)
             for sentence in watched:
                 self._say(sentence)
-        if self._too_fast_said or self._end.reached or self.patient:
+        if self._too_fast_said or self._end.reached or self.patient or self.figure is not None:
             return
         note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
         if note is not None:
@@ -282,6 +337,13 @@ class UnderHand:
     def _end_of(self, window: Window) -> float:
         """Place where the last dot of a part of a line ends."""
         return window.start_mm + self.style.geometry.extent_mm(len(window))
+
+    def _render_figures(self, surface: Surface) -> bool:
+        """Show a page together with its figures; False if that cannot be."""
+        picture = self.figured.page(surface, self.style)
+        if picture is not None:
+            self._show(picture, surface)
+        return picture is not None
 
     def _render(self, surface: Surface) -> None:
         if surface.paged:
@@ -293,4 +355,8 @@ class UnderHand:
         start_mm = surface.window.start_mm
         if start_mm:
             program = program.with_anchor(self._display.span_mm / 2 + start_mm)
+        self._show(program, surface)
+
+    def _show(self, program: Program, surface: Surface) -> None:
+        self.alone = None
         self._engine.show(program, surface.number)

@@ -53,7 +53,8 @@ class MarkKind(Enum):
     NOTE = "note"
     """A reference to a note; the target is "#" and the name of the note's anchor."""
     IMAGE = "image"
-    """The text that stands for a picture."""
+    """The text that stands for a picture; of a tactile one that the source shows as a figure, the
+    target says which file that is, in the way of the source."""
     UNSHOWN = "unshown"
     """A remark on something that cannot be shown; the target is what it is, such as "formula"."""
 
@@ -69,7 +70,7 @@ class Mark:
     start, end
         First character of the part and one past its last, as places of the source.
     target
-        Address, anchor, language or thing that the kind speaks of; empty for other kinds.
+        Address, anchor, language, file or thing that the kind speaks of; empty for other kinds.
     """
 
     kind: MarkKind

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.caching import compiling_note
@@ -30,19 +31,23 @@ from vbraille.reading.scrolling import Scroll
 from vbraille.render import MODELS, model_of
 from vbraille.settings.applying import with_profile
 from vbraille.simulation.specs import is_simulated, parse_hand, refuse_hand
+from vbraille.translate.documents.document import Document
 from vbraille.wording import spelled
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable
-    from pathlib import Path
 
     from vbraille.cli.build import Page
     from vbraille.cli.live import LiveView
     from vbraille.devices.events import Event
     from vbraille.engine.tally import Tally
     from vbraille.reading.alongside import Alongside
+    from vbraille.reading.beside import FiguresLike
+    from vbraille.reading.keyed import Keyed
     from vbraille.render import Model
+
+_FIGURE_ROOM = 1 << 21  # bytes of the largest page with figures, or of a figure
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -108,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
             model = build_page(arguments, build_lengths(arguments, model, display.travel_mm))
             page = lay_out(arguments, opened.book, model, arguments.cells, opened.place)
             note_unseen_dots(page)
-            device.start(page.model)
+            device.start(page.model, None if isinstance(page.source, Document) else _FIGURE_ROOM)
             # Till now Ctrl-Z may do what it does elsewhere.
             keys = listening.enter_context(StoppableKeyboard(keyboard))
             seeker = opened.seeker(arguments)
@@ -131,6 +136,7 @@ def run(arguments: argparse.Namespace) -> int:
                         settings.path, profile, replace(model, style=style)
                     ),
                     verbose=arguments.verbose,
+                    figures=lambda: _figures(page, Path(arguments.file).parent, device, rate_hz),
                 ),
             )
             if opened.place is not None:
@@ -185,6 +191,15 @@ class _Reading(AtDevice):
             self._page.see(device.reader.line_number)
         self._say_notes()
 
+    @property
+    def _keyed(self) -> Keyed:
+        """Whoever feels a figure alone, or the reader."""
+        return self._device.reader.under.alone or self._device.reader
+
+    def _press(self, key: str) -> None:
+        super()._press(key)
+        self._device.reader.leave_figure()
+
     def _show(self) -> None:
         """Have what is under the hand stand on the conventional display, and obey its keys."""
         if self._also is not None:
@@ -222,6 +237,16 @@ def _also(
 
     display = listening.enter_context(ConventionalDisplay(arguments.also))
     return Alongside(display, hearing.say)
+
+
+def _figures(page: Page, folder: Path, device: OpenDevice, rate_hz: float) -> FiguresLike:
+    """Figures of the text; a text without any does not wait for what reads them."""
+    from vbraille.feeling.bookfigures import BookFigures
+
+    def note(sentence: str) -> None:
+        say_line(f"note: {sentence}", aside=True)
+
+    return BookFigures(page.source, folder, device, note, rate_hz=rate_hz, room=_FIGURE_ROOM)
 
 
 def _save(path: Path, profile: str, model: Model) -> str:

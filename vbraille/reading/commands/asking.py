@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 def say_place(reader: Reader) -> None:
     """Say line, page, percentage, heading and the number of words that are left."""
+    _say_figure(reader)
     if reader.line is not None:
         for sentence in whereabouts(reader.layout, reader.line):
             reader.say(sentence)
@@ -32,7 +33,8 @@ def say_line(reader: Reader) -> None:
 
 def say_character(reader: Reader) -> None:
     """Say the cell under the middle of the array by its dots, its text and its word."""
-    say_cell(reader, reader.cell)
+    if not _say_figure(reader):
+        say_cell(reader, reader.cell)
 
 
 def say_cell(reader: Reader, cell: int | None) -> None:
@@ -85,6 +87,16 @@ def say_headers(reader: Reader) -> None:
         reader.say("headers: the table has none")
     else:
         reader.say(f"headers: {'; '.join(line.block.headers)}")
+
+
+def _say_figure(reader: Reader) -> bool:
+    """Say the figure under the finger, and what of it is there; False if it is on none."""
+    here = reader.under.here
+    if here is None:
+        return False
+    reader.say(f"figure: {here.title}")
+    reader.say(f"here: {here.name or 'nothing with a name'}")
+    return True
 
 
 def _dots(mask: int) -> str:

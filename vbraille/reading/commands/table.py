@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         asking,
         choosing,
         control,
+        figures,
         marking,
         moving,
         paging,
@@ -27,7 +28,9 @@ if TYPE_CHECKING:
     from vbraille.reading.keyed import Keyed
     from vbraille.reading.reader import Reader
 else:
-    asking, choosing, control, marking = map(Deferred, ("asking", "choosing", "control", "marking"))
+    asking, choosing, control, figures, marking = map(
+        Deferred, ("asking", "choosing", "control", "figures", "marking")
+    )
     moving, paging, searching, structure, turning = map(
         Deferred, ("moving", "paging", "searching", "structure", "turning")
     )
@@ -192,6 +195,7 @@ COMMANDS = (
     Command("NXLINK", ("k",), "next link or note", made(structure.go_to_link)),
     Command("PRLINK", ("K",), "previous link or note", made(structure.go_to_link, backward=True)),
     Command("FOLLOW", ("\n",), "follow the link or note under the finger", structure.follow),
+    Command("FEEL", ("G",), "feel the figure of this line, alone", figures.feel),
     Command("TOP", ("<", "ctrl-home"), "first line of the text", moving.top),
     Command("BOT", (">", "ctrl-end"), "last line of the text", moving.bottom),
     Command("GOTOLINE", ("g",), "go to a page, or to percent of the text", structure.ask_place),

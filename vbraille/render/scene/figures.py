@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
@@ -32,6 +32,14 @@ PAGE = "page"  # id of the label that has the text of the page
 FIGURE = "figure"  # id of the group that the figure is
 # What a figure shows beyond its rectangle is cut off over this distance.
 _EDGE_MM = 1.0
+
+
+class FigureAt(NamedTuple):
+    """A figure, the place of its canvas's top left corner on a page, and what it takes along."""
+
+    figure: Scene
+    place_mm: Point
+    assets: Assets
 
 
 def page_with_figure(
@@ -71,30 +79,69 @@ def page_with_figure(
     InputError
         If the page has no cells, or the figure would be farther than 10 m from the page's corner.
     """
+    return page_with_figures(lines, style, (FigureAt(figure, place_mm, assets or Assets()),))
+
+
+def page_with_figures(
+    lines: Sequence[NDArray[np.uint8]],
+    style: BrailleStyle,
+    figures: Sequence[FigureAt],
+    *,
+    start_mm: float = 0.0,
+) -> tuple[Scene, Assets]:
+    """Make one picture of a page of braille and the figures on it; see `page_with_figure`.
+
+    Parameters
+    ----------
+    lines, style
+        As for `page_with_figure`.
+    figures
+        Figures with their places, one at least.
+    start_mm
+        Where the lines begin along x, 0 or less; what of them stands left of 0 is not felt.
+
+    Returns
+    -------
+    Scene, Assets
+        The picture, with title and description of its first figure.
+
+    Raises
+    ------
+    InputError
+        As for `page_with_figure`.
+    """
     cells = max((len(masks) for masks in lines), default=0)
     if cells == 0:
         raise InputError("a page without cells has no figure in it; show the figure alone")
     geometry = style.geometry
     down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
-    text = Label(id=PAGE, text=PAGE, place_mm=(0.0, down_mm))
-    try:
-        parts = tuple(moved(element, place_mm) for element in figure.elements)
-    except ValueError as error:
-        raise InputError(f"the figure cannot stand there: {error}") from None
-    given = _moved_assets(figure.elements, parts, assets or Assets())
+    text = Label(id=PAGE, text=PAGE, place_mm=(start_mm, down_mm))
+    width_mm = start_mm + geometry.extent_mm(cells)
+    height_mm = len(lines) * geometry.line_pitch_mm
     elements: tuple[AnyPattern, ...] = (text,)
-    if parts:
-        elements += (_figure(figure, parts, place_mm, given),)
-    width_mm = max(geometry.extent_mm(cells), place_mm[0] + figure.canvas.width_mm)
-    height_mm = max(len(lines) * geometry.line_pitch_mm, place_mm[1] + figure.canvas.height_mm)
+    bitmaps: dict[Image, Bitmap] = {}
+    written: dict[Label, Written] = {text: Written(tuple(lines), style)}
+    for figure, place_mm, assets in figures:
+        try:
+            parts = tuple(moved(element, place_mm) for element in figure.elements)
+        except ValueError as error:
+            raise InputError(f"the figure cannot stand there: {error}") from None
+        given = _moved_assets(figure.elements, parts, assets)
+        if parts:
+            elements += (_figure(figure, parts, place_mm, given),)
+        bitmaps |= given.bitmaps
+        written |= given.written
+        width_mm = max(width_mm, place_mm[0] + figure.canvas.width_mm)
+        height_mm = max(height_mm, place_mm[1] + figure.canvas.height_mm)
+    first = figures[0].figure
     scene = Scene(
         canvas=Canvas(width_mm=width_mm, height_mm=height_mm),
-        title=figure.title,
-        description=figure.description,
-        language=figure.language,
+        title=first.title,
+        description=first.description,
+        language=first.language,
         elements=elements,
     )
-    return scene, Assets(given.bitmaps, {**given.written, text: Written(tuple(lines), style)})
+    return scene, Assets(bitmaps, written)
 
 
 def _figure(figure: Scene, parts: tuple[AnyPattern, ...], place_mm: Point, assets: Assets) -> Group:

@@ -150,6 +150,16 @@ class EpubBook(PartedSource):
         found = super().anchor(name)
         return self._starts[part].character if found is None else found
 
+    def member(self, name: str) -> bytes:
+        """Give the bytes of a file of the container, such as those of a picture.
+
+        Raises
+        ------
+        InputError
+            If there is none, or it cannot be read, or is too large for a picture.
+        """
+        return self._archive.read(name)
+
     def note(self) -> str | None:
         """Note on characters that are no braille in a book in braille, given once."""
         wrong = 0 if self._spelling is None else self._spelling.wrong

@@ -52,7 +52,29 @@ _CLASSES = {
 }
 # Word's links between a note and what refers to it: "#_ftn1" there, and "#_ftnref1" back.
 _WORDS = re.compile(r"#_(?:ftn|edn)(ref)?\d+$")
+_FIGURES = frozenset((".scene", ".svg"))
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 _STYLES = re.compile(r"(display|visibility)\s*:\s*(none|hidden)")
+
+
+def figure_address(found: Mapping[str, str]) -> str:
+    """Address of the tactile picture that an image shows; empty if it is none.
+
+    Such a picture stands in a file of its own beside the text: nothing is fetched from elsewhere.
+    An empty alternative text says of a drawing that it is there for its looks.
+
+    >>> figure_address({"src": "water.scene"}), figure_address({"src": "logo.svg", "alt": ""})
+    ('water.scene', '')
+    >>> figure_address({"src": "https://example.org/water.scene"})
+    ''
+    """
+    address = found.get("src", "").strip()
+    path = address.partition("#")[0].partition("?")[0]
+    ending = path[path.rfind(".") :].lower()
+    if ending not in _FIGURES or path.startswith(("/", "\\")) or _SCHEME.match(path):
+        return ""
+    decorates = not (found.get("title") or found.get("aria-label") or found.get("alt", " "))
+    return "" if ending == ".svg" and decorates else path
 
 
 def named(tag: object) -> str:

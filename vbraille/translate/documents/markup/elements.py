@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
+from urllib.parse import unquote
 
+from vbraille.translate.documents.markup import attributes as attribute
 from vbraille.translate.documents.markup import lists
 from vbraille.translate.documents.markup.lists import whole
 from vbraille.translate.source import BlockKind, MarkKind
@@ -218,7 +221,12 @@ def _around(before: str, after: str) -> Begin:
     return begin
 
 
-def _image(writing: Writing, name: str, attributes: Mapping[str, str]) -> tuple[Undo, ...]:  # noqa: ARG001
+def _image(writing: Writing, name: str, attributes: Mapping[str, str]) -> tuple[Undo, ...]:
+    if address := attribute.figure_address(attributes):
+        told = attributes.get("title") or attributes.get("aria-label") or attributes.get("alt")
+        name = " ".join((told or "").split()) or PurePosixPath(unquote(address)).stem
+        writing.figure(name, address)
+        return ()
     said = attributes.get("aria-label") or attributes.get("alt")
     if said is None:
         said = attributes.get("title")

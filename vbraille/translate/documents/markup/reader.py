@@ -77,7 +77,7 @@ class MarkupReader:
         pages: Mapping[str, str] = _NOTHING,
     ) -> None:
         self.title = self.root_language = ""
-        self.writing = Writing(anchors, language, spell)
+        self.writing = Writing(anchors, language, spell, resolve)
         self._resolve = resolve
         self._prefix = prefix
         self._listed = pages

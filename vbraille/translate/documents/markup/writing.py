@@ -57,6 +57,8 @@ class Writing:
     spell
         What spells the text that is not the document's own, such as an item's number, as the
         document is spelt.
+    resolve
+        What makes a mark's target of an address.
 
     Attributes
     ----------
@@ -90,8 +92,10 @@ class Writing:
         anchors: tuple[str, ...] = (),
         language: str = "",
         spell: Callable[[str], str] = str,
+        resolve: Callable[[str], str] = str,
     ) -> None:
         self.spell = spell
+        self._resolve = resolve
         self.sections = 0
         self.flow = Flow()
         self.given = self.language = self.flow.language = language
@@ -281,6 +285,15 @@ class Writing:
         self.flow.say(self.spell(text), MarkKind.IMAGE)
         if self._pictures:
             self._pictures = (*self._pictures[-7:], text)
+
+    def figure(self, name: str, address: str) -> None:
+        """Add the line that stands for a tactile picture, which is felt below it."""
+        self.begin_block()
+        if not self._in_row and self.place.kind is not BlockKind.NOTE:
+            self._form = BlockKind.LINE
+        self.flow.say(self.spell(f"figure: {name}"), MarkKind.IMAGE, self._resolve(address))
+        self._pictures = (*self._pictures[-7:], name) if self._pictures else ()
+        self.begin_block()
 
     def close(self) -> None:
         """End the document."""

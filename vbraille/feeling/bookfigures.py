@@ -1,0 +1,246 @@
+"""The tactile pictures that a text shows, read when a line comes that stands for one."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Thread
+from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import unquote
+
+import numpy as np
+
+from vbraille.errors import InputError
+from vbraille.feeling.index import SceneIndex
+from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
+from vbraille.feeling.textcommands import BOUND
+from vbraille.render.scene.figures import FigureAt, page_with_figures
+from vbraille.translate.documents.epub import EpubBook
+from vbraille.wording import printable, spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from vbraille.feeling.feeler import Feeler
+    from vbraille.reading.cues import Cue
+    from vbraille.reading.opened import OpenDevice
+    from vbraille.render.braille.style import BrailleStyle
+    from vbraille.render.program import Program
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.translate.source import Source
+
+_MOST_KEPT: Final = 8  # figures that stay read
+_LONGEST_NAME: Final = 60  # characters of a file's, at its end
+
+
+class BookFigure:
+    """A tactile picture that a text shows.
+
+    Parameters
+    ----------
+    loaded
+        The picture.
+    style
+        How the braille of its labels is shown.
+    """
+
+    def __init__(self, loaded: LoadedScene, style: BrailleStyle) -> None:
+        self.loaded = loaded
+        self.style = style
+        self._index: SceneIndex | None = None
+
+    @property
+    def title(self) -> str:
+        """Title of the picture, or the name of its file."""
+        return self.loaded.title
+
+    @property
+    def width_mm(self) -> float:
+        """Width of its canvas, in mm."""
+        return self.loaded.scene.canvas.width_mm
+
+    @property
+    def height_mm(self) -> float:
+        """Height of its canvas, in mm."""
+        return self.loaded.scene.canvas.height_mm
+
+    def name_at(self, x_mm: float, y_mm: float) -> str:
+        """Name of the element at a place of its canvas, in mm; empty if none has one there."""
+        if self._index is None:
+            # The first frame does not wait for it.
+            from vbraille.render.scene.reference import opacity
+
+            def at(pattern: AnyPattern, x_mm: float, y_mm: float) -> float:
+                return float(opacity(pattern, self.loaded.assets, x_mm, y_mm)[0])
+
+            self._index = SceneIndex(self.loaded.scene, at, self.loaded.boxes())
+        found = self._index.here(x_mm, y_mm)
+        return "" if found is None else found.name
+
+
+class BookFigures:
+    """The tactile pictures of a text: files beside it, or in its container. Nothing is fetched.
+
+    Parameters
+    ----------
+    source
+        The text.
+    folder
+        Folder that it stands in.
+    device
+        Device that it is read on.
+    note
+        Function that is called with a sentence on each figure that cannot be felt.
+    rate_hz
+        Frames a second.
+    room
+        Bytes of the largest program that the engine has room for.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        folder: Path,
+        device: OpenDevice,
+        note: Callable[[str], None],
+        *,
+        rate_hz: float,
+        room: int,
+    ) -> None:
+        self._source, self._folder, self._device, self._note = source, folder, device, note
+        self._rate_hz, self._room = rate_hz, room
+        self._found: dict[str, BookFigure | None] = {}
+        self._why: dict[str, str] = {}  # some figures cannot be felt
+        self._noted: set[str] = set()
+        self._warming: Thread | None = None
+
+    @property
+    def ready(self) -> bool:
+        """Whether a page can be made without waiting for the compiler to be loaded."""
+        return self._warming is None or not self._warming.is_alive()
+
+    def find(self, address: str) -> BookFigure | None:
+        """Give the figure of an address; None if it cannot be felt, which is said once."""
+        style, known = self._device.style, self._found.get(address)
+        if address in self._found and (
+            known is None or known.style == style or not known.loaded.assets.written
+        ):
+            return known
+        try:
+            loaded = self._load(address, style)
+        except (InputError, ValueError) as error:  # as of a name that no file can have
+            self._why[address] = str(error)
+            self._say(address, str(error))
+            found = None
+        else:
+            found = BookFigure(loaded, style)
+            self._warm_up(found)
+            for note in loaded.notes:
+                self._say(f"{address}: {note}", note)
+        if len(self._found) >= _MOST_KEPT:
+            del self._found[next(iter(self._found))]
+        self._found[address] = found
+        return found
+
+    def page(
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        start_mm: float,
+        style: BrailleStyle,
+        placed: Sequence[tuple[Any, float]],
+    ) -> Program | None:
+        """Make one picture of a page and its figures; see `FiguresLike`."""
+        try:
+            program = self._compile(lines, start_mm, style, placed)
+        except (InputError, ValueError) as error:
+            self._say(placed[0][0].title, f"{placed[0][0].title}: {error}")
+            return None
+        if program.nbytes > self._room:
+            self._say(placed[0][0].title, f"{placed[0][0].title}: it is too large for a page")
+            return None
+        return program
+
+    def _compile(
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        start_mm: float,
+        style: BrailleStyle,
+        placed: Sequence[tuple[Any, float]],
+    ) -> Program:
+        # It loads numba, which nobody needs who comes to no figure.
+        from vbraille.render.scene.compiling import compile_scene
+
+        figures = [
+            FigureAt(figure.loaded.scene, (0.0, top_mm), figure.loaded.assets)
+            for figure, top_mm in placed
+        ]
+        scene, assets = page_with_figures(lines, style, figures, start_mm=start_mm)
+        return compile_scene(scene, self._device.display, assets, rate_hz=self._rate_hz)
+
+    def feel(self, address: str, say: Callable[[str], None], cue: Callable[[Cue], None]) -> Feeler:
+        """Put a figure alone under the hand, in place of the text; see `FiguresLike`."""
+        # As above.
+        from vbraille.feeling.composing import Composer
+        from vbraille.feeling.feeler import Feeler
+
+        device = self._device
+        figure = self.find(address)
+        if figure is None:
+            raise InputError(self._why[address])
+        loaded = figure.loaded
+        check_fits(loaded.scene, device.display)
+        composer = Composer(device.display, rate_hz=self._rate_hz)
+        program = composer.compose(loaded)
+        if program.nbytes > self._room:
+            raise InputError(f"{loaded.title} is too large; feel it by vbraille feel")
+        feeler = Feeler(
+            loaded,
+            device.engine,
+            where=lambda: device.pose,
+            composer=composer,
+            style=device.style,
+            say=say,
+            bound=BOUND,
+            room=self._room,
+            cue=cue,
+            steering=device.steering,
+        )
+        feeler.start(program)
+        return feeler
+
+    def _warm_up(self, figure: BookFigure) -> None:
+        """Load what compiles pages, while reading goes on; it takes about a second."""
+        if self._warming is None:
+            self._warming = Thread(
+                target=self._rehearse, args=(figure, self._device.style), daemon=True
+            )
+            self._warming.start()
+
+    def _rehearse(self, figure: BookFigure, style: BrailleStyle) -> None:
+        with suppress(InputError, ValueError):  # which is said when the page itself is made
+            self._compile([np.ones(1, np.uint8)], 0.0, style, [(figure, 0.0)])
+
+    def _load(self, address: str, style: BrailleStyle) -> LoadedScene:
+        """Read a figure.
+
+        Raises
+        ------
+        InputError
+            If it is not there, or cannot be used.
+        """
+        if not isinstance(self._source, EpubBook):
+            return load_scene(self._folder / unquote(address).lstrip("/"), style)
+        member = address.removeprefix("#")
+        # What it includes is looked for beside it, which is nowhere: a book's figure is one file.
+        with TemporaryDirectory(prefix="vbraille-") as folder:
+            path = Path(folder) / Path(member).name[-_LONGEST_NAME:]
+            path.write_bytes(self._source.member(member))
+            return load_scene(path, style)
+
+    def _say(self, what: str, why: str) -> None:
+        if what not in self._noted:
+            self._noted.add(what)
+            self._note(f"figure not felt: {printable(spelled(why))}")
