@@ -53,6 +53,7 @@ def test_an_epub_has_its_figure_within(call, tmp_path):
     assert said.code == 0
     assert "figure: Water cycle, 40 mm × 30 mm; below this line" in said.out
     assert "not felt" not in said.err
+    assert "note: figure: w.svg line 1: circle: its line is drawn 2 mm wide" in said.err
 
 
 def test_a_key_feels_it_on_a_slider_and_the_same_place_is_read_on(water):

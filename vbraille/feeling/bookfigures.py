@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread
@@ -17,7 +18,7 @@ from vbraille.feeling.loading import LoadedScene, check_fits, load_scene
 from vbraille.feeling.textcommands import BOUND
 from vbraille.render.scene.figures import FigureAt, page_with_figures
 from vbraille.translate.documents.epub import EpubBook
-from vbraille.wording import printable, spelled
+from vbraille.wording import count, printable, spelled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -138,8 +139,10 @@ class BookFigures:
         else:
             found = BookFigure(loaded, style)
             self._warm_up(found)
-            for note in loaded.notes:
-                self._say(f"{address}: {note}", note)
+            if loaded.notes:
+                more = len(loaded.notes) - 1
+                also = f"; vbraille scene check has {count(more, 'more remark')}" if more else ""
+                self._say(address, f"{loaded.notes[0]}{also}", "figure")
         if len(self._found) >= _MOST_KEPT:
             del self._found[next(iter(self._found))]
         self._found[address] = found
@@ -238,9 +241,14 @@ class BookFigures:
         with TemporaryDirectory(prefix="vbraille-") as folder:
             path = Path(folder) / Path(member).name[-_LONGEST_NAME:]
             path.write_bytes(self._source.member(member))
-            return load_scene(path, style)
+            try:
+                loaded = load_scene(path, style)
+            except InputError as error:
+                raise InputError(str(error).replace(f"{folder}/", "")) from None
+        notes = tuple(note.replace(f"{folder}/", "") for note in loaded.notes)
+        return replace(loaded, notes=notes)
 
-    def _say(self, what: str, why: str) -> None:
+    def _say(self, what: str, why: str, begins: str = "figure not felt") -> None:
         if what not in self._noted:
             self._noted.add(what)
-            self._note(f"figure not felt: {printable(spelled(why))}")
+            self._note(f"{begins}: {printable(spelled(why))}")
