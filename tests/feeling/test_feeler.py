@@ -27,7 +27,11 @@ def test_it_says_what_is_here_and_more_of_it(scene):
     felt.be_at(110, 80)
     assert felt.press("i")[0] == "here: nothing with a name"
     assert felt.press("d") == ["here: nothing with a name"]
-    assert felt.press("t") == ["picture: A house", "size: 120 mm × 90 mm"]
+    assert felt.press("t") == [
+        "picture: A house",
+        "description: A house and the sun.",
+        "size: 120 mm × 90 mm",
+    ]
     assert felt.press("e") == [
         "element: Sun, at 90 mm right, 20 mm down",
         "element: wall, at 40 mm right, 55 mm down",
