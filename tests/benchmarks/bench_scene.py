@@ -12,11 +12,13 @@ import numpy as np
 from tests.benchmarks.scenes import (
     CANVAS,
     DISPLAY,
+    along_teeth,
     masked,
     nested,
     shapes,
     short_lines,
     through_tens,
+    toothed,
     within_ten,
 )
 from tests.benchmarks.timing import Result, ratio, seconds
@@ -26,6 +28,7 @@ from vbraille.render.program import nothing
 from vbraille.render.scene.assets import Assets
 from vbraille.render.scene.canvas import SceneMap
 from vbraille.render.scene.compiling import SceneCompiler, compile_scene
+from vbraille.scene.patterns import PathShape
 from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
 
 MANY = 10_000
+TEETH = 50, 98  # of a comb of nearly as many segments, and the steps of each
 PLACES = 1000
 SWEEPS = 11
 TICKS = 5000
@@ -47,6 +51,7 @@ def run() -> Iterator[Result]:
     yield frame_from_python(nested(), "ten parts in each other under every actuator", 60, 12)
     yield from pruning()
     yield from many()
+    yield outline()
     yield from compiling()
     yield maps()
     yield ticks()
@@ -133,6 +138,29 @@ def many() -> Iterator[Result]:
     )
 
 
+def outline() -> Result:
+    """One filled path of many segments against one of few, along the same path of a finger."""
+    few, many = (compile_scene(toothed(*size), DISPLAY) for size in ((1, 3), TEETH))
+    within, corners = along_teeth(*TEETH)
+    share, least = ratio(
+        follow(many, within, corners), follow(few, within, 0 * corners), pairs=SWEEPS
+    )
+    return Result(
+        f"a frame of one filled path of {segments_of(toothed(*TEETH)):,} segments, against one of "
+        f"{segments_of(toothed(1, 3))}, along a finger's path that goes once along all of it",
+        "≤ 1.1 ×",
+        f"{share:.2f} ×, {least / len(within) / len(corners) * 1e6:.2f} µs",
+        share <= 1.1,
+    )
+
+
+def segments_of(scene: Scene) -> int:
+    """Tell how many places a scene's only path goes through."""
+    (path,) = scene.elements
+    assert isinstance(path, PathShape)
+    return len(path.contours_mm[0])
+
+
 def follow(program: Program, within: np.ndarray, corners: np.ndarray) -> Callable[[], object]:
     """Frames along a path within each ten of a picture's shapes."""
 
@@ -149,6 +177,15 @@ def compiling() -> Iterator[Result]:
     compile_scene(shapes(10), DISPLAY)
     taken = statistics.median(seconds(lambda: compile_scene(scene, DISPLAY)) for _ in range(5))
     yield Result(f"compiling a picture of {MANY:,} shapes", "≤ 1 s", f"{taken:.2f} s", taken <= 1)
+    for size in (TEETH, (2 * TEETH[0], 5 * TEETH[1])):
+        comb = toothed(*size)
+        taken = statistics.median(seconds(lambda: compile_scene(comb, DISPLAY)) for _ in range(5))  # noqa: B023
+        yield Result(
+            f"compiling one filled path of {segments_of(comb):,} segments",
+            "≤ 1 s" if size == TEETH else "no bar",
+            f"{taken:.2f} s",
+            taken <= 1 or size != TEETH,
+        )
     compiler, out = SceneCompiler(DISPLAY), np.zeros(DISPLAY.shape)
     assets = Assets()
     compiler.compile(scene, assets)

@@ -155,12 +155,14 @@ def test_what_a_place_is_told_does_not_grow_with_the_outline():
 # What is hidden
 
 
+_CORNERS = ((10.0, 5.0), (110.0, 15.0), (115.0, 85.0), (60.0, 75.0), (5.0, 88.0))
+
+
 def _outline(kind):
-    places = ((10.0, 5.0), (110.0, 15.0), (115.0, 85.0), (60.0, 75.0), (5.0, 88.0))
     fill = Fill(texture=Uniform(level=0.3))
     if kind is Polygon:
-        return Polygon(vertices_mm=places, fill=fill, stroke=Stroke(width_mm=2.0))
-    return PathShape(contours_mm=(places,), closed=True, fill=fill, amplitude=0.5)
+        return Polygon(vertices_mm=_CORNERS, fill=fill, stroke=Stroke(width_mm=2.0))
+    return PathShape(contours_mm=(_CORNERS,), closed=True, fill=fill, amplitude=0.5)
 
 
 _IMAGE = Image(file="a.png", width_mm=110.0)
@@ -196,7 +198,7 @@ def _group(operation, *parts, **more):
         _outline(Polygon),
         _outline(PathShape),
         PathShape(
-            contours_mm=_outline(PathShape).contours_mm,
+            contours_mm=(_CORNERS,),
             closed=True,
             dots=Dotting(),
             fill=Fill(texture=_GRATING),
@@ -234,7 +236,7 @@ def test_what_is_hidden_costs_nothing(top):
         _group("overwrite", _outline(Polygon), _RING),
         _group("multiply", _outline(Polygon), _LINES[19]),
         _group("blend", _outline(Polygon), _LINES[19], by=_GRATING),
-        Polygon(vertices_mm=_outline(Polygon).vertices_mm, stroke=Stroke(width_mm=2.0)),
+        Polygon(vertices_mm=_CORNERS, stroke=Stroke(width_mm=2.0)),
     ],
     ids=["under another", "product", "blend", "not filled"],
 )  # fmt: skip

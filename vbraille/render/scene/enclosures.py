@@ -94,7 +94,8 @@ def enclosed_fill(shape: AnyShape, fill: Fill) -> tuple[Enclosed, ...]:
             walls.append((_WALL, less, y0, more, y0, reach))
             before = left
             places.append(start)
-    return (*edges, (_AROUND, *around(places), reach), *walls)
+    left, top, right, bottom = around(places)
+    return (*edges, (_AROUND, left, top, right, bottom, reach), *walls)
 
 
 def disc(circle: Circle) -> Enclosed:

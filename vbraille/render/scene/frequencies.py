@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.scene.dots import Dots
-from vbraille.scene.patterns import Circle, PathShape, Polygon
-from vbraille.scene.shapes import StraightLine
+from vbraille.scene.patterns import Polygon
+from vbraille.scene.shapes import Shape
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 from vbraille.scene.walking import each
 
@@ -49,17 +49,7 @@ def highest_hz(pattern: AnyPattern, number: int, rate_hz: float) -> float:
 def _frequencies(pattern: AnyPattern) -> Iterator[float]:
     """Frequencies of a pattern itself, without those that stand in it."""
     yield from _of(pattern.vibration)
-    if isinstance(pattern, UniformVibration):
-        yield pattern.frequency_hz
-    elif isinstance(pattern, LinearGrating | RadialGrating):
-        if pattern.velocity_mm_s:
-            yield abs(pattern.velocity_mm_s) / (pattern.ridge_mm + pattern.gap_mm)
-    elif isinstance(pattern, AxialGrating):
-        if pattern.velocity_deg_s:
-            yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
-    elif isinstance(pattern, Dots):
-        yield from _of(pattern.dot.vibration)
-    elif isinstance(pattern, StraightLine | Circle | Polygon | PathShape):
+    if isinstance(pattern, Shape):
         if pattern.stroke is not None:
             yield from _of(pattern.stroke.vibration)
             along = pattern.stroke.along
@@ -70,6 +60,16 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
             yield from _of(pattern.dots.vertex_vibration)
         if isinstance(pattern, Polygon) and pattern.markers is not None:
             yield from _of(pattern.markers.swing)
+    elif isinstance(pattern, UniformVibration):
+        yield pattern.frequency_hz
+    elif isinstance(pattern, LinearGrating | RadialGrating):
+        if pattern.velocity_mm_s:
+            yield abs(pattern.velocity_mm_s) / (pattern.ridge_mm + pattern.gap_mm)
+    elif isinstance(pattern, AxialGrating):
+        if pattern.velocity_deg_s:
+            yield abs(pattern.velocity_deg_s) / (pattern.ridge_deg + pattern.gap_deg)
+    elif isinstance(pattern, Dots):
+        yield from _of(pattern.dot.vibration)
 
 
 def _of(vibration: Vibration | None) -> Iterator[float]:

@@ -9,6 +9,7 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.render.machine import shapekernels as places
+from vbraille.scene.dots import Dots
 from vbraille.scene.fitting import stroke_cycles
 from vbraille.scene.joints import (
     edge_lengths_mm,
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from vbraille.scene.measures import Point
 
 AnyShape = StraightLine | Circle | Polygon | PathShape
+# What has a list of parts; making it anew for each of thousands of elements takes time.
+ShapeOrDots = AnyShape | Dots
 _OPEN = -1e30  # stands for minus infinity
 _ROUNDING_MM = 1e-6
 _NO_CORNER = (_OPEN, *(0.0,) * (places.CORNER_NUMBERS - 1))

@@ -14,7 +14,7 @@ from vbraille.render.machine import words
 from vbraille.render.scene import shapecode
 from vbraille.render.scene.enclosures import disc, enclosed_dots, enclosed_fill, enclosed_stroke
 from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
-from vbraille.render.scene.pathparts import AnyShape
+from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
 from vbraille.render.scene.shapecode import fill_of
 from vbraille.render.scene.wholes import say_whole
 from vbraille.scene.bounds import bounds
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     Saying = Callable[[WordBlock, bool], list[int]]
 
 
-def is_apart(pattern: AnyShape | Dots) -> bool:
+def is_apart(pattern: ShapeOrDots) -> bool:
     """Tell whether a pattern is several leaves."""
     fill = None if isinstance(pattern, Dots) else fill_of(pattern)
     if fill is None or isinstance(pattern, Dots):
         return False
-    return pattern.dots is not None or any(
-        isinstance(part, AnyShape | Dots) for part in each(fill.texture)
-    )
+    if pattern.dots is not None:
+        return True
+    return any(isinstance(part, ShapeOrDots) for part in each(fill.texture))
 
 
 def apart(shape: AnyShape, texture: Node | None) -> Node:
@@ -56,7 +56,7 @@ def apart(shape: AnyShape, texture: Node | None) -> Node:
     return joined(NodeKind.OVER, (filled, replace(over, pushes=Pushes.PAIR, depth=2)))
 
 
-def leaf(pattern: AnyShape | Dots, texture: Node | None) -> Node:
+def leaf(pattern: ShapeOrDots, texture: Node | None) -> Node:
     """Leaf of a pattern with the texture of its fill, without its own changes."""
     if isinstance(pattern, Dots):
         return _drawn(pattern, partial(_say_dots, pattern))
@@ -66,7 +66,7 @@ def leaf(pattern: AnyShape | Dots, texture: Node | None) -> Node:
     return _filled(pattern, say, max(texture.depth, 3))
 
 
-def pair(pattern: AnyShape | Dots, own: Node) -> Node:
+def pair(pattern: ShapeOrDots, own: Node) -> Node:
     """Leaf that pushes a deflection, and then its mask from the same coordinates."""
     assert own.say is not None
     say = partial(_say_pair, own.say, partial(_say_mask, pattern))
@@ -74,7 +74,7 @@ def pair(pattern: AnyShape | Dots, own: Node) -> Node:
     return replace(own, say=say, pushes=Pushes.PAIR, depth=own.depth + 1, solid=filled)
 
 
-def mask(pattern: AnyShape | Dots) -> Node:
+def mask(pattern: ShapeOrDots) -> Node:
     """Tree of a pattern's opacity mask."""
     if isinstance(pattern, Dots) or fill_of(pattern) is None:
         return _drawn(pattern, partial(_say_mask, pattern))
@@ -84,7 +84,7 @@ def mask(pattern: AnyShape | Dots) -> Node:
     return joined(NodeKind.MAXIMUM, (inside, _drawn(pattern, partial(_say_mask, pattern))))
 
 
-def _drawn(pattern: AnyShape | Dots, say: Saying) -> Node:
+def _drawn(pattern: ShapeOrDots, say: Saying) -> Node:
     """Leaf of dots, or of the stroke of a shape."""
     box = bounds(pattern)
     if box is None:
@@ -137,7 +137,7 @@ def _say_stroke_pair(shape: AnyShape, block: WordBlock, parts: bool) -> list[int
 
 
 def _say_mask(
-    pattern: AnyShape | Dots, block: WordBlock, parts: bool, paired: bool = False
+    pattern: ShapeOrDots, block: WordBlock, parts: bool, paired: bool = False
 ) -> list[int]:
     if isinstance(pattern, AnyShape):
         return shapecode.say_shape_mask(pattern, block, parts, paired)

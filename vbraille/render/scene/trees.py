@@ -11,7 +11,7 @@ from vbraille.render.machine.labelplaces import TABLE
 from vbraille.render.scene import enclosures, shapecode, shapetrees, texturecode
 from vbraille.render.scene.brailleplaces import box_of, pack_label
 from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
-from vbraille.render.scene.pathparts import AnyShape
+from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
 from vbraille.render.scene.shapecode import fill_of
 from vbraille.render.scene.wholes import say_whole
 from vbraille.scene.bounds import is_everywhere
@@ -63,7 +63,7 @@ def layer(pattern: AnyPattern, assets: Assets) -> Node:
     """Tree of a pattern as a layer over others: its deflection and what it hides."""
     if is_everywhere(pattern):
         return replace(deflection(pattern, assets), pushes=Pushes.COVER)
-    if isinstance(pattern, AnyShape | Dots) and not shapetrees.is_apart(pattern):
+    if isinstance(pattern, ShapeOrDots) and not shapetrees.is_apart(pattern):
         own = _leaf(pattern, assets)
         if _is_plain(pattern) and shapecode.is_own_mask(pattern):
             return own
@@ -95,7 +95,7 @@ def mask(pattern: AnyPattern, assets: Assets) -> Node | None:
             return Node(NodeKind.LEAF, say=say, box=box, inside=inside, solid=True)
         case Group():
             return _group_mask(pattern, assets)
-        case _ if isinstance(pattern, AnyShape | Dots):
+        case _ if isinstance(pattern, ShapeOrDots):
             return shapetrees.mask(pattern)
     return None
 
@@ -169,7 +169,7 @@ def _is_plain(pattern: Pattern) -> bool:
 def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     """Leaf with a pattern's own changes among its words."""
     changes = _changes(pattern)
-    if isinstance(pattern, AnyShape | Dots):
+    if isinstance(pattern, ShapeOrDots):
         own = shapetrees.leaf(pattern, _fill_texture(pattern, assets))
     elif isinstance(pattern, Image):
         own = _image(pattern, assets)
@@ -196,7 +196,7 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     return replace(own, say=say)
 
 
-def _fill_texture(pattern: AnyShape | Dots, assets: Assets) -> Node | None:
+def _fill_texture(pattern: ShapeOrDots, assets: Assets) -> Node | None:
     fill = None if isinstance(pattern, Dots) else fill_of(pattern)
     return None if fill is None else deflection(fill.texture, assets)
 
