@@ -89,8 +89,13 @@ def bounds(pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KN
     TypeError
         If the pattern is a `Use` or has dots of an image, which only a resolved scene can place.
     """
-    if is_everywhere(pattern):
-        return None
+    return None if is_everywhere(pattern) else unchanged_bounds(pattern, known)
+
+
+def unchanged_bounds(
+    pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KNOWN
+) -> Box | None:
+    """Compute what `bounds` would, were the pattern itself not inverted and did it not vibrate."""
     match pattern:
         case Image() | Label():
             return known.get(pattern)

@@ -70,6 +70,7 @@ def _filled_path(**more):
     [
         (_filled_path(), 150),
         (_filled_path(stroke=Stroke(width_mm=2.0, along=Along())), 150),
+        (_filled_path(inverted=True), 150),
         (_filled_path(stroke=None, dots=Dotting(dot=DotStyle(radius_mm=0.5))), 150),
         (Polygon(vertices_mm=_around(_MANY), stroke=Stroke(), markers=VertexMarkers()), 150),
         (
@@ -90,7 +91,15 @@ def _filled_path(**more):
             150,
         ),
     ],
-    ids=["filled", "textured", "dotted", "marked", "marked and filled", "filled with dots"],
+    ids=[
+        "filled",
+        "textured",
+        "inverted",
+        "dotted",
+        "marked",
+        "marked and filled",
+        "filled with dots",
+    ],
 )
 def test_a_place_is_told_of_few_segments(shape, most):
     """All about the edge, where segments of 0.3 mm go up and down between 450 and 453 mm."""

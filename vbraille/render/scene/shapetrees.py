@@ -17,7 +17,7 @@ from vbraille.render.scene.nodes import Node, NodeKind, Pushes, joined
 from vbraille.render.scene.pathparts import AnyShape, ShapeOrDots
 from vbraille.render.scene.shapecode import fill_of
 from vbraille.render.scene.wholes import say_whole
-from vbraille.scene.bounds import bounds
+from vbraille.scene.bounds import unchanged_bounds
 from vbraille.scene.dots import Dots
 from vbraille.scene.dotting import PlacedDot
 from vbraille.scene.patterns import Circle
@@ -86,9 +86,7 @@ def mask(pattern: ShapeOrDots) -> Node:
 
 def _drawn(pattern: ShapeOrDots, say: Saying) -> Node:
     """Leaf of dots, or of the stroke of a shape."""
-    box = bounds(pattern)
-    if box is None:
-        return Node(NodeKind.LEAF, say=say)
+    box = unchanged_bounds(pattern)
     if isinstance(pattern, Dots) or pattern.dots is not None:
         return Node(NodeKind.LEAF, say=say, box=box, enclosed=enclosed_dots(pattern), parts=True)
     parts = not isinstance(pattern, Circle)
@@ -97,10 +95,8 @@ def _drawn(pattern: ShapeOrDots, say: Saying) -> Node:
 
 def _filled(shape: AnyShape, say: Saying, depth: int = 3) -> Node:
     """Leaf of the fill of a shape, as a rule with its stroke."""
-    box, fill = bounds(shape), fill_of(shape)
+    box, fill = unchanged_bounds(shape), fill_of(shape)
     assert fill is not None
-    if box is None:
-        return Node(NodeKind.LEAF, say=say, depth=depth)
     if isinstance(shape, Circle):
         return Node(NodeKind.LEAF, say=say, box=box, inside=disc(shape), depth=depth)
     enclosed = enclosed_fill(shape, fill)

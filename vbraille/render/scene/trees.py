@@ -56,6 +56,9 @@ def deflection(pattern: AnyPattern, assets: Assets) -> Node:
         return _changed(pattern, joined(NodeKind.MULTIPLY, parts))
     if isinstance(pattern, AnyShape) and shapetrees.is_apart(pattern):
         return _changed(pattern, shapetrees.apart(pattern, _fill_texture(pattern, assets)))
+    if isinstance(pattern, ShapeOrDots) and is_everywhere(pattern):
+        # Where there is nothing of it, it is something now, and still few of its parts are asked.
+        return _changed(pattern, shapetrees.leaf(pattern, _fill_texture(pattern, assets)))
     return _leaf(pattern, assets)
 
 
@@ -191,8 +194,7 @@ def _leaf(pattern: AnyPattern, assets: Assets) -> Node:
     assert own.say is not None
     say = partial(_say_changed, own.say, changes)
     if is_everywhere(pattern):
-        # Where there is nothing of it, it is something now, and so all of its parts are asked.
-        return replace(own, say=say, box=None, enclosed=(), parts=False)
+        return replace(own, say=say, box=None)
     return replace(own, say=say)
 
 
