@@ -6,8 +6,8 @@ from tests.benchmarks.killing import ADAPTIVE, STAIRCASES, kill_often
 from tests.conftest import SEED
 from tests.tiers import by_tier, heavy
 
-KILLS = by_tier(6, 20, 300)
-KILLS_BY_ANSWERS = by_tier(2, 20, 300)
+KILLS = by_tier(3, 20, 300)
+KILLS_BY_ANSWERS = by_tier(1, 20, 300)
 
 
 def test_a_session_that_is_killed_goes_on_where_it_was(tmp_path):

@@ -228,10 +228,11 @@ class Scene:
             return self.program.path(np.ascontiguousarray(x_mm))
         y_mm, theta = self.pose()
         part = self.program.part_of(y_mm)
-        out = np.zeros((x_mm.size, *self.display.shape), np.float32)
+        # Frames as ticks make them; of float32 they would be compiled anew, which takes seconds.
+        out = np.zeros((x_mm.size, *self.display.shape))
         for at, frame in zip(x_mm, out, strict=True):
             self.program.frame(float(at), frame, theta_rad=theta, part=part)
-        return out
+        return out.astype(np.float32)
 
     def pose(self) -> tuple[float, float]:
         if self.held is not None:

@@ -19,6 +19,7 @@ from tests.render.scenes import (
     scenes_with_places,
 )
 from tests.shown import array_of
+from tests.tiers import heavy
 from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
 from vbraille.render import (
@@ -225,7 +226,7 @@ def test_rounding_never_goes_beyond_the_ends_of_the_swing(texture):
                     assert 0 <= on_the_dot <= 1
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("dtype", [pytest.param(np.float32, marks=heavy), np.float64])
 @pytest.mark.parametrize("x_mm", [np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19])
 def test_no_place_at_all_gives_the_idle_frame(x_mm, dtype):
     for profile in Profile:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
-from tests.tiers import heavy
+from tests.tiers import by_tier, heavy
 from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
 from vbraille.render import (
@@ -200,6 +200,7 @@ def test_the_largest_array():
 # Where frames are put
 
 
+@heavy  # frames of single precision, which nothing asks for, are compiled for it
 def test_a_frame_in_single_and_in_double_precision():
     for scene in models(line(63, 63)).values():
         renderer = scene.renderer()
@@ -222,7 +223,7 @@ def test_a_frame_may_be_a_part_of_something_larger():
 @pytest.mark.parametrize("shape", [(1, 10), (5, 10), (7, 10), (6, 9), (6, 11), (10, 6)])
 def test_a_frame_of_another_shape_is_refused(shape):
     renderer = models(line(63))["stress2"].renderer()
-    for dtype in (np.float32, np.float64):
+    for dtype in by_tier((np.float64,), *[(np.float32, np.float64)] * 2):
         out = np.zeros(shape, dtype)
         with pytest.raises(ValueError, match=r"^the frame has not the shape of the array$"):
             renderer.frame(1.3, out)

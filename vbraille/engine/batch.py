@@ -136,10 +136,13 @@ class BatchEngine:
         poses[:, POSE_X : POSE_THETA + 1] = self.device.poses_at(due_ns).T
         self._clock.sleep_until_ns(int(due_ns[-1]))
         self.device.read()  # this tells whoever steers the hand that it has come to its end
-        ticks = np.zeros(due_ns.size, self._dtype)
+        # Views of a single record would be contiguous, for which ticks would be compiled again: so
+        # there is room for one more.
+        room = np.zeros(due_ns.size + 1, self._dtype)
+        ticks = room[:-1]
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
         device = self.device
-        self._state.advance(times_ns, poses, device.rested, device.taking, columns_of(ticks))
+        self._state.advance(times_ns, poses, device.rested, device.taking, columns_of(room))
         device.write(self._state.output)
         self.newest = ticks[-1]
         self.tally = Tally.of(ticks[-1])
