@@ -20,7 +20,7 @@ from vbraille.render import (
     Tuning,
     single_row,
 )
-from vbraille.render.kernels import blend
+from vbraille.render.frames import blend
 
 ONE = array_of(rows=1, columns=1, column_pitch_mm=1.0, row_pitch_mm=1.0)
 PEAK = {0.0: 1.0, 1.0: 1.107908722138734}  # M(a) by texture level, a = T / 8

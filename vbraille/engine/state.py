@@ -19,7 +19,7 @@ from vbraille.engine.constants import (
 )
 from vbraille.errors import check_range
 from vbraille.render import work
-from vbraille.render.kernels import blend
+from vbraille.render.frames import blend
 from vbraille.render.program import nothing, scratch_for
 
 if TYPE_CHECKING:

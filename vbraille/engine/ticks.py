@@ -42,7 +42,8 @@ from vbraille.engine.record import (
     Y,
 )
 from vbraille.render import work
-from vbraille.render.kernels import blend, copy, frame, part_of, patience, seamless, too_far
+from vbraille.render.frames import blend, copy
+from vbraille.render.kernels import frame, part_of, patience, seamless, too_far
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)

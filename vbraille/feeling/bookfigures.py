@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from vbraille.reading.opened import OpenDevice
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.translate.source import Source
 
 _MOST_KEPT: Final = 8  # figures that stay read
@@ -71,13 +70,12 @@ class BookFigure:
     def name_at(self, x_mm: float, y_mm: float) -> str:
         """Name of the element at a place of its canvas, in mm; empty if none has one there."""
         if self._index is None:
-            # The first frame does not wait for it.
-            from vbraille.render.scene.reference import opacity
+            # It loads numba, which nobody needs who comes to no figure.
+            from vbraille.feeling.opacities import Opacities
 
-            def at(pattern: AnyPattern, x_mm: float, y_mm: float) -> float:
-                return float(opacity(pattern, self.loaded.assets, x_mm, y_mm)[0])
-
-            self._index = SceneIndex(self.loaded.scene, at, self.loaded.boxes())
+            scene = self.loaded.scene
+            opacities = Opacities(scene, self.loaded.assets)
+            self._index = SceneIndex(scene, opacities.at, self.loaded.boxes())
         found = self._index.here(x_mm, y_mm)
         return "" if found is None else found.name
 

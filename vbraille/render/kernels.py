@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 
+from vbraille.render.frames import copy
 from vbraille.render.machine.showkernels import show as _show_scene
 from vbraille.render.machine.showkernels import show_all as _show_scenes
 from vbraille.render.waves import compiled as _compiled
@@ -351,18 +352,6 @@ def path(numbers, table, scratch, x_mm, out):
 
 
 @_compiled
-def copy(given, out):
-    """Fill ``out`` with a frame of the same shape.
-
-    ``out[:] = given`` would be compiled with all the words of its refusal, which takes seconds.
-    """
-    rows, columns = out.shape
-    for row in range(rows):
-        for column in range(columns):
-            out[row, column] = given[row, column]
-
-
-@_compiled
 def poses(numbers, table, scratch, at, parts, out):
     """Fill a frame for each pose over a picture, and the part that belongs under the array there.
 
@@ -390,20 +379,3 @@ def poses(numbers, table, scratch, at, parts, out):
         else:
             frame(numbers, table, scratch, part, at[n], made)
             copy(made, out[n])
-
-
-@_compiled
-def blend(before, after, share, out):
-    """Fill ``out`` with (1 - share) · before + share · after, frames of one shape.
-
-    It is computed from the nearer end, so that both ends are exact and rounding never goes beyond
-    them.
-    """
-    rows, columns = out.shape
-    for row in range(rows):
-        for column in range(columns):
-            change = after[row, column] - before[row, column]
-            if share < 0.5:
-                out[row, column] = before[row, column] + share * change
-            else:
-                out[row, column] = after[row, column] - (1.0 - share) * change
